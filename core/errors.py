@@ -1,0 +1,33 @@
+"""What can go wrong for a user, said in one sentence with what to do."""
+
+
+class UserError(Exception):
+    """A problem that the user can solve: ``message`` says what is wrong, ``hint`` what to do."""
+
+    def __init__(self, message: str, hint: str = "") -> None:
+        super().__init__(message)
+        self.message = message
+        self.hint = hint
+
+    def __str__(self) -> str:
+        return f"{self.message} {self.hint}".strip()
+
+
+class ScanError(UserError):
+    """The scan cannot be read, or it is not an upper body."""
+
+
+class LandmarkError(UserError):
+    """The bust landmarks cannot be found."""
+
+
+class FitError(UserError):
+    """The template control mesh cannot be fitted to the body."""
+
+
+class LineError(UserError):
+    """A constraining line is unknown, or its length cannot be asked for."""
+
+
+class ProjectError(UserError):
+    """The project file cannot be read or written."""

@@ -1,0 +1,128 @@
+"""Triangle meshes: the one geometric value that all floors share."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from scipy import sparse
+
+Points = npt.NDArray[np.float64]
+"""Positions, shape (n, 3) [mm]."""
+
+Faces = npt.NDArray[np.int64]
+"""Corner indices of triangles, shape (m, 3), counter-clockwise seen from outside."""
+
+Indices = npt.NDArray[np.int64]
+Floats = npt.NDArray[np.float64]
+Flags = npt.NDArray[np.bool_]
+
+
+def frozen(array: npt.ArrayLike, dtype: npt.DTypeLike = np.float64) -> npt.NDArray[np.float64]:
+    """Return a contiguous read-only copy of ``array``."""
+    result = np.array(array, dtype=dtype, order="C")
+    result.setflags(write=False)
+    return result
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Triangles in space, shape (n, 3) [mm] and (m, 3); the arrays are read-only copies."""
+
+    vertices: Points
+    faces: Faces
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "vertices", frozen(self.vertices))
+        object.__setattr__(self, "faces", frozen(self.faces, np.int64))
+
+    def moved(self, vertices: Points) -> Mesh:
+        """Return the same triangles at other positions, shape (n, 3) [mm]."""
+        return Mesh(vertices, self.faces)
+
+    @cached_property
+    def area_vectors(self) -> Points:
+        """Face normals times face areas, shape (m, 3) [mm^2]."""
+        return area_vectors(self.vertices, self.faces)
+
+    @cached_property
+    def face_areas(self) -> Floats:
+        """Triangle areas, shape (m,) [mm^2]."""
+        return np.asarray(np.linalg.norm(self.area_vectors, axis=1))
+
+    @cached_property
+    def face_normals(self) -> Points:
+        """Outward unit normals of the faces, shape (m, 3) [1]; zero for a degenerate face."""
+        return unit(self.area_vectors)
+
+    @cached_property
+    def vertex_normals(self) -> Points:
+        """Area-weighted unit normals of the vertices, shape (n, 3) [1]."""
+        return unit(incidence(self.faces, len(self.vertices)) @ self.area_vectors)
+
+    @cached_property
+    def edges(self) -> Indices:
+        """Every edge once, lower index first, shape (e, 2)."""
+        return np.unique(np.sort(_half_edges(self.faces), axis=1), axis=0)
+
+    @cached_property
+    def boundary_loops(self) -> tuple[Indices, ...]:
+        """Closed loops of border vertices in face order, longest first; empty for a closed mesh."""
+        return boundary_loops(self.faces)
+
+    def enclosed_volume(self, apex: npt.ArrayLike = (0.0, 0.0, 0.0)) -> float:
+        """Return the signed volume of the cone over the faces from ``apex`` [mm^3].
+
+        For a closed mesh wound outward this is its volume, whatever the apex.
+        """
+        corners = self.vertices[self.faces] - np.asarray(apex, dtype=np.float64)
+        return float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6.0
+
+
+def unit(vectors: Points) -> Points:
+    """Return ``vectors``, shape (n, 3), scaled to length 1; zero vectors stay zero."""
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.asarray(vectors / np.where(length > 0.0, length, 1.0))
+
+
+def area_vectors(vertices: Points, faces: Faces) -> Points:
+    """Return half the cross product of two sides of each face, shape (m, 3) [mm^2]."""
+    a, b, c = (vertices[faces[:, k]] for k in range(3))
+    return np.asarray(0.5 * np.cross(b - a, c - a))
+
+
+def incidence(faces: Faces, vertex_count: int) -> sparse.csr_array:
+    """Return the 0/1 matrix that sums face values at vertices, shape (vertex_count, m)."""
+    columns = np.repeat(np.arange(len(faces)), 3)
+    ones = np.ones(faces.size)
+    return sparse.csr_array((ones, (faces.ravel(), columns)), shape=(vertex_count, len(faces)))
+
+
+def _half_edges(faces: Faces) -> Indices:
+    return np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+
+
+def boundary_loops(faces: Faces) -> tuple[Indices, ...]:
+    """Return the closed loops of border vertices of ``faces``, longest first."""
+    half = _half_edges(faces)
+    _, first, count = np.unique(np.sort(half, axis=1), axis=0, return_index=True, return_counts=True)
+    after: dict[int, list[int]] = defaultdict(list)
+    for start, end in half[first[count == 1]].tolist():
+        after[start].append(end)
+    loops = []
+    while after:
+        start = next(iter(after))
+        loop = [start]
+        while loop[-1] in after:
+            ends = after[loop[-1]]
+            following = ends.pop()
+            if not ends:
+                del after[loop[-1]]
+            if following == start:
+                break
+            loop.append(following)
+        loops.append(np.array(loop, dtype=np.int64))
+    return tuple(sorted(loops, key=len, reverse=True))

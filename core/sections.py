@@ -1,0 +1,114 @@
+"""Plane sections of a mesh: exact segments, chained into curves, and what a tape reads on them."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial import ConvexHull, QhullError
+
+from core.mesh import Floats, Indices, Mesh, Points
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """Where a plane cuts a mesh: one segment per cut face.
+
+    ``segments`` are the two end points, shape (s, 2, 3) [mm]; ``edge_ids`` tells which mesh edge each end lies
+    on, shape (s, 2), so that neighbouring segments share an id and chain without a tolerance.
+    """
+
+    segments: Points
+    edge_ids: Indices
+
+    @property
+    def points(self) -> Points:
+        """All end points, shape (2 s, 3) [mm]."""
+        return self.segments.reshape(-1, 3)
+
+
+def cut(mesh: Mesh, origin: npt.ArrayLike, normal: npt.ArrayLike) -> Section:
+    """Cut ``mesh`` with the plane through ``origin`` [mm] with ``normal`` [1]."""
+    side = (mesh.vertices - np.asarray(origin, dtype=np.float64)) @ np.asarray(normal, dtype=np.float64)
+    return _cut_by_side(mesh, side)
+
+
+def cut_level(mesh: Mesh, z: float) -> Section:
+    """Cut ``mesh`` with the horizontal plane at height ``z`` [mm]."""
+    return _cut_by_side(mesh, mesh.vertices[:, 2] - z)
+
+
+def _cut_by_side(mesh: Mesh, side: Floats) -> Section:
+    above = side >= 0.0
+    count = above[mesh.faces].sum(axis=1)
+    faces = mesh.faces[(count == 1) | (count == 2)]
+    if len(faces) == 0:
+        return Section(np.empty((0, 2, 3)), np.empty((0, 2), dtype=np.int64))
+    up = above[faces]
+    lone_value = up.sum(axis=1) == 1
+    lone = np.argmax(up == lone_value[:, None], axis=1)
+    rows = np.arange(len(faces))
+    tip, left, right = (faces[rows, (lone + k) % 3] for k in range(3))
+    ends, ids = [], []
+    for other in (left, right):
+        low, high = np.minimum(tip, other), np.maximum(tip, other)
+        t = (side[low] / (side[low] - side[high]))[:, None]
+        ends.append(mesh.vertices[low] * (1.0 - t) + mesh.vertices[high] * t)
+        ids.append(low * len(mesh.vertices) + high)
+    return Section(np.stack(ends, axis=1), np.stack(ids, axis=1))
+
+
+def chains(section: Section) -> list[tuple[Points, bool]]:
+    """Join the segments into curves: a list of (points (k, 3) [mm], closed), longest first."""
+    neighbours: dict[int, list[tuple[int, int]]] = defaultdict(list)
+    where: dict[int, tuple[int, int]] = {}
+    for row, (a, b) in enumerate(section.edge_ids.tolist()):
+        neighbours[a].append((row, b))
+        neighbours[b].append((row, a))
+        where.setdefault(a, (row, 0))
+        where.setdefault(b, (row, 1))
+    used = np.zeros(len(section.edge_ids), dtype=bool)
+
+    def walk(start: int) -> list[int]:
+        path = [start]
+        while True:
+            step = next(((r, e) for r, e in neighbours[path[-1]] if not used[r]), None)
+            if step is None:
+                return path
+            used[step[0]] = True
+            path.append(step[1])
+
+    open_ends = [node for node, links in neighbours.items() if len(links) == 1]
+    curves = []
+    for start in open_ends + list(neighbours):
+        path = walk(start)
+        if len(path) > 1:
+            points = np.array([section.segments[where[node]] for node in path])
+            curves.append((points, path[0] == path[-1]))
+    return sorted(curves, key=lambda curve: arc_length(curve[0])[-1], reverse=True)
+
+
+def arc_length(curve: Points) -> Floats:
+    """Return the distance along ``curve``, shape (k, 3), from its first point, shape (k,) [mm]."""
+    steps = np.linalg.norm(np.diff(curve, axis=0), axis=1)
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def resample(curve: Points, step: float) -> Points:
+    """Return points every ``step`` [mm] along ``curve``, both ends kept."""
+    s = arc_length(curve)
+    count = max(2, round(float(s[-1]) / step) + 1)
+    at = np.linspace(0.0, s[-1], count)
+    return np.stack([np.interp(at, s, curve[:, k]) for k in range(curve.shape[1])], axis=1)
+
+
+def hull_perimeter(points: Points) -> float:
+    """Return the length of a tape round ``points``, shape (k, 3), in their horizontal plane [mm]; 0 if none."""
+    if len(points) < 3:
+        return 0.0
+    try:
+        return float(ConvexHull(points[:, :2]).area)
+    except QhullError:
+        return 0.0
