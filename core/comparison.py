@@ -1,0 +1,115 @@
+"""Runs side by side: the turn-based volume controls in lockstep on the same targets, beside the exact answer.
+
+All runs see the same lengths at the same turn, so their curves can be laid over each other even while a slider moves.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from core.exact import Balance, solve_exact
+from core.solver import ConstrainedModel, Record, State, Targets, Watch, at_rest, record, turn
+from core.verdict import Verdict, judge
+
+TURN_CONTROLS = ("adaptive", "conventional")
+"""The controls that are always compared; "none" joins when it is the chosen one."""
+
+MOST_TURNS = 300
+"""Turns after a change of the targets at which a run is left as it is, settled or not."""
+
+
+class Run:
+    """One volume control at work: its state and all its records."""
+
+    def __init__(self, model: ConstrainedModel, control: str, state: State, watch: Watch | None) -> None:
+        self.control = control
+        self.state = state
+        self.records: list[Record] = [record(model, state, 0.0, watch)]
+        self.changed_at = state.turn
+
+    @property
+    def verdict(self) -> Verdict:
+        """How the run stands since the targets last changed."""
+        since = self.changed_at - self.records[0].turn
+        return judge(self.records[max(since, 0) + 1 :])
+
+    @property
+    def resting(self) -> bool:
+        """Whether there is nothing more to see: settled, diverged, or long enough watched."""
+        turns = self.state.turn - self.changed_at
+        return turns > 0 and (turns >= MOST_TURNS or self.verdict.state in ("settled", "diverged"))
+
+
+class Comparison:
+    """The runs of the compared controls and the exact answer, for one model whose targets may move."""
+
+    def __init__(self, model: ConstrainedModel, targets: Targets, watch: Watch | None = None) -> None:
+        self.model = model
+        self.targets = targets
+        self.watch = watch
+        self.runs: dict[str, Run] = {}
+        self.exact = solve_exact(model, targets.ratios)
+        self._set_runs(fresh=True)
+
+    def retarget(self, model: ConstrainedModel, targets: Targets, fresh: bool = False) -> None:
+        """Take new targets, warm: every run goes on from where it is.
+
+        ``model`` may differ in the lines that are worn, not in its control points. ``fresh`` begins new records at turn 0.
+        """
+        new_model = model is not self.model
+        self.model, self.targets = model, targets
+        answer = solve_exact(model, targets.ratios, None if new_model else self.exact.state)
+        self.exact = answer if answer.found else solve_exact(model, targets.ratios)
+        self._set_runs(fresh)
+
+    @property
+    def main(self) -> Run | None:
+        """The run of the chosen control; None when the exact answer is shown."""
+        return self.runs.get(self.targets.control)
+
+    @property
+    def shown(self) -> State:
+        """The state to show: that of the chosen control's run, or the exact answer."""
+        return self.main.state if self.main else self.exact.state
+
+    @property
+    def verdict(self) -> Verdict:
+        """How the chosen control stands."""
+        return self.main.verdict if self.main else judge_balance(self.model, self.exact, self.watch)
+
+    @property
+    def resting(self) -> bool:
+        """Whether every run rests."""
+        return all(run.resting for run in self.runs.values())
+
+    def advance(self) -> None:
+        """Make one turn in every run that does not rest."""
+        for run in self.runs.values():
+            if not run.resting:
+                targets = replace(self.targets, control=run.control)
+                run.state, measured = turn(self.model, targets, run.state, self.watch)
+                run.records.append(measured)
+
+    def _set_runs(self, fresh: bool) -> None:
+        wanted = [*TURN_CONTROLS] + (["none"] if self.targets.control == "none" else [])
+        runs = {}
+        for control in wanted:
+            old = self.runs.get(control)
+            if old is None or fresh:
+                state = replace(old.state, turn=0) if old and _sane(old) else at_rest(self.model)
+                runs[control] = Run(self.model, control, state, self.watch)
+            else:
+                runs[control] = old
+                old.changed_at = old.state.turn
+        self.runs = runs
+
+
+def judge_balance(model: ConstrainedModel, balance: Balance, watch: Watch | None = None) -> Verdict:
+    """Return the verdict of an exact answer: settled if the balance was found."""
+    error = record(model, balance.state, 0.0, watch).error
+    return Verdict("settled" if balance.found else "diverged", balance.steps, error)
+
+
+def _sane(run: Run) -> bool:
+    """Whether a run can be gone on from: a diverged one starts again at rest."""
+    return run.verdict.state != "diverged"

@@ -1,0 +1,104 @@
+"""Constraining lines: polylines through control points whose segments obey Hooke's law (paper section 3)."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from core.errors import LineError
+from core.mesh import Floats, Indices, Points, frozen
+
+RATIO_LIMITS = (0.5, 1.3)
+"""Lengths that can be asked for, as parts of the rest length; outside nothing sensible can come out."""
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A band of the garment that lies on the body.
+
+    ``path`` (k,) control points from the subject's right to the left; ``rest_lengths`` (k - 1,) [mm] of its segments in
+    the self-balanced rest state; ``back_length`` [mm] completes the front part to the whole closed band round the
+    body, and does not change. ``constrains`` is False when no point of the path can move.
+    """
+
+    name: str
+    path: Indices
+    rest_lengths: Floats
+    back_length: float
+    constrains: bool
+
+    @property
+    def rest_length(self) -> float:
+        """Length of the front part at rest, side to side [mm]."""
+        return float(self.rest_lengths.sum())
+
+    @property
+    def whole_length(self) -> float:
+        """Length of the whole closed band at rest [mm]."""
+        return self.rest_length + self.back_length
+
+    @property
+    def pairs(self) -> Indices:
+        """The ends of the segments, shape (k - 1, 2)."""
+        return np.stack([self.path[:-1], self.path[1:]], axis=1)
+
+    def length(self, points: Points) -> float:
+        """Return the length of the front part on control points, shape (n, 3) [mm]."""
+        return float(segment_lengths(points, self.path).sum())
+
+
+def segment_lengths(points: Points, path: Indices) -> Floats:
+    """Return the lengths of the segments of ``path``, shape (k - 1,) [mm]."""
+    return np.asarray(np.linalg.norm(np.diff(points[path], axis=0), axis=1))
+
+
+def line_on(name: str, path: npt.ArrayLike, points: Points, free: Indices, back_length: float = 0.0) -> Line:
+    """Lay a line over the control points of a model at rest; its natural length is read there (paper section 3)."""
+    nodes = np.asarray(path, dtype=np.int64)
+    nodes.setflags(write=False)
+    constrains = bool(np.isin(nodes, free).any())
+    return Line(name, nodes, frozen(segment_lengths(points, nodes)), back_length, constrains)
+
+
+_LENGTH = re.compile(r"^\s*=?\s*([+-]?)(\d+(?:[.,]\d+)?)\s*(%|mm|cm|in)?\s*$")
+_MM = {"mm": 1.0, "cm": 10.0, "in": 25.4}
+
+
+def length_ratio(text: str, line: Line) -> float:
+    """Read what a designer writes for a length and return it as ratio of the line's rest length [1].
+
+    ``97%`` of the front part's rest length, ``-6%`` or ``-20mm`` (also cm, in) shorter or longer, ``400mm`` absolute. An absolute length
+    is that of the front part, or of the whole band if only that reading makes sense: the two never lie near
+    each other. Raises LineError if the text is no length or lies outside RATIO_LIMITS.
+    """
+    match = _LENGTH.match(text.replace("\N{MINUS SIGN}", "-"))
+    if match is None:
+        raise LineError(
+            f"'{text}' is not a length for {line.name}.",
+            "Write 97% of the rest length, -20mm shorter, or 400mm absolute.",
+        )
+    sign, number, unit = match.group(1), float(match.group(2).replace(",", ".")), match.group(3) or "%"
+    if unit == "%":
+        ratio = 1.0 + float(f"{sign}{number}") / 100.0 if sign else number / 100.0
+    elif sign:
+        ratio = 1.0 + float(f"{sign}{number}") * _MM[unit] / line.rest_length
+    else:
+        ratio = _absolute_ratio(number * _MM[unit], line)
+    low, high = RATIO_LIMITS
+    if not low <= ratio <= high:
+        raise LineError(
+            f"{text} asks {line.name} for {100 * ratio:.1f} % of its rest length.",
+            f"Stay between {100 * low:.0f} and {100 * high:.0f} %: "
+            f"{low * line.rest_length:.0f} to {high * line.rest_length:.0f} mm of the front part.",
+        )
+    return ratio
+
+
+def _absolute_ratio(mm: float, line: Line) -> float:
+    front = mm / line.rest_length
+    whole = (mm - line.back_length) / line.rest_length
+    low, high = RATIO_LIMITS
+    return whole if not low <= front <= high and low <= whole <= high else front

@@ -1,0 +1,138 @@
+"""The project file ``*.busk``: one zip with the design, the untouched scan and a picture. Results are never stored."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+import zipfile
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from core.design import Design, ScanSource, from_json, to_json
+from core.errors import ProjectError, ScanError
+
+SUFFIX = ".busk"
+_LARGEST_SCAN = 2_000_000_000
+_LARGEST_DESIGN = 1_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class ScanFile:
+    """The scan as it came: its file name and its bytes, kept so that a project can always be saved whole."""
+
+    name: str
+    data: bytes
+
+
+def is_project(path: str | os.PathLike[str]) -> bool:
+    """Tell whether the name is that of a project."""
+    return Path(path).suffix.lower() == SUFFIX
+
+
+def save_project(
+    path: str | os.PathLike[str], design: Design, scan: ScanFile, picture: bytes | None
+) -> Design:
+    """Write the project whole or not at all, and return the design with its scan inside that file.
+
+    Raises ProjectError if the file cannot be written; what was there before then stays.
+    """
+    target = Path(path).absolute()
+    member = f"scan/{scan.name}"
+    # The project may move to another place: inside it the scan needs no path.
+    inside = replace(design, scan=replace(design.scan, path="", member=member))
+    with whole_file(target) as partial, zipfile.ZipFile(partial, "w", zipfile.ZIP_STORED) as archive:
+        archive.writestr("design.json", to_json(inside))
+        archive.writestr(member, scan.data)
+        if picture:
+            archive.writestr("preview.png", picture)
+    return replace(inside, scan=replace(inside.scan, path=str(target)))
+
+
+def open_project(path: str | os.PathLike[str]) -> Design:
+    """Read the design of a project; its scan is read from the same file. Raises ProjectError."""
+    source = Path(path).absolute()
+    with _archive(source) as archive:
+        design = from_json(_member(archive, "design.json", _LARGEST_DESIGN).decode("utf-8", errors="replace"))
+        if design.scan.member not in archive.namelist():
+            raise ProjectError(
+                f"{source.name} holds no scan.", "Open a backup, or start again from the scan."
+            )
+    return replace(design, scan=replace(design.scan, path=str(source)))
+
+
+def read_scan_file(source: ScanSource) -> ScanFile:
+    """Read the bytes of a scan, from its own file or from inside a project. Raises ScanError or ProjectError."""
+    if source.member:
+        with _archive(Path(source.path)) as archive:
+            return ScanFile(source.name, _member(archive, source.member, _LARGEST_SCAN))
+    try:
+        return ScanFile(source.name, Path(source.path).read_bytes())
+    except FileNotFoundError:
+        raise ScanError(
+            f"There is no file {source.path}.", "Check the name, or choose another scan."
+        ) from None
+    except OSError as problem:
+        raise ScanError(
+            f"{source.name} cannot be read: {problem.strerror}.", "Choose another scan."
+        ) from problem
+
+
+@contextmanager
+def scan_on_disk(source: ScanSource, scan: ScanFile) -> Iterator[Path]:
+    """Give a path that holds the scan: its own file, or a passing copy of what lies inside a project."""
+    if not source.member:
+        yield Path(source.path)
+        return
+    with tempfile.TemporaryDirectory(prefix="busk-") as folder:
+        copy = Path(folder) / scan.name
+        copy.write_bytes(scan.data)
+        yield copy
+
+
+@contextmanager
+def whole_file(target: Path) -> Iterator[Path]:
+    """Give a name beside ``target`` to write to; it takes the target's place only when all went well.
+
+    Raises ProjectError if the place cannot be written to.
+    """
+    partial = target.with_name(f".{target.name}.{os.getpid()}.part")
+    try:
+        yield partial
+        with open(partial, "rb+") as written:
+            os.fsync(written.fileno())
+        os.replace(partial, target)
+    except OSError as problem:
+        raise ProjectError(
+            f"{target} cannot be written: {problem.strerror or problem}.",
+            "Choose another folder or make room.",
+        ) from problem
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+@contextmanager
+def _archive(path: Path) -> Iterator[zipfile.ZipFile]:
+    try:
+        with zipfile.ZipFile(path) as archive:
+            yield archive
+    except FileNotFoundError:
+        raise ProjectError(f"There is no project {path}.", "Check the name, or choose another one.") from None
+    except (OSError, zipfile.BadZipFile, zlib.error, EOFError) as problem:
+        raise ProjectError(
+            f"{path.name} is not a whole Busk project.", "Open a backup, or start again from the scan."
+        ) from problem
+
+
+def _member(archive: zipfile.ZipFile, name: str, largest: int) -> bytes:
+    try:
+        size = archive.getinfo(name).file_size
+    except KeyError:
+        raise ProjectError("This file is no Busk project.", "Open a .busk file or a scan.") from None
+    if size > largest:
+        raise ProjectError(
+            f"{name} in this project claims {size / 1e9:.1f} GB.", "It is broken: open a backup."
+        )
+    return archive.read(name)
