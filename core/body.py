@@ -1,0 +1,35 @@
+"""A body: the skin of a scan, cleaned, upright and in millimetres."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from core.mesh import Mesh
+from core.scan_file import read_triangles
+from core.upright import Pose, find_pose
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """The skin in the canonical frame [mm], wound outward; ``repairs`` holds one sentence a repair."""
+
+    mesh: Mesh
+    pose: Pose
+    repairs: tuple[str, ...]
+    name: str
+
+
+def read_scan(
+    path: str | Path, *, unit: str | None = None, up: str | None = None, front: str | None = None
+) -> Body:
+    """Read a PLY, OBJ or STL scan, clean it and bring it upright, facing -y, in mm.
+
+    ``unit`` ("mm", "cm", "m", "inch"), ``up`` and ``front`` ("+x" .. "-z", axes of the file) overrule what
+    the shape tells. Raises ScanError.
+    """
+    path = Path(path)
+    vertices, faces = read_triangles(path)
+    pose = find_pose(vertices, faces, unit=unit, up=up, front=front)
+    turn = pose.file_to_mm[:3, :3]
+    return Body(Mesh(vertices @ turn.T, faces), pose, (), path.stem)

@@ -1,0 +1,129 @@
+"""Scan files: the triangles of a PLY, OBJ or STL file as they stand there, or why they cannot be had."""
+
+from __future__ import annotations
+
+import warnings
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+import trimesh
+
+from core.errors import ScanError
+from core.mesh import Faces, Points
+
+FORMATS = ("ply", "obj", "stl")
+
+AGAIN = "Export the scan again, or copy the file again."
+
+_PLY_BYTES = {
+    **dict.fromkeys(("char", "uchar", "int8", "uint8"), 1),
+    **dict.fromkeys(("short", "ushort", "int16", "uint16", "float16"), 2),
+    **dict.fromkeys(("int", "uint", "float", "int32", "uint32", "float32"), 4),
+    **dict.fromkeys(("double", "int64", "uint64", "float64"), 8),
+}
+
+
+def read_triangles(path: Path) -> tuple[Points, Faces]:
+    """Return the vertices, shape (n, 3) [file units], and triangles, shape (m, 3), of a scan file.
+
+    All objects and groups of the file are put together; larger polygons are cut into triangles.
+    Raises ScanError.
+    """
+    kind = path.suffix.lower().removeprefix(".")
+    if kind not in FORMATS:
+        raise ScanError(
+            f"{path.name} is not a PLY, OBJ or STL file.", "Export the scan in one of these formats."
+        )
+    data = _bytes_of(path)
+    if kind == "ply":
+        _check_ply_counts(data, path.name)
+    elif kind == "stl":
+        _check_stl_length(data, path.name)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            scene = trimesh.load_scene(
+                BytesIO(data),
+                kind,
+                process=False,
+                maintain_order=True,
+                skip_materials=True,
+                fix_texture=False,
+            )
+    except Exception as problem:  # a malformed file makes the reader fail in any way
+        raise ScanError(f"{path.name} cannot be read: it is damaged or cut short.", AGAIN) from problem
+    return _put_together(list(scene.geometry.values()), path.name)
+
+
+def _bytes_of(path: Path) -> bytes:
+    if not path.is_file():
+        raise ScanError(f"There is no file {path}.", "Choose a scan that exists.")
+    try:
+        data = path.read_bytes()
+    except OSError as problem:
+        raise ScanError(
+            f"{path.name} cannot be opened: {problem.strerror}.", "Look at its permissions."
+        ) from problem
+    if not data:
+        raise ScanError(f"{path.name} is empty.", AGAIN)
+    return data
+
+
+def _put_together(parts: list[trimesh.Trimesh], name: str) -> tuple[Points, Faces]:
+    vertices, faces, start = [np.empty((0, 3))], [np.empty((0, 3), dtype=np.int64)], 0
+    for part in parts:
+        vertices.append(np.asarray(part.vertices, dtype=np.float64))
+        triangles = np.asarray(getattr(part, "faces", ()), dtype=np.int64).reshape(-1, 3)
+        within = ((triangles >= 0) & (triangles < len(vertices[-1]))).all(axis=1)
+        if not within.all():
+            raise ScanError(f"{name} has triangles with corners that do not exist.", AGAIN)
+        faces.append(triangles + start)
+        start += len(vertices[-1])
+    if sum(map(len, faces)) == 0:
+        raise ScanError(
+            f"{name} has no triangles; it is a cloud of {start:,} points."
+            if start
+            else f"{name} has no triangles.",
+            "Mesh the points first, in the program of the scanner.",
+        )
+    return np.concatenate(vertices), np.concatenate(faces)
+
+
+def _check_ply_counts(data: bytes, name: str) -> None:
+    """Refuse a PLY file whose header promises more than its bytes can hold, before reserving anything."""
+    end = data.find(b"end_header", 0, 1 << 20)
+    if not data.startswith(b"ply") or end < 0:
+        raise ScanError(f"{name} is not a PLY file, or its header is cut short.", AGAIN)
+    lines = [line.split() for line in data[:end].decode("latin-1").splitlines()]
+    text = ["format", "ascii"] in [line[:2] for line in lines]
+    need, element, count = 0, "", 0
+    try:
+        for line in lines:
+            if line[:1] == ["element"]:
+                element, count = line[1], int(line[2])
+            elif line[:1] == ["property"]:
+                need += count * _least_bytes(line, text, 3 if element == "face" else 0)
+    except (IndexError, KeyError, ValueError) as problem:
+        raise ScanError(f"{name} has a header that makes no sense.", AGAIN) from problem
+    if need > len(data) - end:
+        raise ScanError(f"{name} is cut short: its header promises more than the file holds.", AGAIN)
+
+
+def _least_bytes(line: list[str], text: bool, list_items: int) -> int:
+    """Return the least that one value of a PLY property takes [bytes]; a list has ``list_items`` at least."""
+    if line[1] != "list":
+        return 2 if text else _PLY_BYTES[line[1]]
+    if "vert" not in line[4]:
+        list_items = 0
+    return 2 * (1 + list_items) if text else _PLY_BYTES[line[2]] + list_items * _PLY_BYTES[line[3]]
+
+
+def _check_stl_length(data: bytes, name: str) -> None:
+    """Refuse an STL file that is neither whole text nor as long as its count of triangles says."""
+    if b"facet" in data[:1000].lower():
+        whole = b"endsolid" in data[-1000:].lower()
+    else:
+        whole = len(data) >= 84 and len(data) == 84 + 50 * int.from_bytes(data[80:84], "little")
+    if not whole:
+        raise ScanError(f"{name} is cut short, or it is not an STL file.", AGAIN)
