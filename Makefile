@@ -1,0 +1,49 @@
+# Two commands do it all: `make run` opens the program, `make test` checks it. Both set up first what they need.
+.DEFAULT_GOAL := help
+.NOTPARALLEL:
+.PHONY: help run test setup setup-test lint types bench lock docs-pictures clean
+export PYTHON
+
+python := .venv/bin/python
+uv = $(or $(wildcard .venv/bin/uv),$(shell command -v uv))
+
+help:  ## list these targets
+	@sed -n 's/^\([a-z-]*\):.*## /\1|/p' Makefile | while IFS='|' read -r name what; do printf '  make %-14s %s\n' "$$name" "$$what"; done
+
+run: setup  ## open the program on the sample body; without a display, do the same session into out/
+	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ] || [ "$$(uname)" = Darwin ]; then .venv/bin/busk; \
+	else echo "No display here: doing the session off-screen."; .venv/bin/busk demo --out out; fi
+
+test: setup-test lint types  ## style, types and all tests, under a virtual display of their own
+	@if command -v xvfb-run >/dev/null; then \
+		env -u WAYLAND_DISPLAY QT_QPA_PLATFORM=xcb LIBGL_ALWAYS_SOFTWARE=1 \
+			xvfb-run -a -s "-screen 0 2600x1500x24 -noreset" $(python) -m pytest; \
+	else $(python) -m pytest; fi
+
+setup:  ## prepare the system libraries and .venv, nothing else
+	@sh packaging/setup.sh run
+
+setup-test:
+	@sh packaging/setup.sh test
+
+lint: setup  ## style: ruff check and ruff format --check
+	@$(python) -m ruff check .
+	@$(python) -m ruff format --check .
+
+types: setup  ## types: mypy, strict in core
+	@$(python) -m mypy
+
+bench: setup  ## measure the speed of the turn and of the deformation
+	@for file in benchmarks/bench_*.py; do echo "$$file"; $(python) "$$file" || exit 1; done
+
+lock:  ## pin every dependency again (needs uv, which nothing else needs)
+	@[ -n "$(uv)" ] || { echo "make lock needs uv: python3 -m pip install uv"; exit 1; }
+	$(uv) pip compile --quiet --universal --fork-strategy fewest --python-version 3.11 --generate-hashes \
+		--no-emit-index-url --custom-compile-command "make lock" --extra dev --output-file requirements.lock pyproject.toml
+
+docs-pictures: setup-test  ## draw the pictures of the documentation again
+	@$(python) packaging/docs_pictures.py
+
+clean:  ## remove caches, builds and out/ (the environment .venv stays)
+	rm -rf out build dist site busk.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	find . -name __pycache__ -not -path './.venv/*' -prune -exec rm -rf {} +
