@@ -1,0 +1,162 @@
+"""The patch: the part of the body that follows the control mesh, and how it fades out at its border."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components, dijkstra
+from scipy.spatial import cKDTree
+
+from core.mesh import Flags, Floats, Indices, Mesh, Points, frozen
+from core.proximity import centroids, corner_reach, nearest_place, pairs_around
+
+if TYPE_CHECKING:
+    from core.control_mesh import ControlMesh
+
+FAR = 60.0
+"""No vertex further than this from the control mesh belongs to the patch [mm]."""
+
+CLOSE = 20.0
+"""Up to this distance a vertex belongs fully to the control triangle before it [mm]."""
+
+DETOUR = 2.0
+"""A stretch of the fence may be this many times as long as its straight border edge."""
+
+COVERED = 0.9
+"""The flood must reach this part of the control points within the border."""
+
+
+@dataclass(frozen=True, eq=False)
+class Patch:
+    """How far each vertex of the body follows the control mesh.
+
+    ``fade`` has shape (N,): 0 outside the patch .. 1 well inside.  ``rule`` is "flood" when the border could
+    be drawn on the surface; "distance" when a hole or a loose piece prevented that, and ``reason`` says what.
+    """
+
+    fade: Floats
+    rule: Literal["flood", "distance"]
+    reason: str = ""
+
+
+class _FenceError(Exception):
+    """The border of the patch cannot be drawn on the surface."""
+
+
+def patch_fade(body: Mesh, control: ControlMesh, fade: float = 25.0) -> Patch:
+    """Find the patch of ``body`` under ``control``, with a soft border ``fade`` wide [mm] (ours).
+
+    Shortest edge paths between the border control points fence it in, a flood from the bust points fills it,
+    and the fade is a smooth step of the distance along the surface to that fence.  Where the fence has a gap
+    or the flood escapes, the fade follows from the nearest place on the control mesh instead.
+    """
+    try:
+        return Patch(frozen(_flooded(body, control, fade)), "flood")
+    except _FenceError as gap:
+        return Patch(frozen(_by_distance(body, control)), "distance", str(gap))
+
+
+def smooth_step(t: Floats) -> Floats:
+    """Return 0 below 0, 1 above 1 and 3 t^2 - 2 t^3 between."""
+    t = np.clip(t, 0.0, 1.0)
+    return np.asarray(t * t * (3.0 - 2.0 * t))
+
+
+def _flooded(body: Mesh, control: ControlMesh, fade: float) -> Floats:
+    around = _near_patch(body.vertices, control.mesh)
+    graph = _edge_graph(body, around)
+    at = np.asarray(cKDTree(body.vertices[around]).query(control.mesh.vertices)[1], dtype=np.int64)
+    fence = _fence(graph, at[control.border], control.mesh.vertices[control.border])
+    region = _flood(graph, fence, at[list(control.bust_points)])
+    inner = np.setdiff1d(at, at[control.border])
+    if region[inner].mean() < COVERED:
+        raise _FenceError("The scan falls into pieces within the patch.")
+    if _touches_rest(body, around, region):
+        raise _FenceError("The border of the patch does not close on the scan.")
+    region[fence] = True
+    members = np.flatnonzero(region)
+    sources = np.searchsorted(members, fence)
+    along = dijkstra(graph[members][:, members], indices=sources, min_only=True, limit=fade)
+    result = np.zeros(len(body.vertices))
+    result[around[members]] = smooth_step(along / fade)
+    return result
+
+
+def _near_patch(points: Points, control: Mesh) -> Indices:
+    """Return the points that may be within ``FAR`` of the control mesh, and some more, shape (k,)."""
+    away, _ = cKDTree(centroids(control)).query(points)
+    return np.flatnonzero(away <= FAR + corner_reach(control).max())
+
+
+def _edge_graph(body: Mesh, members: Indices) -> sparse.csr_array:
+    """Return the edges among ``members``, shape (k,), with their lengths [mm], shape (k, k), symmetric."""
+    place = np.full(len(body.vertices), -1)
+    place[members] = np.arange(len(members))
+    faces = place[body.faces]
+    faces = faces[(faces >= 0).all(axis=1)]
+    start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    joined = sparse.coo_array((np.ones(len(start)), (start, end)), shape=(len(members),) * 2).tocsr()
+    graph = (joined + joined.T).tocoo()
+    ends = body.vertices[members[graph.row]], body.vertices[members[graph.col]]
+    length = np.linalg.norm(ends[0] - ends[1], axis=1)
+    return sparse.csr_array((length, (graph.row, graph.col)), shape=graph.shape)
+
+
+def _fence(graph: sparse.csr_array, stops: Indices, corners: Points) -> Indices:
+    """Return the vertices on the shortest paths from stop to stop, once round, ascending."""
+    straight = np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1)
+    vertices = set(stops.tolist())
+    for start, end, chord in zip(stops.tolist(), np.roll(stops, -1).tolist(), straight, strict=True):
+        limit = DETOUR * (chord + CLOSE)
+        _, before = dijkstra(graph, indices=start, limit=limit, return_predecessors=True)
+        step = end
+        while step != start:
+            step = int(before[step])
+            if step < 0:
+                raise _FenceError("The border of the patch meets a hole in the scan.")
+            vertices.add(step)
+    return np.array(sorted(vertices), dtype=np.int64)
+
+
+def _flood(graph: sparse.csr_array, fence: Indices, seeds: Indices) -> Flags:
+    """Tell which vertices the seeds reach without crossing the fence, shape (k,)."""
+    ground = np.setdiff1d(np.arange(graph.shape[0]), fence)
+    _, label = connected_components(graph[ground][:, ground], directed=False)
+    piece = np.full(graph.shape[0], -1)
+    piece[ground] = label
+    return np.asarray((piece >= 0) & np.isin(piece, piece[seeds]))
+
+
+def _touches_rest(body: Mesh, around: Indices, region: Flags) -> bool:
+    """Tell whether the flood came to the rest of the body, beyond its part ``around`` the patch."""
+    beyond = np.ones(len(body.vertices), dtype=bool)
+    beyond[around] = False
+    flooded = np.zeros(len(body.vertices), dtype=bool)
+    flooded[around[region]] = True
+    return bool((beyond[body.faces].any(axis=1) & flooded[body.faces].any(axis=1)).any())
+
+
+def _by_distance(body: Mesh, control: ControlMesh) -> Floats:
+    """Fade from the nearest place on the control mesh.
+
+    It is 0 at the border, 1 from the next row of control points on, and less where the body is far away or
+    faces another way, so that an arm beside the patch stays still.
+    """
+    around = _near_patch(body.vertices, control.mesh)
+    pairs = pairs_around(body.vertices[around], control.mesh)
+    distance2, place = nearest_place(pairs, control.mesh)
+    order = np.lexsort((distance2, pairs.point))
+    nearest = order[np.searchsorted(pairs.point, np.arange(len(around)))]
+    triangle = pairs.triangle[nearest]
+    inner = np.ones(len(control.mesh.vertices))
+    inner[control.border] = 0.0
+    inwards = np.einsum("ij,ij->i", place[nearest], inner[control.mesh.faces[triangle]])
+    distance = np.sqrt(distance2[nearest])
+    facing = np.einsum("ij,ij->i", body.vertex_normals[around], control.mesh.face_normals[triangle])
+    result = np.zeros(len(body.vertices))
+    near = smooth_step((FAR - distance) / (FAR - CLOSE))
+    result[around] = smooth_step(inwards) * near * smooth_step(2.0 * facing)
+    return result
