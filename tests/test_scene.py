@@ -1,0 +1,400 @@
+"""The 3D drawing: what lies on the skin, what moves, what the pixels show. No window is opened here."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from app.camera import STEEPEST, VIEWS, View
+from app.scene import Scene
+from app.scene_bands import Band, Surface, build_casing, build_ribbon
+from app.scene_body import Sight, bake_occlusion, plate_faces, split_plates
+from app.scene_stage import LOOKS, rgb
+from core.mesh import Mesh
+
+ROOT = Path(__file__).parents[1]
+WIDTH, HEIGHT = 450, 300
+BUST, UNDERBUST = 347.0, 290.0  # heights of the lines drawn here on the mannequin [mm]
+
+# The person's true landmarks [mm], left and right: the fold lies behind the breast that hangs over it.
+FOLDS_AND_BREASTS = (
+    ((112.64, -189.12, 232.53), (112.64, -260.52, 251.40)),
+    ((-112.64, -190.60, 243.53), (-112.64, -260.52, 262.99)),
+)
+
+
+def load(name: str) -> Mesh:
+    shape = pv.read(ROOT / "resources" / "samples" / f"{name}.ply")
+    return Mesh(shape.points, shape.regular_faces)
+
+
+@pytest.fixture(scope="module")
+def mannequin() -> Mesh:
+    return load("mannequin")
+
+
+@pytest.fixture(scope="module")
+def person() -> Mesh:
+    return load("person")
+
+
+@pytest.fixture
+def scene(mannequin: Mesh) -> Iterator[Scene]:
+    plotter = pv.Plotter(off_screen=True, window_size=(WIDTH, HEIGHT), lighting="none")
+    plotter.ren_win.SetMultiSamples(0)
+    scene = Scene(plotter)
+    scene.show_body(mannequin)
+    scene.frame_all()
+    yield scene
+    plotter.close()
+
+
+def across_front(mesh: Mesh, z: float, reach: float = 110.0) -> np.ndarray:
+    """A coarse path over the front at height z, as control points give it."""
+    sight = Sight(pv.PolyData.from_regular_faces(mesh.vertices.astype(np.float32), mesh.faces))
+    places = [
+        sight.hit(np.array([x, -900.0, z]), np.array([x, 900.0, z])) for x in np.linspace(-reach, reach, 9)
+    ]
+    return np.array([place for place in places if place is not None])
+
+
+def lines(mesh: Mesh) -> list[Band]:
+    return [
+        Band("Bust line", across_front(mesh, BUST), "#E5536B"),
+        Band("Under-bust", across_front(mesh, UNDERBUST), "#5A3F94", width=20.0),
+    ]
+
+
+def picture(scene: Scene) -> np.ndarray:
+    scene.plotter.render()
+    return np.asarray(scene.plotter.screenshot(return_img=True), dtype=float)
+
+
+def distance_to(mesh: Mesh, points: np.ndarray) -> np.ndarray:
+    shape = pv.PolyData.from_regular_faces(mesh.vertices, mesh.faces)
+    _, nearest = shape.find_closest_cell(points, return_closest_point=True)
+    return np.linalg.norm(points - nearest, axis=1)
+
+
+def test_the_scene_needs_no_qt() -> None:
+    code = "import sys, app.scene; sys.exit(any('PySide' in m or 'qtpy' in m for m in sys.modules))"
+    assert subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=False).returncode == 0
+
+
+# -- plates
+
+
+def test_all_sides_of_a_box_are_plates() -> None:
+    box = pv.Box((0, 100, 0, 100, 0, 100)).triangulate().clean()
+    mesh = Mesh(box.points, box.regular_faces)
+    assert plate_faces(mesh).all()
+
+
+def test_a_curved_skin_has_no_plates(person: Mesh) -> None:
+    assert not plate_faces(person).any()
+    assert len(split_plates(person).source) == len(person.vertices)
+
+
+def test_the_mannequin_is_cut_at_neck_arms_and_hips(mannequin: Mesh) -> None:
+    flat = plate_faces(mannequin)
+    normals = mannequin.face_normals[flat]
+    low = mannequin.vertices[mannequin.faces[flat]].reshape(-1, 3)[:, 2].min()
+    assert normals[:, 2].max() > 0.9  # neck
+    assert normals[:, 2].min() < -0.9  # hips
+    assert normals[:, 0].max() > 0.7  # the two arms
+    assert normals[:, 0].min() < -0.7
+    assert low == pytest.approx(mannequin.vertices[:, 2].min(), abs=1.0)
+
+
+def test_splitting_keeps_every_triangle_where_it_is(mannequin: Mesh) -> None:
+    skin = split_plates(mannequin)
+    assert np.array_equal(skin.mesh.vertices[skin.mesh.faces], mannequin.vertices[mannequin.faces])
+    assert np.array_equal(skin.source[: len(mannequin.vertices)], np.arange(len(mannequin.vertices)))
+    flat = plate_faces(mannequin)
+    assert skin.plate[skin.mesh.faces[flat]].all()
+    assert not skin.plate[skin.mesh.faces[~flat]].any()
+
+
+# -- ambient occlusion
+
+
+def test_nothing_shades_a_ball() -> None:
+    ball = pv.Icosphere(radius=150.0, nsub=5)
+    sky = bake_occlusion(Mesh(ball.points, ball.regular_faces))
+    assert sky.min() > 0.8
+    assert np.ptp(sky) < 0.15
+
+
+def test_the_fold_is_darker_than_the_breast(person: Mesh) -> None:
+    sky = bake_occlusion(person)
+
+    def at(*place: float) -> float:
+        return float(sky[np.argmin(np.linalg.norm(person.vertices - place, axis=1))])
+
+    for fold, breast in FOLDS_AND_BREASTS:
+        assert at(*fold) < at(*breast) - 0.25
+
+
+# -- lines
+
+
+@pytest.mark.parametrize("name", ["mannequin", "person"])
+def test_a_ribbon_lies_on_the_skin(name: str, request: pytest.FixtureRequest) -> None:
+    body = request.getfixturevalue(name)
+    surface = Surface(body)
+    for z in (UNDERBUST, BUST, BUST + 50.0):
+        path = across_front(body, z)
+        for ribbon in (build_ribbon(path, surface, 12.0), build_casing(path, surface, 12.0)):
+            assert distance_to(body, ribbon.mesh.vertices).max() < 4.0
+
+
+def test_a_ribbon_has_its_width_and_looks_outward(mannequin: Mesh) -> None:
+    ribbon = build_ribbon(across_front(mannequin, BUST), Surface(mannequin), 12.0)
+    rows = ribbon.mesh.vertices.reshape(ribbon.rows, 8, 3)
+    width = np.linalg.norm(rows[2:-2, 0] - rows[2:-2, -1], axis=1)
+    assert width == pytest.approx(12.0, abs=0.8)
+    top = ribbon.mesh.vertex_normals.reshape(ribbon.rows, 8, 3)[3:-3, 3:5].reshape(-1, 3)
+    assert (top[:, 1] < 0.0).all()  # the body faces -y
+
+
+def test_a_ribbon_passes_through_its_control_points(mannequin: Mesh) -> None:
+    path = across_front(mannequin, BUST)
+    ribbon = build_ribbon(path, Surface(mannequin), 12.0)
+    apart = np.linalg.norm(ribbon.mesh.vertices[None] - path[:, None], axis=2).min(axis=1)
+    assert apart.max() < 5.0
+
+
+def test_ribbons_move_with_the_body(scene: Scene, mannequin: Mesh) -> None:
+    scene.show_bands(lines(mannequin))
+    before, _ = scene.bands.spine("Bust line")
+    shift = np.array([3.0, -8.0, 5.0])
+    every = np.arange(len(mannequin.vertices))
+    scene.move_body(every, mannequin.vertices + shift)
+    after, _ = scene.bands.spine("Bust line")
+    assert after - before == pytest.approx(np.tile(shift, (len(before), 1)), abs=1e-3)
+
+
+def test_ribbons_stay_on_a_body_that_swells(scene: Scene, mannequin: Mesh) -> None:
+    scene.show_bands(lines(mannequin))
+    every = np.arange(len(mannequin.vertices))
+    bump = 15.0 * np.exp(-(((mannequin.vertices - [80.0, -200.0, BUST]) / 60.0) ** 2).sum(axis=1))
+    moved = mannequin.moved(mannequin.vertices + bump[:, None] * mannequin.vertex_normals)
+    scene.move_body(every, moved.vertices)
+    spine, _ = scene.bands.spine("Bust line")
+    assert distance_to(moved, spine).max() < 4.0
+
+
+# -- movement in place
+
+
+def drawn(scene: Scene) -> np.ndarray:
+    return np.array(scene.plotter.actors["body"].mapper.dataset.points)
+
+
+def test_moving_and_restoring_gives_the_same_picture(scene: Scene, mannequin: Mesh) -> None:
+    scene.show_bands(lines(mannequin))
+    points, image = drawn(scene), picture(scene)
+    front = np.flatnonzero(mannequin.vertices[:, 1] < -120.0)
+    scene.move_body(front, mannequin.vertices[front] - [0.0, 15.0, 0.0])
+    assert np.abs(drawn(scene) - points).max() == pytest.approx(15.0, abs=1e-3)
+    assert np.abs(picture(scene) - image).max() > 20.0
+    scene.move_body(front, mannequin.vertices[front])
+    assert np.array_equal(drawn(scene), points)
+    assert np.abs(picture(scene) - image).max() <= 1.0
+
+
+def test_before_shows_the_rest_and_after_what_came_meanwhile(scene: Scene, mannequin: Mesh) -> None:
+    rest = drawn(scene)
+    front = np.flatnonzero(mannequin.vertices[:, 1] < -120.0)
+    scene.move_body(front, mannequin.vertices[front] - [0.0, 5.0, 0.0])
+    scene.before(True)
+    assert np.array_equal(drawn(scene), rest)
+    scene.move_body(front, mannequin.vertices[front] - [0.0, 9.0, 0.0])
+    assert np.array_equal(drawn(scene), rest)
+    scene.before(False)
+    assert np.abs(drawn(scene) - rest).max() == pytest.approx(9.0, abs=1e-3)
+
+
+def test_the_rim_of_a_plate_moves_with_the_skin(scene: Scene, mannequin: Mesh) -> None:
+    skin = split_plates(mannequin)
+    rim = np.unique(skin.source[len(mannequin.vertices) :])
+    scene.move_body(rim, mannequin.vertices[rim] + [0.0, 0.0, 3.0])
+    points = drawn(scene)
+    assert np.array_equal(points, points[: len(mannequin.vertices)][skin.source])
+
+
+# -- the control mesh
+
+
+def test_control_points_and_edges_follow(scene: Scene, mannequin: Mesh) -> None:
+    path = across_front(mannequin, BUST)
+    low = across_front(mannequin, UNDERBUST)
+    count = len(path)
+    a = np.arange(count - 1)
+    faces = np.concatenate([np.stack([a, a + count, a + 1], axis=1)])
+    control = Mesh(np.concatenate([path, low]), faces)
+    scene.show_control_mesh(control, np.r_[np.zeros(count, bool), np.ones(count, bool)])
+    scene.set_visible("control", True)
+    edges = scene.plotter.actors["control edges"].mapper.dataset
+    rest = np.array(edges.points)
+    assert distance_to(mannequin, rest).max() < 3.0
+    scene.move_control_mesh(control.vertices - np.array([0.0, 4.0, 0.0]))
+    assert edges.points - rest == pytest.approx(np.tile([0.0, -4.0, 0.0], (len(rest), 1)), abs=1e-3)
+    scene.before(True)
+    assert np.array_equal(edges.points, rest)
+
+
+# -- pixels
+
+
+def test_the_body_is_warm_clay_before_a_quiet_background(scene: Scene) -> None:
+    for dark in (False, True):
+        scene.set_dark(dark)
+        image = picture(scene)
+        body = image[HEIGHT // 2 - 20 : HEIGHT // 2 + 20, WIDTH // 2 - 15 : WIDTH // 2 + 15].reshape(-1, 3)
+        red, green, blue = body.mean(axis=0)
+        assert red > green > blue
+        assert 10.0 < red - blue < 90.0
+        corner = image[3, 3]
+        assert corner == pytest.approx(rgb(LOOKS[dark].edge), abs=6.0)
+
+
+def test_a_line_shows_its_colour(scene: Scene, mannequin: Mesh) -> None:
+    assert violet_pixels(picture(scene)) == 0
+    scene.show_bands(lines(mannequin))
+    assert violet_pixels(picture(scene)) > 100
+    scene.set_visible("bands", False)
+    assert violet_pixels(picture(scene)) == 0
+
+
+def violet_pixels(image: np.ndarray) -> int:
+    red, green, blue = np.moveaxis(image, 2, 0)
+    return int(((blue > red + 25.0) & (red > green)).sum())
+
+
+def test_the_selected_line_has_a_white_casing(scene: Scene, mannequin: Mesh) -> None:
+    scene.set_dark(True)
+    scene.show_bands(lines(mannequin))
+    white = (picture(scene) > 250.0).all(axis=2).sum()
+    scene.mark_bands(selected="Under-bust")
+    assert (picture(scene) > 250.0).all(axis=2).sum() > white + 100
+
+
+def test_an_unknown_part_is_refused(scene: Scene) -> None:
+    with pytest.raises(KeyError):
+        scene.set_visible("moustache", True)
+
+
+# -- what is under the pointer
+
+
+def test_the_pointer_finds_the_line_it_is_on(scene: Scene, mannequin: Mesh) -> None:
+    scene.show_bands(lines(mannequin))
+    scene.set_view("three-quarter")
+    for name in ("Bust line", "Under-bust"):
+        place = scene.band_anchor(name)
+        x, y, _ = scene.view.to_picture(place, WIDTH, HEIGHT)[0]
+        assert scene.band_at(x, y, WIDTH, HEIGHT) == name
+    assert scene.band_at(3.0, 3.0, WIDTH, HEIGHT) is None
+    front = scene.band_anchor("Bust line")
+    scene.set_view("back")
+    x, y, _ = scene.view.to_picture(front, WIDTH, HEIGHT)[0]
+    assert scene.band_at(x, y, WIDTH, HEIGHT) is None
+
+
+def test_a_point_behind_the_breast_is_hidden(scene: Scene, person: Mesh) -> None:
+    scene.show_body(person)
+    scene.frame_all()
+    scene.set_view("front")
+    for fold, breast in FOLDS_AND_BREASTS:
+        assert scene.hidden(np.array(fold))
+        assert not scene.hidden(np.array(breast))
+
+
+# -- the camera
+
+
+def test_the_camera_never_rolls_and_stops_at_the_poles() -> None:
+    random = np.random.default_rng(5)
+    view = View()
+    for _ in range(200):
+        view = view.orbit(*random.normal(0.0, 60.0, 2))
+        right, up, back = view.axes
+        assert right[2] == 0.0
+        assert up[2] > 0.0
+        assert abs(view.elevation) <= STEEPEST
+        assert np.linalg.det(view.axes) == pytest.approx(1.0)
+        assert back @ (view.eye - np.asarray(view.focus)) == pytest.approx(view.distance)
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+def test_the_picture_plane_agrees_with_vtk(scene: Scene, mannequin: Mesh, parallel: bool) -> None:
+    scene.look_from(scene.view.named("three-quarter").zoom(1.7, 0.3, -0.2))
+    scene.set_parallel(parallel)
+    scene.plotter.render()
+    renderer = scene.plotter.renderer
+    points = mannequin.vertices[::4000]
+    ours = scene.view.to_picture(points, WIDTH, HEIGHT)
+    for point, (x, y, _) in zip(points, ours, strict=True):
+        renderer.SetWorldPoint(*point, 1.0)
+        renderer.WorldToDisplay()
+        theirs = renderer.GetDisplayPoint()
+        assert (x, HEIGHT - y) == pytest.approx(theirs[:2], abs=0.05)
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+def test_a_sight_goes_through_its_pixel(parallel: bool) -> None:
+    view = View((10.0, -20.0, 300.0), 1800.0, 34.0, 8.0, parallel)
+    start, sight = view.ray(123.0, 77.0, WIDTH, HEIGHT)
+    along = start + np.array([[900.0], [2000.0]]) * sight
+    assert view.to_picture(along, WIDTH, HEIGHT)[:, :2] == pytest.approx(np.tile([123.0, 77.0], (2, 1)))
+
+
+def test_zooming_keeps_the_place_under_the_pointer() -> None:
+    view = View((0.0, 0.0, 300.0), 1800.0, 20.0, 5.0)
+    x, y = 0.6, -0.3  # half heights
+    pixel = (WIDTH / 2 + x * HEIGHT / 2, HEIGHT / 2 - y * HEIGHT / 2)
+    right, up, _ = view.axes
+    place = np.asarray(view.focus) + view.half_height * (x * right + y * up)
+    closer = view.zoom(1.15, x, y)
+    assert closer.to_picture(place, WIDTH, HEIGHT)[0, :2] == pytest.approx(pixel)
+    assert closer.distance == pytest.approx(1800.0 / 1.15)
+
+
+def test_dragging_moves_the_picture_by_as_many_pixels() -> None:
+    view = View((0.0, 0.0, 300.0), 1800.0, 20.0, 5.0)
+    moved = view.pan(30.0, -12.0, HEIGHT).to_picture(view.focus, WIDTH, HEIGHT)[0]
+    assert moved[:2] == pytest.approx((WIDTH / 2 + 30.0, HEIGHT / 2 - 12.0))
+
+
+def test_named_views_look_from_their_side() -> None:
+    sides = {"front": (0, -1, 0), "left": (1, 0, 0), "right": (-1, 0, 0), "back": (0, 1, 0)}
+    for name, side in sides.items():
+        assert View().named(name).axes[2] == pytest.approx(side, abs=1e-12)
+    assert View().named("top").axes[2][2] > 0.99
+    assert set(VIEWS) == {*sides, "three-quarter", "top"}
+
+
+def test_a_move_between_views_ends_there_the_short_way() -> None:
+    start, end = View(azimuth=170.0), View(azimuth=-170.0, distance=900.0)
+    assert start.towards(end, 0.5).azimuth == pytest.approx(180.0)
+    last = start.towards(end, 1.0)
+    assert last.orbit(0.0, 0.0).azimuth == pytest.approx(end.azimuth)
+    assert last.distance == pytest.approx(end.distance)
+
+
+@pytest.mark.parametrize("name", list(VIEWS))
+def test_the_whole_body_fits_in_the_picture(scene: Scene, mannequin: Mesh, name: str) -> None:
+    scene.set_view(name)
+    scene.frame_all()
+    x, y, _ = scene.view.to_picture(mannequin.vertices, WIDTH, HEIGHT).T
+    assert x.min() > 0.0
+    assert x.max() < WIDTH
+    assert y.min() > 0.0
+    assert y.max() < HEIGHT
