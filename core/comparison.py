@@ -1,6 +1,7 @@
 """Runs side by side: the turn-based volume controls in lockstep on the same targets, beside the exact answer.
 
-All runs see the same lengths at the same turn, so their curves can be laid over each other even while a slider moves.
+All runs see the same lengths at the same turn, so their curves can be laid over each other even while a
+slider moves.
 """
 
 from __future__ import annotations
@@ -54,7 +55,8 @@ class Comparison:
     def retarget(self, model: ConstrainedModel, targets: Targets, fresh: bool = False) -> None:
         """Take new targets, warm: every run goes on from where it is.
 
-        ``model`` may differ in the lines that are worn, not in its control points. ``fresh`` begins new records at turn 0.
+        ``model`` may differ in the lines that are worn, not in its control points. ``fresh`` begins new
+        records at turn 0.
         """
         new_model = model is not self.model
         self.model, self.targets = model, targets

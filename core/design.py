@@ -21,7 +21,9 @@ TEMPLATES = ("168", "120")
 
 @dataclass(frozen=True)
 class ScanSource:
-    """Where the scan lies: a file, or ``member`` of the project file ``path``; unit and axes if they were set by hand."""
+    """Where the scan lies: a file, or ``member`` of the project file ``path``; unit and axes if they were set
+    by hand.
+    """
 
     path: str
     member: str = ""
@@ -47,9 +49,10 @@ class WornLine:
 class Design:
     """The document: what is saved, undone and solved.
 
-    A line that is not in ``lines`` is not worn: it is measured only. ``line_height`` [1] is where the mid-bust line runs between fold (0) and
-    bust point (1). ``gain`` [probe units] is that of the conventional force; None stands for 0.97 of the limit at which
-    it starts to vibrate at rest. ``line_stiffness`` [1] see ``core.solver``. ``unknown`` keeps what a later version wrote.
+    A line that is not in ``lines`` is not worn: it is measured only. ``line_height`` [1] is where the
+    mid-bust line runs between fold (0) and bust point (1). ``gain`` [probe units] is that of the conventional
+    force; None stands for 0.97 of the limit at which it starts to vibrate at rest. ``line_stiffness`` [1] see
+    ``core.solver``. ``unknown`` keeps what a later version wrote.
     """
 
     scan: ScanSource

@@ -1,7 +1,8 @@
-"""The exact answer that the turns aim at: least energy at constant volume, by Newton steps (ours, beyond the paper).
+"""The exact answer that the turns aim at: least energy at constant volume, by Newton steps (ours, beyond the
+paper).
 
-Unknowns are the free displacements and one pressure for each breast, so that one cannot feed the other. Every iterate
-has the exact volumes, and the energy falls strictly.
+Unknowns are the free displacements and one pressure for each breast, so that one cannot feed the other. Every
+iterate has the exact volumes, and the energy falls strictly.
 """
 
 from __future__ import annotations
@@ -21,7 +22,9 @@ RESIDUAL_LIMIT = 1e-10
 
 @dataclass(frozen=True, eq=False)
 class Balance:
-    """An iterate of the exact solve: its state, its residual [mm], left and right pressure, and Newton steps taken."""
+    """An iterate of the exact solve: its state, its residual [mm], left and right pressure, and Newton steps
+    taken.
+    """
 
     state: State
     residual: float
@@ -35,7 +38,9 @@ class Balance:
 
 
 class Energy:
-    """Elastic energy of cables and lines over the free displacements (f, 3) [mm], and its first and second derivative."""
+    """Elastic energy of cables and lines over the free displacements (f, 3) [mm], and its first and second
+    derivative.
+    """
 
     def __init__(self, model: ConstrainedModel, ratios: tuple[float, ...]) -> None:
         self.model = model
@@ -59,7 +64,9 @@ class Energy:
         return np.asarray(self.cables @ moved + self.model.signs.T @ (tension[:, None] * spans))
 
     def hessian(self, moved: Points, clip: bool) -> Floats:
-        """Return the second derivative, shape (3 f, 3 f); ``clip`` leaves out what compressed lines take from it."""
+        """Return the second derivative, shape (3 f, 3 f); ``clip`` leaves out what compressed lines take from
+        it.
+        """
         spans, length = self._spans(moved)
         u = spans / length[:, None]
         b = 1.0 - self.natural / length
@@ -121,7 +128,7 @@ def _factor(
             factor = cho_factor(matrix, lower=True, check_finite=False)
         except LinAlgError:
             continue
-        return lambda right: np.asarray(cho_solve(factor, right, check_finite=False))  # noqa: B023
+        return lambda right: np.asarray(cho_solve(factor, right, check_finite=False))
     raise AssertionError("cables alone are positive definite")
 
 
@@ -134,7 +141,9 @@ def _line_search(
     wanted: Floats,
     slope: float,
 ) -> Points | None:
-    """Return the longest of the halved steps that lowers the energy after retraction to the volumes, if any does."""
+    """Return the longest of the halved steps that lowers the energy after retraction to the volumes, if any
+    does.
+    """
     here = energy.value(moved)
     length = 1.0
     while length > 1e-6:
@@ -149,7 +158,9 @@ def _line_search(
 
 
 def _retract(model: ConstrainedModel, moved: Points, push: Floats, wanted: Floats) -> Points | None:
-    """Return ``moved`` shifted along ``push`` (3 f, 2) until both breast volumes are exactly the ``wanted`` ones."""
+    """Return ``moved`` shifted along ``push`` (3 f, 2) until both breast volumes are exactly the ``wanted``
+    ones.
+    """
     tolerance = 1e-13 * abs(model.volume.rest_volume)
     for _ in range(12):
         points = model.tensegric.expand(moved)

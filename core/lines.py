@@ -19,9 +19,10 @@ RATIO_LIMITS = (0.5, 1.3)
 class Line:
     """A band of the garment that lies on the body.
 
-    ``path`` (k,) control points from the subject's right to the left; ``rest_lengths`` (k - 1,) [mm] of its segments in
-    the self-balanced rest state; ``back_length`` [mm] completes the front part to the whole closed band round the
-    body, and does not change. ``constrains`` is False when no point of the path can move.
+    ``path`` (k,) control points from the subject's right to the left; ``rest_lengths`` (k - 1,) [mm] of its
+    segments in the self-balanced rest state; ``back_length`` [mm] completes the front part to the whole
+    closed band round the body, and does not change. ``constrains`` is False when no point of the path can
+    move.
     """
 
     name: str
@@ -56,7 +57,9 @@ def segment_lengths(points: Points, path: Indices) -> Floats:
 
 
 def line_on(name: str, path: npt.ArrayLike, points: Points, free: Indices, back_length: float = 0.0) -> Line:
-    """Lay a line over the control points of a model at rest; its natural length is read there (paper section 3)."""
+    """Lay a line over the control points of a model at rest; its natural length is read there (paper section
+    3).
+    """
     nodes = np.asarray(path, dtype=np.int64)
     nodes.setflags(write=False)
     constrains = bool(np.isin(nodes, free).any())
@@ -70,9 +73,10 @@ _MM = {"mm": 1.0, "cm": 10.0, "in": 25.4}
 def length_ratio(text: str, line: Line) -> float:
     """Read what a designer writes for a length and return it as ratio of the line's rest length [1].
 
-    ``97%`` of the front part's rest length, ``-6%`` or ``-20mm`` (also cm, in) shorter or longer, ``400mm`` absolute. An absolute length
-    is that of the front part, or of the whole band if only that reading makes sense: the two never lie near
-    each other. Raises LineError if the text is no length or lies outside RATIO_LIMITS.
+    ``97%`` of the front part's rest length, ``-6%`` or ``-20mm`` (also cm, in) shorter or longer, ``400mm``
+    absolute. An absolute length is that of the front part, or of the whole band if only that reading makes
+    sense: the two never lie near each other. Raises LineError if the text is no length or lies outside
+    RATIO_LIMITS.
     """
     match = _LENGTH.match(text.replace("\N{MINUS SIGN}", "-"))
     if match is None:

@@ -1,4 +1,6 @@
-"""The project file ``*.busk``: one zip with the design, the untouched scan and a picture. Results are never stored."""
+"""The project file ``*.busk``: one zip with the design, the untouched scan and a picture. Results are never
+stored.
+"""
 
 from __future__ import annotations
 

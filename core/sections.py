@@ -16,8 +16,8 @@ from core.mesh import Floats, Indices, Mesh, Points
 class Section:
     """Where a plane cuts a mesh: one segment per cut face.
 
-    ``segments`` are the two end points, shape (s, 2, 3) [mm]; ``edge_ids`` tells which mesh edge each end lies
-    on, shape (s, 2), so that neighbouring segments share an id and chain without a tolerance.
+    ``segments`` are the two end points, shape (s, 2, 3) [mm]; ``edge_ids`` tells which mesh edge each end
+    lies on, shape (s, 2), so that neighbouring segments share an id and chain without a tolerance.
     """
 
     segments: Points

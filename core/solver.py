@@ -1,14 +1,15 @@
 """Turns: one sweep to local balance, then the volume and the lengths are measured and the forces refreshed.
 
-Paper section 5 tells the turn in words; the equations are ours. A sweep visits the free points in ascending order and puts each
-where its members and the volume force balance, with the neighbours where they are now (Gauss-Seidel). All member
-stiffnesses are constant during a run, so a whole sweep is one product with a lower triangular inverse.
+Paper section 5 tells the turn in words; the equations are ours. A sweep visits the free points in ascending
+order and puts each where its members and the volume force balance, with the neighbours where they are now
+(Gauss-Seidel). All member stiffnesses are constant during a run, so a whole sweep is one product with a lower
+triangular inverse.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -29,9 +30,10 @@ DEFAULT_LINE_STIFFNESS = 16.0
 class ConstrainedModel:
     """A tensegric model with its constraining lines and its volume: all that stays fixed during a run.
 
-    ``lines`` are all lines, worn or only measured. ``pairs`` (s, 2) are the segments of the worn ones, ``owner`` (s,) the
-    line of each, ``rest_spans`` (s, 3) [mm] their vectors at rest, ``line_stiffness`` (s,) [1] their Hooke stiffness
-    (the same tape along a line), ``signs`` (s, f) their signed incidence on the free points.
+    ``lines`` are all lines, worn or only measured. ``pairs`` (s, 2) are the segments of the worn ones,
+    ``owner`` (s,) the line of each, ``rest_spans`` (s, 3) [mm] their vectors at rest, ``line_stiffness`` (s,)
+    [1] their Hooke stiffness (the same tape along a line), ``signs`` (s, f) their signed incidence on the
+    free points.
     """
 
     tensegric: TensegricModel
@@ -60,7 +62,9 @@ class ConstrainedModel:
 
     @cached_property
     def line_scatter(self) -> sparse.csr_array:
-        """The linear map from the segments' 3 x 3 blocks (9 s,) to a matrix over the free coordinates (9 f^2,)."""
+        """The linear map from the segments' 3 x 3 blocks (9 s,) to a matrix over the free coordinates (9
+        f^2,).
+        """
         segment, i, j = (at.ravel() for at in np.indices((len(self.pairs), *2 * (self.signs.shape[1],))))
         value = self.signs[segment, i] * self.signs[segment, j]
         segment, i, j, value = (array[value != 0.0] for array in (segment, i, j, value))
@@ -95,7 +99,9 @@ class ConstrainedModel:
         return abs(self.volume.rest_volume) / self.probe
 
     def natural_lengths(self, ratios: tuple[float, ...]) -> Floats:
-        """Return the natural lengths of the worn segments for a ratio per line, shape (s,) [mm] (paper section 3)."""
+        """Return the natural lengths of the worn segments for a ratio per line, shape (s,) [mm] (paper
+        section 3).
+        """
         return np.asarray(np.asarray(ratios)[self.owner] * self.rest_segments)
 
     def pull(self, points: Points, natural: Floats) -> Points:
@@ -118,7 +124,8 @@ def constrained_model(
 ) -> ConstrainedModel:
     """Build the model of a control mesh with a line on each of its paths.
 
-    ``worn`` names the lines that act (all of them if None), the others are only measured; ``back_lengths`` [mm] see ``Line``.
+    ``worn`` names the lines that act (all of them if None), the others are only measured; ``back_lengths``
+    [mm] see ``Line``.
     """
     tensegric = tensegric_model(control.mesh, control.fixed)
     backs = back_lengths or {}
@@ -138,7 +145,9 @@ def assemble(
     worn: Collection[str],
     line_stiffness: float = DEFAULT_LINE_STIFFNESS,
 ) -> ConstrainedModel:
-    """Join the parts of a model; a line that is not worn, or lies on fixed points alone, is measured but does not pull."""
+    """Join the parts of a model; a line that is not worn, or lies on fixed points alone, is measured but does
+    not pull.
+    """
     unit = line_stiffness * tensegric.mean_stiffness
     pulling = [(index, line) for index, line in enumerate(lines) if line.constrains and line.name in worn]
     pairs = np.concatenate([np.empty((0, 2), dtype=np.int64), *(line.pairs for _, line in pulling)])
@@ -158,7 +167,9 @@ def assemble(
 
 @dataclass(frozen=True)
 class Targets:
-    """All that can change while a run goes on: a ratio per line [1], the volume control, and its gain (probe units)."""
+    """All that can change while a run goes on: a ratio per line [1], the volume control, and its gain (probe
+    units).
+    """
 
     ratios: tuple[float, ...]
     control: str = "adaptive"
@@ -182,8 +193,8 @@ Watch = Callable[[Points], Marks]
 class Record:
     """The scalars of one turn: what plot, CSV and tests read.
 
-    ``error`` is (V - V0) / V0 [1], negative when volume is missing; ``error_ml`` [ml]; ``step`` [mm] the largest move of a control
-    point in this turn; ``lengths`` [mm] of the lines' front parts.
+    ``error`` is (V - V0) / V0 [1], negative when volume is missing; ``error_ml`` [ml]; ``step`` [mm] the
+    largest move of a control point in this turn; ``lengths`` [mm] of the lines' front parts.
     """
 
     turn: int
@@ -196,10 +207,12 @@ class Record:
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """Where a run stands: displacements of the free points, shape (f, 3) [mm], and the pressure of the coming turn."""
+    """Where a run stands: displacements of the free points, shape (f, 3) [mm], and the pressure of the coming
+    turn.
+    """
 
     moved: Points
-    pressure: Pressure = Pressure()
+    pressure: Pressure = field(default_factory=Pressure)
     turn: int = 0
 
 
@@ -225,7 +238,9 @@ def record(model: ConstrainedModel, state: State, step: float, watch: Watch | No
 def turn(
     model: ConstrainedModel, targets: Targets, state: State, watch: Watch | None = None
 ) -> tuple[State, Record]:
-    """Make one turn (paper section 5): every point to its local balance, then measure, then refresh the forces."""
+    """Make one turn (paper section 5): every point to its local balance, then measure, then refresh the
+    forces.
+    """
     first, second = model.sweep
     points = model.tensegric.expand(state.moved)
     forces = model.pull(points, model.natural_lengths(targets.ratios))

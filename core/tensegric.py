@@ -1,8 +1,9 @@
 """The tensegric model: cables along the control mesh, balanced at rest by prestressed parts.
 
-The paper (section 2) gives no formula. Ours is the force density law: a cable between points i and j pulls with
-``q_ij * (x_i - x_j)``, and a constant pseudo-force at each point balances all its cables at rest. Moving that
-force into the member gives a target vector, so that a member is at ease when ``x_i - x_j`` is what it was at rest.
+The paper (section 2) gives no formula. Ours is the force density law: a cable between points i and j pulls
+with ``q_ij * (x_i - x_j)``, and a constant pseudo-force at each point balances all its cables at rest. Moving
+that force into the member gives a target vector, so that a member is at ease when ``x_i - x_j`` is what it
+was at rest.
 """
 
 from __future__ import annotations
@@ -19,8 +20,9 @@ from core.mesh import Flags, Floats, Indices, Mesh, Points, frozen
 class TensegricModel:
     """Control points at rest, their cables, and which of them are free to move.
 
-    ``rest`` (n, 3) [mm]; ``free`` (f,) indices of the moving points, ascending; ``cables`` (m, 2) the pairs that
-    have at least one free end; ``density`` (m,) [1] their force densities, 1/length over the mean of 1/length.
+    ``rest`` (n, 3) [mm]; ``free`` (f,) indices of the moving points, ascending; ``cables`` (m, 2) the pairs
+    that have at least one free end; ``density`` (m,) [1] their force densities, 1/length over the mean of
+    1/length.
     """
 
     rest: Points
@@ -46,7 +48,9 @@ class TensegricModel:
         return float(np.mean(np.diag(self.stiffness)))
 
     def expand(self, moved: Points) -> Points:
-        """Return all control points, shape (n, 3) [mm], with the free ones displaced by ``moved``, shape (f, 3)."""
+        """Return all control points, shape (n, 3) [mm], with the free ones displaced by ``moved``, shape (f,
+        3).
+        """
         points = self.rest.copy()
         points[self.free] += moved
         return points
@@ -62,7 +66,9 @@ def tensegric_model(mesh: Mesh, fixed: Flags) -> TensegricModel:
 
 
 def incidence_of(place: Indices, pairs: Indices) -> Floats:
-    """Return the signed incidence of ``pairs`` (s, 2) on the free points, shape (s, f): +1 first, -1 second end."""
+    """Return the signed incidence of ``pairs`` (s, 2) on the free points, shape (s, f): +1 first, -1 second
+    end.
+    """
     signs = np.zeros((len(pairs), int(place.max(initial=-1)) + 1))
     rows = np.arange(len(pairs))
     for end, sign in ((0, 1.0), (1, -1.0)):

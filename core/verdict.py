@@ -1,4 +1,6 @@
-"""Whether a run settles, vibrates or diverges: a small pure function of its records (ours; paper section 5 names the cases)."""
+"""Whether a run settles, vibrates or diverges: a small pure function of its records (ours; paper section 5
+names the cases).
+"""
 
 from __future__ import annotations
 
@@ -24,8 +26,9 @@ _FADING = 0.99
 class Verdict:
     """How a run stands: ``state`` is settled, settling, vibrating or diverged.
 
-    ``period`` [turns], ``amplitude`` [1] (half the swing of the volume error) and ``growth`` per turn [1] describe the
-    flip-flop if there is one, else they are 0, 0 and 1; ``error`` [1] is the mean volume error of the last turns.
+    ``period`` [turns], ``amplitude`` [1] (half the swing of the volume error) and ``growth`` per turn [1]
+    describe the flip-flop if there is one, else they are 0, 0 and 1; ``error`` [1] is the mean volume error
+    of the last turns.
     """
 
     state: str

@@ -1,4 +1,6 @@
-"""The volume of the control mesh, its gradient and curvature, and the laws that hold it (paper sections 4 and 5)."""
+"""The volume of the control mesh, its gradient and curvature, and the laws that hold it (paper sections 4 and
+5).
+"""
 
 from __future__ import annotations
 
@@ -22,11 +24,12 @@ def _cross(a: Points, b: Points) -> Points:
 
 @dataclass(frozen=True, eq=False)
 class VolumeMeasure:
-    """The volume between the control mesh and the fan from the centre of its border (closed mesh: any centre).
+    """The volume between the control mesh and the fan from the centre of its border (closed mesh: any
+    centre).
 
     The border is fixed, so a volume *difference* does not depend on the centre; ``rest_volume`` [mm^3] and
-    with it every percentage does. ``faces`` (m, 3) are the triangles that can move, ``left`` (m,) those of the
-    subject's left breast; ``still_volume`` [mm^3] is the share of all other triangles.
+    with it every percentage does. ``faces`` (m, 3) are the triangles that can move, ``left`` (m,) those of
+    the subject's left breast; ``still_volume`` [mm^3] is the share of all other triangles.
     """
 
     centre: Floats
@@ -127,8 +130,9 @@ def _curvature(faces: Faces, place: Indices, count: int) -> sparse.csr_array:
 class Pressure:
     """The volume force of the coming turn, and what its law remembers.
 
-    ``value`` [1] in probe units: 1 is the pressure that would change the whole volume by 100 % in one turn; ``error`` is that of
-    the last turn, (V0 - V) / V0; ``step`` is the present step length of the adaptive law.
+    ``value`` [1] in probe units: 1 is the pressure that would change the whole volume by 100 % in one turn;
+    ``error`` is that of the last turn, (V0 - V) / V0; ``step`` is the present step length of the adaptive
+    law.
     """
 
     value: float = 0.0
@@ -145,9 +149,9 @@ _QUIET = 1e-7
 def next_pressure(control: str, pressure: Pressure, error: float, gain: float) -> Pressure:
     """Return the pressure after a turn that ended with volume ``error`` = (V0 - V) / V0.
 
-    ``conventional`` (paper section 4): proportional to the error, times ``gain``. ``adaptive`` (in the spirit of section 5; the
-    formula is ours): the push grows by the error and shrinks by how fast the volume is already coming home, and
-    its step is halved whenever the volume flips.
+    ``conventional`` (paper section 4): proportional to the error, times ``gain``. ``adaptive`` (in the spirit
+    of section 5; the formula is ours): the push grows by the error and shrinks by how fast the volume is
+    already coming home, and its step is halved whenever the volume flips.
     """
     if control == "none":
         return replace(pressure, error=error)

@@ -1,0 +1,95 @@
+"""The Qt application: names, theme, log and guards, set before the first window."""
+
+from __future__ import annotations
+
+import faulthandler
+import logging
+import os
+import platform
+import sys
+import threading
+from pathlib import Path
+from types import TracebackType
+
+import platformdirs
+import PySide6
+from PySide6.QtCore import QSettings, Qt
+from PySide6.QtGui import QGuiApplication
+from PySide6.QtWidgets import QApplication
+
+from app.theme import apply_theme, load_fonts
+from app.words import use_language
+from core import __version__
+from core.errors import UserError
+
+# Read by the libraries at their import.
+os.environ.setdefault("QT_API", "pyside6")
+os.environ.setdefault("PYQTGRAPH_QT_LIB", "PySide6")
+
+
+def application(language: str | None = None, dark: bool | None = None) -> QApplication:
+    """Return the application, made if there is none; language and theme fall back to what the user chose
+    last.
+
+    Raises UserError for a pair of Python and Qt that is known to crash.
+    """
+    _refuse_bad_pair()
+    existing = QApplication.instance()
+    if not isinstance(existing, QApplication):
+        QApplication.setHighDpiScaleFactorRoundingPolicy(Qt.HighDpiScaleFactorRoundingPolicy.PassThrough)
+        existing = QApplication(sys.argv[:1])
+        existing.setOrganizationName("Busk")
+        existing.setApplicationName("Busk")
+        existing.setApplicationVersion(__version__)
+    settings = QSettings()
+    use_language(language or str(settings.value("language", "en")))
+    load_fonts()
+    apply_theme(existing, _chosen_dark(str(settings.value("theme", "system"))) if dark is None else dark)
+    return existing
+
+
+def off_screen() -> None:
+    """Let Qt draw into memory, if there is no display to draw on."""
+    if not has_display():
+        os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+
+
+def has_display() -> bool:
+    """Tell whether a window can be shown."""
+    return sys.platform in ("win32", "darwin") or bool(
+        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    )
+
+
+def keep_log() -> Path:
+    """Write faults to a log file, never the scan or its measures, and return its folder."""
+    folder = Path(platformdirs.user_log_dir("Busk", appauthor=False))
+    folder.mkdir(parents=True, exist_ok=True)
+    logging.basicConfig(
+        filename=folder / "busk.log", level=logging.WARNING, format="%(asctime)s %(levelname)s %(message)s"
+    )
+    faulthandler.enable(open(folder / "crash.log", "a", encoding="utf-8"))  # noqa: SIM115 - open as long as we run
+    sys.excepthook = _log_fault
+    threading.excepthook = lambda args: _log_fault(
+        args.exc_type, args.exc_value or RuntimeError(), args.exc_traceback
+    )
+    return folder
+
+
+def _log_fault(kind: type[BaseException], fault: BaseException, trace: TracebackType | None) -> None:
+    logging.error("unexpected fault", exc_info=(kind, fault, trace))
+    sys.__excepthook__(kind, fault, trace)
+
+
+def _chosen_dark(theme: str) -> bool:
+    if theme == "system":
+        return QGuiApplication.styleHints().colorScheme() == Qt.ColorScheme.Dark
+    return theme == "dark"
+
+
+def _refuse_bad_pair() -> None:
+    if PySide6.__version__.startswith("6.12.0") and sys.version_info < (3, 12):
+        raise UserError(
+            f"PySide6 6.12.0 crashes on Python {platform.python_version()}.",
+            "Run 'make setup' again: it installs a pair that works.",
+        )

@@ -1,0 +1,251 @@
+"""The command line: the same pipeline as the window, and no Qt until a window is asked for."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import fields, replace
+from pathlib import Path
+
+from core import __version__
+from core.design import Design, ScanSource
+from core.errors import LineError, UserError
+from core.lines import length_ratio
+from core.project import is_project, open_project
+
+SETTLED, BAD_INPUT, NOT_SETTLED = 0, 2, 3
+SETTINGS: dict[str, Callable[[str], object]] = {
+    "gain": float,
+    "line_stiffness": float,
+    "line_contact": str,
+    "line_height": float,
+    "template": str,
+    "weights": str,
+}
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run ``busk``; the exit code is 0 settled or done, 3 not settled, 2 bad input with one sentence on
+    stderr.
+    """
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        if words and words[0] in COMMANDS:
+            options = _parser(words[0]).parse_args(words[1:])
+            return COMMANDS[words[0]][1](options)
+        options = _window_parser().parse_args(words)
+        from app.window import run_window
+
+        return run_window(options.file)
+    except UserError as error:
+        print(f"busk: {error}", file=sys.stderr)
+        return BAD_INPUT
+
+
+def design_of(path: str, options: argparse.Namespace) -> Design:
+    """Return the design of a project, or a new one for a scan, with what the options overrule."""
+    if is_project(path):
+        design = open_project(path)
+    else:
+        design = Design(ScanSource(str(Path(path).absolute())))
+    axes = {key: getattr(options, key) for key in ("unit", "up", "front") if getattr(options, key, None)}
+    if axes:
+        design = replace(design, scan=replace(design.scan, **axes))
+    return replace(design, **_settings(getattr(options, "settings", None) or []))
+
+
+def _settings(pairs: Sequence[str]) -> dict[str, object]:
+    known = {field.name for field in fields(Design)}
+    values: dict[str, object] = {}
+    for pair in pairs:
+        key, equals, value = pair.partition("=")
+        key = key.strip().replace("-", "_")
+        if not equals or key not in SETTINGS or key not in known:
+            raise UserError(
+                f"'{pair}' is no setting.", f"Write KEY=VALUE; the keys are: {', '.join(SETTINGS)}."
+            )
+        try:
+            values[key] = SETTINGS[key](value.strip())
+        except ValueError:
+            raise UserError(
+                f"The {key} '{value}' is not a number.", f"Write for example {key}=1.5."
+            ) from None
+    return values
+
+
+def solve(options: argparse.Namespace) -> int:
+    """Solve a design with no window and write what came out."""
+    from core.export import write_mesh
+    from core.mesh import Mesh
+    from core.pipeline import build
+    from core.report import report, run, write_report, write_turns
+    from core.tffd import deform
+
+    design = design_of(options.input, options)
+    if options.volume:
+        design = replace(design, volume=options.volume)
+    out = _folder(options.out)
+    stages = build(design)
+    for request in options.line or []:
+        name, equals, text = request.partition("=")
+        line = next((line for line in stages.model.lines if line.name == name.strip()), None)
+        if line is None or not equals:
+            names = ", ".join(line.name for line in stages.model.lines)
+            raise LineError(f"'{request}' names no line.", f"Write NAME=LENGTH; the lines are: {names}.")
+        design = design.with_line(line.name, length_ratio(text, line))
+    solution = run(build(design, stages), options.turns)
+    stages = solution.stages
+    points = stages.model.tensegric.expand(solution.state.moved)
+    write_mesh(out / "body.ply", Mesh(deform(stages.binding, points), stages.body.mesh.faces))
+    write_mesh(out / "control.ply", stages.control.mesh.moved(points))
+    write_turns(out / "turns.csv", solution.records, stages.model.lines)
+    figures = report(solution)
+    write_report(out / "report.json", figures)
+    volume = figures["volume"]
+    print(
+        f"{solution.verdict.state} after {solution.last.turn} turns, volume error "
+        f"{volume['error_percent']:+.4f} % ({volume['error_ml']:+.2f} ml); written to {out}"
+    )
+    return SETTLED if solution.verdict.state == "settled" else NOT_SETTLED
+
+
+def detect(options: argparse.Namespace) -> int:
+    """Find the landmarks of a scan and print them."""
+    from core.detect import detection
+    from core.pipeline import read_body
+
+    _, body = read_body(design_of(options.input, options).scan)
+    found = detection(body)
+    if options.json:
+        print(json.dumps(found, indent=1))
+        return SETTLED
+    print(f"unit {found['unit']}, up {found['up']}, front {found['front']}")
+    for name, mark in found["landmarks"].items():
+        x, y, z = mark["mm"]
+        print(f"{name:18} {x:8.1f} {y:8.1f} {z:8.1f} mm  {100 * mark['confidence']:3.0f} %  {mark['rule']}")
+    for name, girth in found["girths"].items():
+        print(f"{name:18} tape {girth['tape_mm']:.1f} mm at height {girth['level_mm']:.1f} mm")
+    return SETTLED
+
+
+def picture(options: argparse.Namespace) -> int:
+    """Render a scan or project to a PNG file with no display."""
+    from app.picture import draw_picture, draw_window
+
+    design = design_of(options.input, options)
+    if options.window:
+        draw_window(
+            design, Path(options.out), dark=options.dark, language=options.language, size=options.size
+        )
+    else:
+        draw_picture(design, Path(options.out), view=options.view, dark=options.dark, size=options.size)
+    print(f"written to {options.out}")
+    return SETTLED
+
+
+def demo(options: argparse.Namespace) -> int:
+    """Do the sample session with no display, and leave pictures, body and report in a folder."""
+    from app.demo import run_demo
+
+    return run_demo(_folder(options.out))
+
+
+def self_test(options: argparse.Namespace) -> int:
+    """Check the installed program on the sample, one line a part."""
+    from app.self_test import run_self_test
+
+    return run_self_test()
+
+
+def _folder(name: str) -> Path:
+    folder = Path(name)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as problem:
+        raise UserError(
+            f"The folder {name} cannot be made: {problem.strerror}.", "Choose another one."
+        ) from problem
+    return folder
+
+
+def _window_parser() -> argparse.ArgumentParser:
+    commands = "\n".join(f"  busk {name:10} {help_}" for name, (help_, _) in COMMANDS.items())
+    parser = argparse.ArgumentParser(
+        prog="busk",
+        description="See how a foundation garment reshapes a body.",
+        epilog=f"without a window:\n{commands}\n\n'busk COMMAND --help' tells more.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("file", nargs="?", metavar="FILE", help="a project (.busk) or a scan to open")
+    parser.add_argument("--version", action="version", version=f"busk {__version__}")
+    return parser
+
+
+def _parser(command: str) -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog=f"busk {command}", description=COMMANDS[command][0])
+    if command in ("solve", "detect", "picture"):
+        parser.add_argument("input", metavar="SCAN_OR_PROJECT", help="PLY, OBJ, STL or .busk")
+        parser.add_argument(
+            "--unit", choices=("mm", "cm", "m", "inch"), help="the scan's unit, if not guessed well"
+        )
+        parser.add_argument("--up", help="the scan's axis that points up, like +z")
+        parser.add_argument("--front", help="the scan's axis that the body faces, like -y")
+    if command in ("solve", "picture"):
+        parser.add_argument("--settings", action="append", metavar="KEY=VALUE", help=", ".join(SETTINGS))
+    if command == "solve":
+        parser.add_argument(
+            "--line",
+            action="append",
+            metavar="NAME=LENGTH",
+            help="97%% of the rest length, -20mm shorter, 400mm absolute; of the front part, side to side",
+        )
+        parser.add_argument("--volume", choices=("adaptive", "conventional", "exact", "none"))
+        parser.add_argument(
+            "--turns", type=_turns, metavar="N", help="exactly N turns; else until settled, at most 300"
+        )
+    if command == "detect":
+        parser.add_argument("--json", action="store_true", help="print JSON")
+    if command == "picture":
+        parser.add_argument(
+            "--view", default="three-quarter", help="front, left, right, back, three-quarter, top, side"
+        )
+        parser.add_argument("--window", action="store_true", help="the whole window, not just the body")
+        parser.add_argument("--dark", action="store_true")
+        parser.add_argument("--language", choices=("en", "ja"), default="en")
+        parser.add_argument("--size", type=_size, default=(1600, 1000), metavar="WIDTHxHEIGHT")
+    if command in ("solve", "picture", "demo"):
+        parser.add_argument("--out", required=command != "demo", default="out", metavar="PLACE")
+    return parser
+
+
+def _turns(text: str) -> int:
+    turns = int(text)
+    if not 1 <= turns <= 100_000:
+        raise argparse.ArgumentTypeError("a number of turns from 1 to 100000")
+    return turns
+
+
+def _size(text: str) -> tuple[int, int]:
+    width, _, height = text.partition("x")
+    return int(width), int(height)
+
+
+COMMANDS: dict[str, tuple[str, Callable[[argparse.Namespace], int]]] = {
+    "solve": ("solve a design and write body, control mesh, turns and report", solve),
+    "detect": ("find the bust landmarks of a scan", detect),
+    "picture": ("render a scan or project to a PNG file", picture),
+    "demo": ("do the sample session off-screen and write what comes out", demo),
+    "self-test": ("check this installation", self_test),
+}
+
+if __name__ == "__main__":
+    # A closed pipe (busk detect ... | head) is no error of ours.
+    try:
+        code = main()
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        code = 1
+    sys.exit(code)

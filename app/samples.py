@@ -1,0 +1,24 @@
+"""The two sample bodies that Busk ships, and the design that it opens with at first start."""
+
+from __future__ import annotations
+
+from importlib import resources
+from pathlib import Path
+
+from core.design import Design, ScanSource, WornLine
+
+SAMPLES = {"mannequin": "Mannequin", "person": "Person"}
+"""The sample bodies by file name, each with what it is called in the window."""
+
+FIRST_RATIO = 0.95
+"""Length of the mid-bust line in the first picture: natural on every body tried, and plainly to be seen."""
+
+
+def sample_path(name: str) -> Path:
+    """Return the file of a sample body."""
+    return Path(str(resources.files("resources") / "samples" / f"{name}.ply"))
+
+
+def sample_design(name: str = "mannequin") -> Design:
+    """Return a design on a sample body that is already worth looking at."""
+    return Design(ScanSource(str(sample_path(name))), lines=(WornLine("mid-bust", FIRST_RATIO),))

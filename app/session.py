@@ -1,0 +1,229 @@
+"""The session: the one place that changes the design. It owns the undo stack and the solver, and answers by
+signals.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from PySide6.QtCore import QObject, QTimer, Signal
+from PySide6.QtGui import QUndoCommand, QUndoStack
+
+from app.words import number, tr
+from core.design import Design, ScanSource
+from core.errors import UserError
+from core.export import write_mesh
+from core.live import Failure, Frame, LiveSolver
+from core.mesh import Mesh
+from core.project import is_project, open_project, save_project
+from core.tffd import deform
+
+FRAME_INTERVAL = 16
+"""Milliseconds between two looks at the solver."""
+
+
+class Session(QObject):
+    """What the window shows and asks.
+
+    Verbs (open, preview, commit, save ...) are called by the window; what follows is told by signals.
+    ``design`` is what is committed; while a slider is dragged the solver works on a preview that no one else
+    sees.
+    """
+
+    design_changed = Signal(object)
+    opened = Signal(object)
+    frame_ready = Signal(object)
+    failed = Signal(object)
+    working = Signal(str)
+    saved = Signal(str)
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.undo_stack = QUndoStack(self)
+        self.design: Design | None = None
+        self.frame: Frame | None = None
+        self.path: Path | None = None
+        self._stage = ""
+        self._stage_told = ""
+        self._preview: Design | None = None
+        self._opening: tuple[Design, Path | None, int] | None = None
+        self._oldest = 0
+        self._solver = LiveSolver(self._hear_stage)
+        self._clock = QTimer(self, interval=FRAME_INTERVAL)
+        self._clock.timeout.connect(self._look)
+        self._clock.start()
+
+    @property
+    def name(self) -> str:
+        """What the document is called: the project's or the scan's name."""
+        if self.path is not None:
+            return self.path.stem
+        return Path(self.design.scan.name).stem if self.design else ""
+
+    def open(self, path: str) -> None:
+        """Open a project or a scan; the present design stays until the new one has a first frame."""
+        try:
+            if is_project(path):
+                self._begin(open_project(path), Path(path).absolute())
+            else:
+                self._begin(Design(ScanSource(str(Path(path).absolute()))), None)
+        except UserError as error:
+            self.failed.emit(error)
+
+    def open_design(self, design: Design) -> None:
+        """Open a design that has no file of its own yet, such as the sample."""
+        self._begin(design, None)
+
+    def preview_line(self, name: str, ratio: float) -> None:
+        """Show a length while it is dragged; nothing is committed."""
+        if self.design is not None:
+            fresh = self._preview is None
+            self._preview = self.design.with_line(name, ratio)
+            self._solver.submit(self._preview, fresh)
+
+    def cancel_preview(self) -> None:
+        """Go back to the committed lengths."""
+        if self.design is not None and self._preview is not None:
+            self._preview = None
+            self._solver.submit(self.design)
+
+    def commit_line(self, name: str, title: str, ratio: float | None) -> None:
+        """Set a line's length as one undo step; None takes the line off."""
+        if self.design is None:
+            return
+        text = tr("{line} off") if ratio is None else tr("{line} {percent} %")
+        text = text.format(line=title, percent=number(100.0 * (ratio or 0.0), 1))
+        self._commit(self.design.with_line(name, ratio), text)
+
+    def reset_lines(self) -> None:
+        """Take every line off: the body as scanned."""
+        if self.design is not None:
+            self._commit(replace(self.design, lines=()), tr("Reset to scan"))
+
+    def choose_control(self, control: str) -> None:
+        """Choose the volume control."""
+        if self.design is not None:
+            titles = {"adaptive": tr("Adaptive"), "conventional": tr("Conventional"), "exact": tr("Exact")}
+            self._commit(replace(self.design, volume=control), titles.get(control, tr("No volume control")))
+
+    def choose_template(self, template: str) -> None:
+        """Choose the control mesh by its number of polygons."""
+        if self.design is not None:
+            text = tr("Control mesh {count}").format(count=template)
+            self._commit(replace(self.design, template=template), text)
+
+    def save(self, path: str, picture: bytes | None) -> bool:
+        """Save the project with its scan; returns whether it worked."""
+        if self.design is None or self.frame is None:
+            return False
+        try:
+            save_project(path, self.design, self.frame.stages.scan, picture)
+        except UserError as error:
+            self.failed.emit(error)
+            return False
+        self.path = Path(path).absolute()
+        self.undo_stack.setClean()
+        self.saved.emit(str(self.path))
+        return True
+
+    def export_body(self, path: str) -> bool:
+        """Write the body as it is shown; returns whether it worked."""
+        if self.frame is None:
+            return False
+        stages = self.frame.stages
+        points = deform(stages.binding, self.frame.control_points)
+        try:
+            write_mesh(path, Mesh(points, stages.body.mesh.faces))
+        except UserError as error:
+            self.failed.emit(error)
+            return False
+        return True
+
+    def close(self) -> None:
+        """Stop the clock and the solver, and wait until it has ended."""
+        self._clock.stop()
+        self._solver.stop()
+
+    def take(self, design: Design) -> None:
+        """Make ``design`` the present one, as the undo stack asks."""
+        self._preview = None
+        self.design = design
+        self._solver.submit(design, fresh=True)
+        self.design_changed.emit(design)
+
+    def _begin(self, design: Design, path: Path | None) -> None:
+        self._preview = None
+        self._opening = (design, path, self._solver.submit(design, fresh=True))
+
+    def _commit(self, after: Design, text: str) -> None:
+        previewing, self._preview = self._preview is not None, None
+        if after != self.design and self.design is not None:
+            self.undo_stack.push(_Edit(self, self.design, after, text, shown=previewing))
+        elif previewing and self.design is not None:
+            self._solver.submit(self.design)
+
+    def settle_preview(self, design: Design) -> None:
+        """Commit what the preview already shows: its run goes on without a break."""
+        self.design = design
+        self._solver.submit(design)
+        self.design_changed.emit(design)
+
+    def _hear_stage(self, stage: str) -> None:
+        # Called in the solver's thread: only the attribute is set, the clock tells the window.
+        self._stage = stage
+
+    def _look(self) -> None:
+        if self._stage != self._stage_told:
+            self._stage_told = self._stage
+            self.working.emit(self._stage_told)
+        answer = self._solver.latest()
+        if isinstance(answer, Failure):
+            self._fail(answer)
+        elif answer is not None and answer.revision >= self._oldest:
+            if self._opening is not None:
+                if answer.revision < self._opening[2]:
+                    return
+                self._adopt(answer)
+            self.frame = answer
+            self.frame_ready.emit(answer)
+
+    def _adopt(self, frame: Frame) -> None:
+        if self._opening is None:
+            return
+        self.design, self.path, self._oldest = self._opening
+        self._opening = None
+        self.frame = frame
+        self.undo_stack.clear()
+        self.opened.emit(frame)
+        self.design_changed.emit(self.design)
+
+    def _fail(self, failure: Failure) -> None:
+        if self._opening is not None and failure.revision >= self._opening[2]:
+            self._opening = None
+            if self.design is not None:
+                self._solver.submit(self.design)
+        self.failed.emit(failure.error)
+
+
+class _Edit(QUndoCommand):
+    """One edit: the design before and after. The first redo after a drag keeps the run that the preview
+    began.
+    """
+
+    def __init__(self, session: Session, before: Design, after: Design, text: str, shown: bool) -> None:
+        super().__init__(text)
+        self._session = session
+        self._before = before
+        self._after = after
+        self._shown = shown
+
+    def redo(self) -> None:
+        if self._shown:
+            self._shown = False
+            self._session.settle_preview(self._after)
+        else:
+            self._session.take(self._after)
+
+    def undo(self) -> None:
+        self._session.take(self._before)

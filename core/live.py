@@ -1,0 +1,194 @@
+"""LiveSolver: one thread that turns the newest design into the newest frame, and never loses a record.
+
+Requests collapse to the newest; answers carry the revision that they belong to, so a window can drop stale
+ones. If only lengths changed, the runs go on from where they are (warm start).
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from threadpoolctl import threadpool_limits
+
+from core.comparison import Comparison
+from core.design import Design
+from core.errors import UserError
+from core.mesh import Points
+from core.pipeline import Stages, build, targets_of
+from core.solver import Marks, Record
+from core.verdict import Verdict
+
+_SLICE = 0.012
+"""Seconds of turns between two frames: about one picture of a screen."""
+
+_NAP = 0.0005
+"""A pause per frame in which the window's thread surely gets the interpreter."""
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """What is shown: the moved part of the body and everything that is read off it.
+
+    ``points`` and ``normals`` (r, 3) belong to the body's vertices ``stages.moving.vertices``;
+    ``control_points`` (n, 3) [mm]; ``lengths`` [mm] of the lines' front parts; ``tracks`` the records of each
+    run so far; ``exact_marks`` what the exact answer ends at; ``at_work`` whether turns are still being made.
+    """
+
+    revision: int
+    stages: Stages
+    points: Points
+    normals: Points
+    control_points: Points
+    lengths: Mapping[str, float]
+    tracks: Mapping[str, tuple[Record, ...]]
+    exact_marks: Marks
+    verdict: Verdict
+    error_ml: float
+    marks: Marks
+    at_work: bool
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why a design could not be turned into a frame; the last good frame still stands."""
+
+    revision: int
+    error: Exception
+
+
+@dataclass(frozen=True)
+class _Request:
+    revision: int
+    design: Design
+    fresh: bool
+
+
+class LiveSolver:
+    """Solves the newest design in a thread of its own.
+
+    ``tell`` is called in that thread with the name of the stage at work, or "" when it is done.
+    """
+
+    def __init__(self, tell: Callable[[str], None] = lambda _: None) -> None:
+        self._tell = tell
+        self._wake = threading.Condition()
+        self._request: _Request | None = None
+        self._frame: Frame | None = None
+        self._failure: Failure | None = None
+        self._revision = 0
+        self._stopping = False
+        self._stages: Stages | None = None
+        self._comparison: Comparison | None = None
+        self._thread = threading.Thread(target=self._work, name="busk-solver", daemon=True)
+        self._thread.start()
+
+    def submit(self, design: Design, fresh: bool = False) -> int:
+        """Ask for a design, dropping what was asked before; ``fresh`` begins new records. Returns the
+        revision.
+        """
+        with self._wake:
+            self._revision += 1
+            # A request that nobody has looked at yet must not lose its wish for new records.
+            fresh = fresh or (self._request is not None and self._request.fresh)
+            self._request = _Request(self._revision, design, fresh)
+            self._wake.notify()
+            return self._revision
+
+    def latest(self) -> Frame | Failure | None:
+        """Return what has not been fetched yet, if anything: a failure first, else the newest frame."""
+        with self._wake:
+            if self._failure is not None:
+                failure, self._failure = self._failure, None
+                return failure
+            frame, self._frame = self._frame, None
+            return frame
+
+    def stop(self) -> None:
+        """Ask the thread to end and wait until it has."""
+        with self._wake:
+            self._stopping = True
+            self._wake.notify()
+        self._thread.join()
+
+    def _work(self) -> None:
+        # Two BLAS threads make these small products many times slower.
+        with threadpool_limits(1):
+            revision = 0
+            while True:
+                with self._wake:
+                    self._wake.wait_for(self._something_to_do)
+                    if self._stopping:
+                        return
+                    request, self._request = self._request, None
+                try:
+                    if request is not None:
+                        revision = request.revision
+                        self._take(request)
+                    self._advance()
+                    if self._stages is not None and self._comparison is not None:
+                        self._publish(make_frame(revision, self._stages, self._comparison))
+                except UserError as error:
+                    self._fail(Failure(revision, error))
+                except Exception as error:
+                    # A fault of ours: do not run into it again with every turn; the window shows it.
+                    self._comparison = None
+                    self._fail(Failure(revision, error))
+                time.sleep(_NAP)
+
+    def _something_to_do(self) -> bool:
+        turning = self._comparison is not None and not self._comparison.resting
+        return self._stopping or self._request is not None or turning
+
+    def _take(self, request: _Request) -> None:
+        try:
+            stages = build(request.design, self._stages, self._tell)
+        finally:
+            self._tell("")
+        old, self._stages = self._stages, stages
+        targets = targets_of(request.design, stages)
+        same_body = old is not None and old.control is stages.control and old.binding is stages.binding
+        if self._comparison is None or not same_body:
+            self._comparison = Comparison(stages.model, targets, stages.watch)
+        else:
+            self._comparison.retarget(stages.model, targets, request.fresh)
+
+    def _advance(self) -> None:
+        comparison = self._comparison
+        if comparison is None:
+            return
+        until = time.perf_counter() + _SLICE
+        while not comparison.resting and time.perf_counter() < until:
+            comparison.advance()
+
+    def _publish(self, frame: Frame) -> None:
+        with self._wake:
+            self._frame = frame
+
+    def _fail(self, failure: Failure) -> None:
+        with self._wake:
+            self._failure = failure
+
+
+def make_frame(revision: int, stages: Stages, comparison: Comparison) -> Frame:
+    """Shape the body after the comparison's shown state and read everything off it."""
+    control_points = stages.model.tensegric.expand(comparison.shown.moved)
+    points, normals = stages.shape(control_points)
+    lines = stages.model.lines
+    change = stages.model.volume.volume(control_points) - stages.model.volume.rest_volume
+    return Frame(
+        revision,
+        stages,
+        points,
+        normals,
+        control_points,
+        {line.name: line.length(control_points) for line in lines},
+        {control: tuple(run.records) for control, run in comparison.runs.items()},
+        stages.watch(stages.model.tensegric.expand(comparison.exact.state.moved)),
+        comparison.verdict,
+        change / 1000.0,
+        stages.watch(control_points),
+        not comparison.resting,
+    )

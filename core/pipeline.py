@@ -1,0 +1,146 @@
+"""From a design to everything that precedes solving, stage by stage; a stage whose inputs are equal is
+reused.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from core.body import Body, read_scan
+from core.control_mesh import ControlMesh, back_length, fit_control_mesh
+from core.design import Design, ScanSource
+from core.errors import LineError
+from core.landmarks import Landmarks, find_landmarks
+from core.mesh import Points
+from core.moving import MovingFaces, moving_faces
+from core.patch import patch_fade
+from core.project import ScanFile, read_scan_file, scan_on_disk
+from core.solver import ConstrainedModel, Targets, constrained_model, gain_limit
+from core.template import read_template
+from core.tffd import Binding, bind, deform
+from core.watch import BodyWatch
+
+GAIN_SHARE = 0.97
+"""The default conventional gain in parts of the limit at rest: just calm, so that excess makes it vibrate."""
+
+T = TypeVar("T")
+Tell = Callable[[str], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Stages:
+    """The results that a design leads to before any turn is made.
+
+    ``gain`` is the conventional gain in force, ``gain_limit`` the one at which it begins to vibrate at rest
+    (probe units [1]); ``seconds`` what each stage took when it was last made; ``memo`` holds each stage's
+    inputs and result for reuse.
+    """
+
+    design: Design
+    scan: ScanFile
+    body: Body
+    landmarks: Landmarks
+    control: ControlMesh
+    binding: Binding
+    moving: MovingFaces
+    watch: BodyWatch
+    model: ConstrainedModel
+    gain_limit: float
+    seconds: Mapping[str, float]
+    memo: Mapping[str, tuple[tuple[Any, ...], Any]]
+
+    @property
+    def gain(self) -> float:
+        """The conventional gain in force [probe units]."""
+        return GAIN_SHARE * self.gain_limit if self.design.gain is None else self.design.gain
+
+    def shape(self, control_points: Points) -> tuple[Points, Points]:
+        """Return places [mm] and normals [1], shapes (r, 3), of ``moving.vertices`` for control points (n, 3)
+        [mm].
+        """
+        positions = deform(self.binding, control_points)
+        return positions[self.moving.vertices], self.moving.normals(positions)
+
+
+class _Stager:
+    """Makes stages in order, taking each from the previous build if its inputs are the same."""
+
+    def __init__(self, previous: Stages | None, tell: Tell) -> None:
+        self._old = previous.memo if previous else {}
+        self._old_seconds = previous.seconds if previous else {}
+        self._tell = tell
+        self.memo: dict[str, tuple[tuple[Any, ...], Any]] = {}
+        self.seconds: dict[str, float] = {}
+
+    def __call__(self, name: str, make: Callable[..., T], *inputs: Any) -> T:
+        known = self._old.get(name)
+        if known is not None and known[0] == inputs:
+            self.memo[name], self.seconds[name] = known, self._old_seconds[name]
+            return known[1]  # type: ignore[no-any-return]
+        self._tell(name)
+        start = time.perf_counter()
+        result = make(*inputs)
+        self.seconds[name] = time.perf_counter() - start
+        self.memo[name] = (inputs, result)
+        return result
+
+
+def build(design: Design, previous: Stages | None = None, tell: Tell = lambda _: None) -> Stages:
+    """Build all stages of ``design``; ``tell`` hears the name of each stage that is made anew.
+
+    Raises the UserError of the stage that fails; ``previous`` then still stands.
+    """
+    stage = _Stager(previous, tell)
+    scan, body = stage("read scan", read_body, design.scan)
+    landmarks = stage("find landmarks", find_landmarks, body)
+    template = stage("read template", read_template, design.template)
+    control = stage("fit control mesh", fit_control_mesh, template, body, landmarks, design.line_height)
+    patch = stage("find patch", patch_fade, body.mesh, control)
+    binding = stage("bind body", bind, body.mesh, control.mesh, patch.fade, design.weights)
+    moving = stage("prepare normals", moving_faces, body.mesh, binding.moving)
+    watch = stage("watch body", BodyWatch, binding, control, landmarks)
+    backs = stage("measure bands", _back_lengths, body, control)
+    model = stage("build model", _model, control, backs, design.worn(), design.line_stiffness)
+    limit = stage("probe gain", gain_limit, model)
+    return Stages(
+        design,
+        scan,
+        body,
+        landmarks,
+        control,
+        binding,
+        moving,
+        watch,
+        model,
+        limit,
+        stage.seconds,
+        stage.memo,
+    )
+
+
+def targets_of(design: Design, stages: Stages) -> Targets:
+    """Return what the design asks of the solver."""
+    return Targets(tuple(design.ratio(line.name) for line in stages.model.lines), design.volume, stages.gain)
+
+
+def read_body(source: ScanSource) -> tuple[ScanFile, Body]:
+    """Return a scan as it came and the body read from it. Raises ScanError or ProjectError."""
+    scan = read_scan_file(source)
+    with scan_on_disk(source, scan) as path:
+        return scan, read_scan(path, unit=source.unit, up=source.up, front=source.front)
+
+
+def _back_lengths(body: Body, control: ControlMesh) -> dict[str, float]:
+    return {name: back_length(body.mesh, control, name) for name in control.paths}
+
+
+def _model(
+    control: ControlMesh, backs: Mapping[str, float], worn: frozenset[str], stiffness: float
+) -> ConstrainedModel:
+    unknown = sorted(worn - set(control.paths))
+    if unknown:
+        raise LineError(f"There is no line '{unknown[0]}'.", f"The lines are: {', '.join(control.paths)}.")
+    return constrained_model(control, worn=worn, back_lengths=backs, line_stiffness=stiffness)
