@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from core.errors import ScanError
 from core.mesh import Mesh
+from core.repair import repair
 from core.scan_file import read_triangles
 from core.upright import Pose, find_pose
 
@@ -30,6 +32,9 @@ def read_scan(
     """
     path = Path(path)
     vertices, faces = read_triangles(path)
+    vertices, faces, repairs = repair(vertices, faces)
+    if len(faces) == 0:
+        raise ScanError(f"{path.name} has no sound triangles.", "Export the scan again.")
     pose = find_pose(vertices, faces, unit=unit, up=up, front=front)
     turn = pose.file_to_mm[:3, :3]
-    return Body(Mesh(vertices @ turn.T, faces), pose, (), path.stem)
+    return Body(Mesh(vertices @ turn.T, faces), pose, repairs, path.stem)
