@@ -156,6 +156,13 @@ QPushButton[kind="primary"]:disabled {{ background: {t.pressed}; border-color: {
 QPushButton[kind="quiet"] {{ background: transparent; border-color: transparent; color: {t.text_quiet}; }}
 QPushButton[kind="quiet"]:hover {{ background: {t.pressed}; color: {t.text}; }}
 QPushButton[kind="quiet"]:focus {{ border-color: {t.accent}; }}
+QFrame[kind="segment"] {{ background: {t.app if t.dark else t.pressed}; border-radius: 7px; }}
+QPushButton[kind="segment"] {{ border: 2px solid transparent; border-radius: 6px; padding: 0; min-height: 0;
+    background: transparent; color: {t.text_quiet}; }}
+QPushButton[kind="segment"]:hover {{ color: {t.text}; }}
+QPushButton[kind="segment"]:checked {{ background: {t.pressed if t.dark else t.raised}; color: {t.text}; }}
+QPushButton[kind="segment"]:focus {{ border-color: {t.accent}; }}
+QFrame[kind="card"] {{ background: {t.hover}; border-radius: 9px; }}
 QToolButton {{ border: 2px solid transparent; border-radius: 6px; background: transparent; padding: 2px; }}
 QToolButton:hover {{ background: {t.pressed}; }}
 QToolButton:checked {{ background: {t.selected}; }}
@@ -163,6 +170,10 @@ QToolButton:focus {{ border-color: {t.accent}; }}
 QLineEdit {{ border: 1px solid {t.outline}; border-radius: 5px; background: {t.raised}; padding: 1px 6px;
     color: {t.text}; selection-background-color: {t.accent}; selection-color: {t.on_accent}; }}
 QLineEdit:focus {{ border: 2px solid {t.accent}; padding: 0 5px; }}
+QLineEdit[kind="number"] {{ border-color: transparent; background: transparent; padding: 0 4px; }}
+QLineEdit[kind="number"]:hover {{ border-color: {t.outline}; background: {t.raised}; }}
+QLineEdit[kind="number"]:focus {{ border: 2px solid {t.accent}; background: {t.raised}; padding: 0 3px; }}
+QLineEdit[wrong="true"]:focus {{ border-color: {t.bad}; }}
 QScrollArea, QScrollArea > QWidget > QWidget[scrolled="true"] {{ background: transparent; border: none; }}
 QScrollBar:vertical {{ width: 10px; background: transparent; margin: 2px; }}
 QScrollBar::handle:vertical {{ background: {t.outline}; border-radius: 3px; min-height: 28px; }}

@@ -31,3 +31,11 @@ def read_words(code: str) -> dict[str, str]:
 def tr(english: str) -> str:
     """Return ``english`` in the language of the window, or as it is where no translation is known."""
     return _table.get(english, english)
+
+
+def number(value: float, digits: int = 1, signed: bool = False) -> str:
+    """Return ``value`` with thousands commas and a real minus sign; ``signed`` writes the plus too."""
+    text = f"{value:{'+' if signed else ''},.{digits}f}"
+    if not text.strip("+-0.,"):
+        text = text.lstrip("+-")
+    return text.replace("-", "\N{MINUS SIGN}")

@@ -1,0 +1,253 @@
+"""One constraining line in the list: name, set length, slider; opened also what was reached."""
+
+# ruff: noqa: D102, N802 - Qt names its events and says what they are
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QEnterEvent, QMouseEvent, QPainter, QPaintEvent, QPen
+from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWidget
+
+from app.panels.length_slider import LengthSlider
+from app.panels.number_field import NumberField
+from app.parts import ToolButton, hairline, sentence
+from app.theme import label, set_tag, tokens_of
+from app.words import number, tr
+
+_GAP_SEEN, _GAP_LARGE = 0.005, 0.02  # shares of the set length above which a gap is amber, red
+
+
+@dataclass(frozen=True)
+class LineView:
+    """What a row shows of a line; lengths [mm], ``ratio`` = set over rest length [1].
+
+    ``rest_mm`` is the rest length of the free front part, ``whole_mm`` that of the whole closed band.
+    ``reached_mm`` is None before a run. A line that is not ``constrained`` is only measured.
+    """
+
+    name: str
+    title: str
+    color: str
+    ratio: float
+    rest_mm: float
+    reached_mm: float | None
+    constrained: bool
+    visible: bool
+    whole_mm: float
+
+
+class LineChip(QWidget):
+    """The colour of a line, as an outline only while the line is hidden."""
+
+    def __init__(self, color: str) -> None:
+        super().__init__()
+        self._color, self._filled = color, True
+        self.setFixedSize(QSize(14, 14))
+
+    def set_filled(self, filled: bool) -> None:
+        """Fill the chip, or leave the outline."""
+        self._filled = filled
+        self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        rim = QColor("#FFFFFF")
+        rim.setAlpha(97 if tokens_of(self).dark else 0)
+        painter.setPen(QPen(rim if self._filled else QColor(self._color), 1 if self._filled else 1.5))
+        painter.setBrush(QColor(self._color) if self._filled else Qt.BrushStyle.NoBrush)
+        painter.drawRoundedRect(QRectF(0.75, 2.75, 12.5, 8.5), 3, 3)
+
+
+class LineRow(QFrame):
+    """The row of one line; lengths in its signals are shares of the rest length [1]."""
+
+    previewed = Signal(float)
+    committed = Signal(float)
+    cancelled = Signal()
+    pressed = Signal()
+    visibility_changed = Signal(bool)
+
+    def __init__(self, view: LineView) -> None:
+        super().__init__()
+        self.view = view
+        self._open = self._hovered = False
+        self.slider = LengthSlider(view.color)
+        self.percent, self.millimetres = NumberField("%"), NumberField("mm")
+        self._build()
+        self._connect()
+        self.show_view(view)
+        self.set_open(False)
+
+    def show_view(self, view: LineView) -> None:
+        """Show new values of the same line, without disturbing a drag or a number being typed."""
+        self.view = view
+        self._name.setText(view.title)
+        set_tag(self._name, "tone", "" if view.visible else "faint")
+        self._chip.set_filled(view.visible)
+        self._show_lengths(view.ratio)
+        self.slider.set_ratio(view.ratio)
+        self.slider.set_reached(None if view.reached_mm is None else view.reached_mm / view.rest_mm)
+        for each in (self.slider, self.percent, self.millimetres):
+            each.setVisible(view.constrained)
+        self._measure.setVisible(not view.constrained)
+        self._measure.setText(f"{number(view.reached_mm or view.rest_mm)} mm")
+        self._note.setVisible(not view.constrained)
+        self._details.setVisible(self._open and view.constrained)
+        self._eye.show_icon("eye" if view.visible else "eye-slash")
+        self._show_eye()
+
+    def set_open(self, open_: bool) -> None:
+        """Open or close the row."""
+        self._open = open_
+        self._details.setVisible(open_ and self.view.constrained)
+        self._show_eye()
+        self.update()
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        self.pressed.emit()
+        (self.slider if self.view.constrained else self).setFocus(Qt.FocusReason.MouseFocusReason)
+
+    def enterEvent(self, event: QEnterEvent) -> None:
+        self._hover(True)
+
+    def leaveEvent(self, event: QEvent) -> None:
+        self._hover(False)
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        tokens = tokens_of(self)
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        card = QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
+        if self._open:
+            painter.setPen(QColor(tokens.outline))
+            painter.setBrush(QColor(tokens.raised))
+            painter.drawRoundedRect(card, 9, 9)
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(QColor(self.view.color))
+            painter.drawRoundedRect(QRectF(0, 12, 3, self.height() - 24), 1.5, 1.5)
+        elif self._hovered:
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(QColor(tokens.hover))
+            painter.drawRoundedRect(card, 9, 9)
+
+    def _build(self) -> None:
+        column = QVBoxLayout(self)
+        column.setContentsMargins(12, 8, 8, 6)
+        column.setSpacing(2)
+        head = QHBoxLayout()
+        head.setSpacing(8)
+        self._chip = LineChip(self.view.color)
+        self._name = label("", "name")
+        self._eye = ToolButton("eye", tr("Show or hide this line (H)"), size=16, room=24)
+        self._measure = label("", "name")
+        self._measure.setContentsMargins(0, 3, 6, 3)
+        head.addWidget(self._chip)
+        head.addWidget(self._name)
+        head.addWidget(self._eye)
+        head.addStretch(1)
+        head.addWidget(self.percent)
+        head.addWidget(self.millimetres)
+        head.addWidget(self._measure)
+        self._note = sentence(tr("On the rib cage: measured, it does not move."), "caption")
+        self._note.setContentsMargins(22, 0, 0, 4)
+        self.slider.setAccessibleName(tr("Length of {line}").format(line=self.view.title))
+        self.slider.setToolTip(
+            tr("Length of the front part, 80 to 112 % of its rest.\n← → 0.1 %, Shift 1 %, Alt 0.01 %")
+        )
+        self._details = _Details()
+        column.addLayout(head)
+        column.addWidget(self.slider)
+        column.addWidget(self._note)
+        column.addWidget(self._details)
+
+    def _connect(self) -> None:
+        self.slider.previewed.connect(self._show_lengths)
+        self.slider.previewed.connect(self.previewed)
+        self.slider.sliderPressed.connect(self.pressed)
+        self.slider.committed.connect(self._take)
+        self.slider.cancelled.connect(self._put_back)
+        for field in (self.percent, self.millimetres):
+            field.entered.connect(self._take)
+            field.opened.connect(self.pressed)
+        self._eye.clicked.connect(lambda: self.visibility_changed.emit(not self.view.visible))
+
+    def _take(self, ratio: float) -> None:
+        self.slider.set_ratio(ratio)
+        self._show_lengths(ratio)
+        self.committed.emit(ratio)
+
+    def _put_back(self) -> None:
+        self._show_lengths(self.slider.ratio())
+        self.cancelled.emit()
+
+    def _show_lengths(self, ratio: float) -> None:
+        """Write a set length, which during a drag runs ahead of the view."""
+        for field in (self.percent, self.millimetres):
+            field.show_length(ratio, self.view.rest_mm, self.view.whole_mm)
+        self._details.show_lengths(self.view, ratio)
+
+    def _hover(self, hovered: bool) -> None:
+        self._hovered = hovered
+        self._show_eye()
+        self.update()
+
+    def _show_eye(self) -> None:
+        self._eye.setVisible(self._hovered or self._open or not self.view.visible)
+
+
+class _Details(QWidget):
+    """Set, reached and gap of an open row, and what the length is a part of."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        grid = QGridLayout(self)
+        grid.setContentsMargins(0, 4, 4, 8)
+        grid.setHorizontalSpacing(8)
+        grid.setVerticalSpacing(1)
+        self._values: list[QLabel] = []
+        for place, title in enumerate((tr("Set"), tr("Reached"), tr("Gap"))):
+            grid.addWidget(label(title, "caption"), 0, place)
+            value = label("", "heading")
+            value.setTextFormat(Qt.TextFormat.RichText)
+            grid.addWidget(value, 1, place)
+            self._values.append(value)
+            grid.setColumnStretch(place, 1)
+        grid.addWidget(hairline(), 2, 0, 1, 3)
+        grid.setRowMinimumHeight(2, 17)
+        self._part = sentence("", "caption")
+        self._whole = sentence("", "caption")
+        grid.addWidget(self._part, 3, 0, 1, 3)
+        grid.addWidget(self._whole, 4, 0, 1, 3)
+
+    def show_lengths(self, view: LineView, ratio: float) -> None:
+        """Show a set length, as a share of the rest length, and what ``view`` reached."""
+        set_mm = ratio * view.rest_mm
+        self._values[0].setText(_figure(number(set_mm), "mm"))
+        whole_mm = view.whole_mm - view.rest_mm + set_mm
+        self._part.setText(
+            tr("{percent} % of the front part, side to side").format(percent=number(ratio * 100))
+        )
+        self._whole.setText(
+            tr("Whole band: {set} of {rest} mm ({percent} %)").format(
+                set=number(whole_mm),
+                rest=number(view.whole_mm),
+                percent=number(whole_mm / view.whole_mm * 100),
+            )
+        )
+        if view.reached_mm is None:
+            self._values[1].setText("–")
+            self._values[2].setText("–")
+            set_tag(self._values[2], "tone", "")
+            return
+        gap = view.reached_mm - set_mm
+        off = abs(gap) / set_mm
+        self._values[1].setText(_figure(number(view.reached_mm), "mm"))
+        self._values[2].setText(_figure(number(gap, signed=True), f"mm&nbsp; {number(off * 100)} %"))
+        set_tag(self._values[2], "tone", "bad" if off > _GAP_LARGE else "warn" if off > _GAP_SEEN else "")
+
+
+def _figure(value: str, unit: str) -> str:
+    """Return a number with its unit behind it in small type, as rich text."""
+    return f'{value} <span style="font-size:11px; font-weight:400">{unit}</span>'

@@ -1,0 +1,127 @@
+"""The steps from scan to result, down the left side of the window."""
+
+# ruff: noqa: D102, N802 - Qt names its events and says what they are
+from __future__ import annotations
+
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QAction, QColor, QKeySequence, QPainter, QPaintEvent, QPen
+from PySide6.QtWidgets import QAbstractButton, QButtonGroup, QVBoxLayout, QWidget
+
+from app.icons import paint_icon
+from app.parts import ToolButton
+from app.theme import font, tokens_of
+from app.words import tr
+
+STEP_ICONS = {"scan": "scan", "landmarks": "map-pin", "lines": "lines", "result": "result"}
+"""The steps in order, with their drawings."""
+
+STATES = ("missing", "available", "done", "look")
+"""A step has nothing to show yet, can be entered, is done, or wants to be looked at."""
+
+
+class Rail(QWidget):
+    """The four steps; none is ever locked, a missing one says what it waits for."""
+
+    step_chosen = Signal(str)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setFixedWidth(77)
+        self._column = QVBoxLayout(self)
+        self._column.setContentsMargins(8, 8, 9, 8)
+        self._column.setSpacing(2)
+        group = QButtonGroup(self)
+        titles = (tr("Scan"), tr("Landmarks"), tr("Lines"), tr("Result"))
+        self.items: dict[str, RailItem] = {}
+        for number, (step, title) in enumerate(zip(STEP_ICONS, titles, strict=True), start=1):
+            item = RailItem(step, title, QKeySequence(f"Ctrl+{number}"))
+            item.clicked.connect(lambda _=False, chosen=step: self.step_chosen.emit(chosen))
+            group.addButton(item)
+            self._column.addWidget(item)
+            self.items[step] = item
+        self._column.addStretch(1)
+
+    def set_current(self, step: str) -> None:
+        """Show which step the window is in; nothing is emitted."""
+        self.items[step].setChecked(True)
+
+    def set_state(self, step: str, state: str, count: int = 0) -> None:
+        """Show how a step stands, one of ``STATES``; ``count`` is how many things want a look."""
+        self.items[step].set_state(state, count)
+
+    def add_tool(self, drawing: str, action: QAction) -> None:
+        """Put an action at the foot, such as help or preferences."""
+        tool = ToolButton(drawing, action.toolTip(), size=20, room=38, action=action)
+        self._column.addWidget(tool, alignment=Qt.AlignmentFlag.AlignHCenter)
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        painter.fillRect(self.width() - 1, 0, 1, self.height(), QColor(tokens_of(self).line))
+
+
+class RailItem(QAbstractButton):
+    """One step: its drawing, its name, and a badge when it is done or wants a look."""
+
+    def __init__(self, step: str, title: str, key: QKeySequence) -> None:
+        super().__init__()
+        self._drawing, self._state, self._count = STEP_ICONS[step], "missing", 0
+        self.setText(title)
+        self.setCheckable(True)
+        self.setShortcut(key)
+        self.setToolTip(f"{title}  {key.toString(QKeySequence.SequenceFormat.NativeText)}")
+        self.setAccessibleName(title)
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
+        self.setFixedSize(self.sizeHint())
+
+    def sizeHint(self) -> QSize:
+        return QSize(60, 62)
+
+    def state(self) -> str:
+        """Return how the step stands, one of ``STATES``."""
+        return self._state
+
+    def set_state(self, state: str, count: int) -> None:
+        """Show how the step stands."""
+        if state not in STATES:
+            raise ValueError(state)
+        self._state, self._count = state, count
+        said = {"done": tr("done"), "look": tr("wants a look"), "missing": tr("not yet possible")}
+        self.setAccessibleDescription(said.get(state, ""))
+        self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        tokens = tokens_of(self)
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(QPen(QColor(tokens.accent), 2) if self.hasFocus() else Qt.PenStyle.NoPen)
+        if self.isChecked() or self.underMouse() or self.hasFocus():
+            painter.setBrush(QColor(tokens.pressed if self.isChecked() else tokens.hover))
+            painter.drawRoundedRect(QRectF(self.rect()).adjusted(1, 1, -1, -1), 8, 8)
+        quiet = self._state == "missing" and not self.isChecked()
+        ink = tokens.text if self.isChecked() else tokens.text_caption if quiet else tokens.text_quiet
+        paint_icon(painter, self._drawing, ink, QRectF(self.width() / 2 - 12, 10, 24, 24))
+        type_ = font("caption")
+        type_.setWeight(type_.Weight.DemiBold if self.isChecked() else type_.Weight.Normal)
+        painter.setFont(type_)
+        painter.setPen(QColor(ink))
+        painter.drawText(QRectF(-8, 37, self.width() + 16, 20), Qt.AlignmentFlag.AlignCenter, self.text())
+        self._paint_badge(painter, QPointF(self.width() / 2 + 12, 12))
+
+    def _paint_badge(self, painter: QPainter, at: QPointF) -> None:
+        if self._state not in ("done", "look"):
+            return
+        tokens = tokens_of(self)
+        painter.setPen(QPen(QColor(tokens.panel), 1.5))
+        painter.setBrush(QColor(tokens.ok if self._state == "done" else tokens.warn))
+        painter.drawEllipse(at, 7, 7)
+        if self._state == "done":
+            paint_icon(painter, "check", tokens.panel, QRectF(at.x() - 4.5, at.y() - 4.5, 9, 9))
+        elif self._count:
+            type_ = font("axis")
+            type_.setWeight(type_.Weight.Bold)
+            painter.setFont(type_)
+            painter.setPen(QColor(tokens.panel))
+            painter.drawText(
+                QRectF(at.x() - 8, at.y() - 8, 16, 16), Qt.AlignmentFlag.AlignCenter, str(self._count)
+            )

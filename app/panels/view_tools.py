@@ -1,0 +1,109 @@
+"""The tools that float on the 3D view: where to look from, what to show, before or after."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QAction
+from PySide6.QtWidgets import QWidget
+
+from app.parts import FloatingPanel, Segment, ToolButton, hairline
+from app.words import tr
+
+VIEWS = ("front", "left", "right", "back", "three-quarter", "top")
+LAYERS = ("perspective", "control-mesh", "landmarks", "bands")
+
+
+class ViewTools(FloatingPanel):
+    """Views, projection and layers; each tool is an action of ``actions``, for menus and shortcuts too.
+
+    ``view_chosen`` carries front, left, right, back, three-quarter or top; ``toggled`` a layer of ``LAYERS``
+    with its state; ``fit_asked`` and ``picture_asked`` nothing.
+    """
+
+    view_chosen = Signal(str)
+    fit_asked = Signal()
+    toggled = Signal(str, bool)
+    picture_asked = Signal()
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.actions_by_name: dict[str, QAction] = {}
+        titles = (
+            tr("Front view"),
+            tr("Left view"),
+            tr("Right view"),
+            tr("Back view"),
+            tr("Three-quarter view"),
+            tr("View from above"),
+        )
+        for key, (name, title) in enumerate(zip(VIEWS, titles, strict=True), start=1):
+            self._add(name, f"view-{name}", title, str(key), size=24, checkable=True)
+            self.actions_by_name[name].triggered.connect(lambda _=False, n=name: self._choose_view(n))
+        self._rule()
+        self._add_layer("perspective", "perspective", tr("Perspective"), "O")
+        self._add("fit", "corners-out", tr("Fit all"), "Home")
+        self.actions_by_name["fit"].triggered.connect(self.fit_asked)
+        self._rule()
+        self._add_layer("control-mesh", "control-mesh", tr("Control mesh"), "K")
+        self._add_layer("landmarks", "map-pin", tr("Landmarks"), "M")
+        self._add_layer("bands", "bands", tr("Bands"), "B")
+        self._add("picture", "camera", tr("Save a picture"), "Ctrl+Shift+P")
+        self.actions_by_name["picture"].triggered.connect(self.picture_asked)
+
+    def set_view(self, name: str | None) -> None:
+        """Show which view the camera is in, or that it is in none; nothing is emitted."""
+        for each in VIEWS:
+            self.actions_by_name[each].setChecked(each == name)
+
+    def set_shown(self, layer: str, shown: bool) -> None:
+        """Show whether a layer is on; nothing is emitted."""
+        action = self.actions_by_name[layer]
+        action.blockSignals(True)
+        action.setChecked(shown)
+        action.blockSignals(False)
+
+    def _choose_view(self, name: str) -> None:
+        self.set_view(name)
+        self.view_chosen.emit(name)
+
+    def _add_layer(self, name: str, drawing: str, title: str, key: str) -> None:
+        self._add(name, drawing, title, key, checkable=True)
+        self.actions_by_name[name].triggered.connect(lambda on: self.toggled.emit(name, on))
+
+    def _add(
+        self, name: str, drawing: str, title: str, key: str, *, size: int = 20, checkable: bool = False
+    ) -> None:
+        action = QAction(title, self)
+        action.setShortcut(key)
+        action.setCheckable(checkable)
+        action.setToolTip(f"{title}  {key}")
+        self.actions_by_name[name] = action
+        tool = ToolButton(drawing, size=size, room=34, action=action)
+        tool.setAccessibleName(title)
+        self.row.addWidget(tool)
+
+    def _rule(self) -> None:
+        rule = hairline(vertical=True)
+        rule.setFixedHeight(20)
+        self.row.addSpacing(5)
+        self.row.addWidget(rule, alignment=Qt.AlignmentFlag.AlignVCenter)
+        self.row.addSpacing(5)
+
+
+class CompareTools(FloatingPanel):
+    """Before or after, in place; ``after_chosen`` carries whether the reshaped body is wanted."""
+
+    after_chosen = Signal(bool)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._segment = Segment((("before", tr("Before")), ("after", tr("After"))))
+        self._segment.chosen.connect(lambda name: self.after_chosen.emit(name == "after"))
+        for name in ("before", "after"):
+            self._segment.button(name).setToolTip(tr("Body at rest and reshaped  Space"))
+        self.row.addWidget(self._segment)
+        self.set_after(True)
+
+    def set_after(self, after: bool) -> None:
+        """Show which body is seen; nothing is emitted."""
+        self._segment.set_choice("after" if after else "before")
