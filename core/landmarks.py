@@ -14,18 +14,18 @@ from core.errors import LandmarkError
 from core.mesh import Floats, Mesh, Points, frozen
 from core.relief import Anchor, Nipple, Pole, breast_patch, find_anchor, find_nipples, find_poles
 from core.sections import arc_length, chains, cut, resample
-from core.trunk import survey
+from core.trunk import Survey, calmed, stable_level, survey, trunk_levels
 
 SIDES = ("left", "right")
 
-OFFSETS = (-6.0, -3.0, 0.0, 3.0, 6.0)
+OFFSETS = (-8.0, -4.0, 0.0, 4.0, 8.0)
 """The fold is read on profiles so far beside the bust point [mm]."""
 
 NIPPLE = "The nipple: the spot that stands out of the smooth breast around it."
 PROMINENT = "The most prominent point of the breast: no nipple stands out of it."
 MIRRORED = "The most prominent point, shifted towards where the nipple of the other breast lies."
 CREASE = "The sharpest crease below the breast, on the upright profile through the bust point."
-NO_CREASE = "The height where the body comes forward above: the profile shows no crease."
+NO_CREASE = "The most hollow place below the breast: the upright profile shows no crease."
 LOWEST = "The lowest point of the breast between the bust point and the fold."
 
 
@@ -63,18 +63,46 @@ def find_landmarks(body: Body) -> Landmarks:
 
     Raises LandmarkError if the body shows no bust. Source: ours.
     """
-    trunk = survey(body.mesh)
+    calm = calmed(body.mesh)
+    trunk = survey(calm)
     anchor = find_anchor(trunk)
     if anchor.kink < 8.0 or anchor.middle_kink > 0.5 * anchor.kink:
         raise _refusal("no fold lies under a left and a right breast")
     poles = find_poles(trunk, anchor)
-    found = _bust_points(body.mesh, poles)
+    found = _bust_points(calm, poles)
     for side, bust in zip(SIDES, found[:2], strict=True):
-        found += _fold_and_lowest(body.mesh, bust.position, anchor, side)
+        found += _fold_and_lowest(calm, bust.position, anchor, side)
     bust_level = 0.5 * (found[0].position[2] + found[1].position[2])
     underbust_level = min(mark.position[2] for mark in found[2:])
-    points = MappingProxyType({mark.name: mark for mark in found})
-    return Landmarks(points, float(bust_level), float(underbust_level))
+    landmarks = Landmarks(
+        MappingProxyType({mark.name: mark for mark in found}), float(bust_level), float(underbust_level)
+    )
+    _check(calm, trunk, poles, landmarks)
+    return landmarks
+
+
+def _check(mesh: Mesh, trunk: Survey, poles: tuple[Pole, Pole], landmarks: Landmarks) -> None:
+    """Raise LandmarkError where what was found cannot be a bust."""
+    left, right = (landmarks.position(f"bust_point_{side}") for side in SIDES)
+    under, bust = stable_level(mesh, landmarks.underbust_level), trunk_levels(mesh, landmarks.bust_level)[0]
+    across, middle = left - right, 0.5 * (left + right)
+    depth = float(np.ptp(under.points[:, 1])) if len(under.segments) else 0.0
+    creases = [landmarks.points[f"fold_{side}"].rule for side in SIDES]
+    for wrong, why in (
+        (under.tape == 0.0 or bust.tape == 0.0, "the trunk is missing at the bust"),
+        (under.longest_straight > 0.2 * under.tape, "the trunk is open, as if only a part of it was scanned"),
+        (not 550.0 < under.tape < 1400.0, f"the girth under it would be {under.tape:.0f} mm"),
+        (not 15.0 < bust.tape - under.tape < 420.0, "it would not be wider than the trunk under it"),
+        (not 1.0 < np.ptp(under.points[:, 0]) / max(depth, 1.0) < 2.3, "the trunk is not as deep as a body"),
+        (not 90.0 < across[0] < 380.0, f"its points would lie {across[0]:.0f} mm apart"),
+        (abs(across[2]) > 45.0, "its points would lie at very different heights"),
+        (abs(middle[0] - trunk.middle) > 30.0, "it would lie beside the middle of the body"),
+        (min(pole.prominence for pole in poles) < 4.0, "nothing stands out of the chest"),
+        (not 12.0 < middle[2] - landmarks.underbust_level < 190.0, "no fold lies at a likely depth under it"),
+        (creases == [NO_CREASE, NO_CREASE], "there is no crease under it"),
+    ):
+        if wrong:
+            raise _refusal(why)
 
 
 def _refusal(why: str) -> LandmarkError:
@@ -119,21 +147,28 @@ def _fold_and_lowest(mesh: Mesh, bust: Points, anchor: Anchor, side: str) -> lis
     allowed = (arc > 22) & (arc < count - 12) & (high < 60.0)
     if not allowed.any():
         raise _refusal(f"the surface below the {side} breast is missing")
-    value = np.where(allowed, mean - 0.00035 * np.maximum(high - 22.0, 0.0), -np.inf)
+    value = np.where(allowed, gaussian_filter1d(mean, 6.0) - 0.00035 * np.maximum(high - 22.0, 0.0), -np.inf)
     best = int(np.argmax(value))
-    close = allowed & (np.abs(arc - best) <= 6)
-    at = int(np.argmax(np.where(close, bends[len(curves) // 2] + mean, -np.inf)))
+    close = allowed & (np.abs(arc - best) <= 10)
+    at = int(np.argmax(np.where(close, gaussian_filter1d(mean, 3.0), -np.inf)))
     runner = float(np.max(value, where=np.abs(arc - best) > 18, initial=0.0))
     places = [
-        curve[:count][allowed][np.argmax(bend[allowed]), 2] for curve, bend in zip(curves, bends, strict=True)
+        curve[np.argmax(np.where(allowed, bend, -np.inf)), 2]
+        for curve, bend in zip(curves, bends, strict=True)
     ]
-    spread = float(np.median(np.abs(np.array(places) - np.median(places))))
+    slant = np.polyval(np.polyfit(OFFSETS, places, 1), OFFSETS)
+    spread = float(np.median(np.abs(places - slant)))
     gap = max(gap for _, gap in walks)
-    confidence = min(mean[best] / 0.035, 1.0) * (0.3 + 0.7 * np.clip((value[best] - runner) / 0.02, 0.0, 1.0))
+    confidence = min(mean[at] / 0.035, 1.0) * (0.3 + 0.7 * np.clip((value[best] - runner) / 0.02, 0.0, 1.0))
     confidence *= np.exp(-spread / 5.0 - max(gap - 3.0, 0.0) / 12.0)
     lowest = own[: at + 1][np.argmin(own[: at + 1, 2])]
     return [
-        Landmark(f"fold_{side}", own[at], float(np.clip(confidence, 0.0, 1.0)), CREASE),
+        Landmark(
+            f"fold_{side}",
+            own[at],
+            float(np.clip(confidence, 0.0, 1.0)),
+            CREASE if mean[at] > 0.006 else NO_CREASE,
+        ),
         Landmark(f"lowest_{side}", lowest, float(np.clip(confidence, 0.0, 1.0)), LOWEST),
     ]
 

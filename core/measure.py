@@ -9,12 +9,12 @@ from types import MappingProxyType
 from core.body import Body
 from core.landmarks import Landmarks
 from core.mesh import Mesh
-from core.trunk import Level, stable_level, trunk_levels
+from core.trunk import Level, calmed, stable_level, trunk_levels
 
 
 @dataclass(frozen=True)
 class Girth:
-    """A girth at height ``level_mm``: ``tape_mm`` bridges the hollows of the trunk, ``skin_mm`` follows them."""
+    """A girth at height ``level_mm``: ``tape_mm`` bridges the hollows, ``skin_mm`` follows them."""
 
     level_mm: float
     tape_mm: float
@@ -32,10 +32,11 @@ def girths(body: Body, landmarks: Landmarks) -> Mapping[str, Girth]:
     That is the first height from the under-bust level down which no longer nicks the breasts: there the girth
     hardly changes with the height. Source: ours.
     """
+    calm = calmed(body.mesh)
     return MappingProxyType(
         {
-            "bust": girth_at(body.mesh, landmarks.bust_level),
-            "underbust": _girth(stable_level(body.mesh, landmarks.underbust_level)),
+            "bust": girth_at(calm, landmarks.bust_level),
+            "underbust": _girth(stable_level(calm, landmarks.underbust_level)),
         }
     )
 

@@ -236,8 +236,9 @@ class Nipple:
 
     @property
     def sure(self) -> bool:
-        """Whether the spot stands out enough to be called a nipple."""
-        return self.relief > 0.9 and self.clarity > 2.0 and self.ratio > (1.35 if self.offset > 10.0 else 1.0)
+        """Whether the spot stands out enough for a nipple: the farther from the pole, the more it must."""
+        far = max(self.offset - 4.0, 0.0)
+        return self.relief > 0.9 + 0.06 * far and self.ratio > (1.35 if far > 6.0 else 1.0)
 
 
 def find_nipples(left: Patch, right: Patch) -> tuple[Nipple | None, Nipple | None]:

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.ndimage import median_filter
 from scipy.sparse.csgraph import connected_components
+from scipy.spatial import ConvexHull
 
 from core.errors import LandmarkError
 from core.mesh import Flags, Floats, Indices, Mesh, Points
@@ -41,9 +42,43 @@ class Level:
         return hull_perimeter(self.points)
 
     @property
+    def longest_straight(self) -> float:
+        """Length of the longest hollow that the tape bridges, or of the longest flat [mm]."""
+        if self.tape == 0.0:
+            return 0.0
+        hull = ConvexHull(self.points[:, :2])
+        ring = hull.points[hull.vertices]
+        return float(np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1).max())
+
+    @property
     def skin(self) -> float:
         """Length of the outline itself [mm]."""
         return float(np.linalg.norm(self.segments[:, 1] - self.segments[:, 0], axis=1).sum())
+
+
+def calmed(mesh: Mesh) -> Mesh:
+    """Return ``mesh`` without the noise of the scanner; a mesh without noise is returned as it is.
+
+    The noise is what a fourth-order smooth surface cannot explain. It is smoothed without shrinking.
+    Source: ours; smoothing after Taubin 1995.
+    """
+    corner, count = mesh.faces, len(mesh.vertices)
+    pairs = (corner.ravel(), corner[:, [1, 2, 0]].ravel())
+    around = sparse.csr_array((np.ones(corner.size), pairs), shape=(count, count))
+    around = around + around.T
+    mean = sparse.diags_array(1.0 / np.maximum(around.sum(axis=0), 1.0)) @ around
+    bend = mean @ mesh.vertices - mesh.vertices
+    height = np.einsum("ij,ij->i", mean @ bend - bend, mesh.vertex_normals)
+    noise = (
+        1.48 * float(np.median(np.abs(height))) / 1.36
+    )  # independent noise of 1 mm gives heights of 1.36 mm
+    if noise < 0.35:
+        return mesh
+    vertices = mesh.vertices
+    for _ in range(int(np.clip(6.0 * noise, 2.0, 20.0))):
+        for share in (0.5, -0.53):
+            vertices = vertices + share * (mean @ vertices - vertices)
+    return mesh.moved(vertices)
 
 
 def trunk_levels(mesh: Mesh, heights: npt.ArrayLike) -> list[Level]:
