@@ -56,7 +56,7 @@ def patch_fade(body: Mesh, control: ControlMesh, fade: float = 25.0) -> Patch:
     try:
         return Patch(frozen(_flooded(body, control, fade)), "flood")
     except _FenceError as gap:
-        return Patch(frozen(_by_distance(body, control)), "distance", str(gap))
+        return Patch(frozen(_by_distance(body, control, fade)), "distance", str(gap))
 
 
 def smooth_step(t: Floats) -> Floats:
@@ -139,24 +139,32 @@ def _touches_rest(body: Mesh, around: Indices, region: Flags) -> bool:
     return bool((beyond[body.faces].any(axis=1) & flooded[body.faces].any(axis=1)).any())
 
 
-def _by_distance(body: Mesh, control: ControlMesh) -> Floats:
-    """Fade from the nearest place on the control mesh.
+def _by_distance(body: Mesh, control: ControlMesh, fade: float) -> Floats:
+    """Fade with the distance of the nearest place on the control mesh to its border.
 
-    It is 0 at the border, 1 from the next row of control points on, and less where the body is far away or
-    faces another way, so that an arm beside the patch stays still.
+    It is less where the body is far away, and nothing where it faces the other way: an arm before the patch
+    stays still.
     """
-    around = _near_patch(body.vertices, control.mesh)
-    pairs = pairs_around(body.vertices[around], control.mesh)
-    distance2, place = nearest_place(pairs, control.mesh)
+    mesh = control.mesh
+    around = _near_patch(body.vertices, mesh)
+    pairs = pairs_around(body.vertices[around], mesh)
+    distance2, place = nearest_place(pairs, mesh)
     order = np.lexsort((distance2, pairs.point))
     nearest = order[np.searchsorted(pairs.point, np.arange(len(around)))]
     triangle = pairs.triangle[nearest]
-    inner = np.ones(len(control.mesh.vertices))
-    inner[control.border] = 0.0
-    inwards = np.einsum("ij,ij->i", place[nearest], inner[control.mesh.faces[triangle]])
-    distance = np.sqrt(distance2[nearest])
-    facing = np.einsum("ij,ij->i", body.vertex_normals[around], control.mesh.face_normals[triangle])
+    spots = np.einsum("ij,ijk->ik", place[nearest], mesh.vertices[mesh.faces[triangle]])
+    inwards = smooth_step(_to_loop(spots, mesh.vertices[control.border]) / fade)
+    near = smooth_step((FAR - np.sqrt(distance2[nearest])) / (FAR - CLOSE))
+    facing = np.einsum("ij,ij->i", body.vertex_normals[around], mesh.face_normals[triangle])
     result = np.zeros(len(body.vertices))
-    near = smooth_step((FAR - distance) / (FAR - CLOSE))
-    result[around] = smooth_step(inwards) * near * smooth_step(2.0 * facing)
+    result[around] = inwards * near * smooth_step(1.0 + 2.0 * facing)
     return result
+
+
+def _to_loop(points: Points, corners: Points) -> Floats:
+    """Return the distances of points, shape (k, 3), to the closed polyline through ``corners``, (b, 3) [mm]."""
+    side = np.roll(corners, -1, axis=0) - corners
+    offset = points[:, None] - corners
+    along = np.einsum("kbi,bi->kb", offset, side) / np.maximum(np.einsum("bi,bi->b", side, side), 1e-12)
+    gap = offset - np.clip(along, 0.0, 1.0)[:, :, None] * side
+    return np.asarray(np.sqrt(np.einsum("kbi,kbi->kb", gap, gap).min(axis=1)))
