@@ -44,7 +44,7 @@ def application(language: str | None = None, dark: bool | None = None) -> QAppli
     settings = QSettings()
     use_language(language or str(settings.value("language", "en")))
     load_fonts()
-    apply_theme(existing, _chosen_dark(str(settings.value("theme", "system"))) if dark is None else dark)
+    apply_theme(existing, chosen_dark(str(settings.value("theme", "system"))) if dark is None else dark)
     return existing
 
 
@@ -81,7 +81,8 @@ def _log_fault(kind: type[BaseException], fault: BaseException, trace: Traceback
     sys.__excepthook__(kind, fault, trace)
 
 
-def _chosen_dark(theme: str) -> bool:
+def chosen_dark(theme: str) -> bool:
+    """Tell whether a chosen theme (system, light, dark) means dark colours."""
     if theme == "system":
         return QGuiApplication.styleHints().colorScheme() == Qt.ColorScheme.Dark
     return theme == "dark"

@@ -49,6 +49,7 @@ class Session(QObject):
         self._preview: Design | None = None
         self._opening: tuple[Design, Path | None, int] | None = None
         self._oldest = 0
+        self._revision = 0
         self._solver = LiveSolver(self._hear_stage)
         self._clock = QTimer(self, interval=FRAME_INTERVAL)
         self._clock.timeout.connect(self._look)
@@ -113,6 +114,14 @@ class Session(QObject):
             text = tr("Control mesh {count}").format(count=template)
             self._commit(replace(self.design, template=template), text)
 
+    def choose_unit(self, unit: str) -> None:
+        """Read the scan again in another unit."""
+        if self.design is not None:
+            self._commit(
+                replace(self.design, scan=replace(self.design.scan, unit=unit)),
+                tr("Scan in {unit}").format(unit=unit),
+            )
+
     def save(self, path: str, picture: bytes | None) -> bool:
         """Save the project with its scan; returns whether it worked."""
         if self.design is None or self.frame is None:
@@ -149,7 +158,13 @@ class Session(QObject):
         """Make ``design`` the present one, as the undo stack asks."""
         self._preview = None
         self.design = design
-        self._solver.submit(design, fresh=True)
+        self._revision = self._solver.submit(design, fresh=True)
+        self.design_changed.emit(design)
+
+    def settle_preview(self, design: Design) -> None:
+        """Commit what the preview already shows: its run goes on without a break."""
+        self.design = design
+        self._revision = self._solver.submit(design)
         self.design_changed.emit(design)
 
     def _begin(self, design: Design, path: Path | None) -> None:
@@ -162,12 +177,6 @@ class Session(QObject):
             self.undo_stack.push(_Edit(self, self.design, after, text, shown=previewing))
         elif previewing and self.design is not None:
             self._solver.submit(self.design)
-
-    def settle_preview(self, design: Design) -> None:
-        """Commit what the preview already shows: its run goes on without a break."""
-        self.design = design
-        self._solver.submit(design)
-        self.design_changed.emit(design)
 
     def _hear_stage(self, stage: str) -> None:
         # Called in the solver's thread: only the attribute is set, the clock tells the window.
@@ -203,6 +212,12 @@ class Session(QObject):
             self._opening = None
             if self.design is not None:
                 self._solver.submit(self.design)
+        elif failure.revision == self._revision and self.undo_stack.canUndo():
+            # The edit cannot be carried out: it leaves the history as if it had not been made.
+            edit = self.undo_stack.command(self.undo_stack.index() - 1)
+            if isinstance(edit, _Edit):
+                edit.setObsolete(True)
+                self.undo_stack.undo()
         self.failed.emit(failure.error)
 
 

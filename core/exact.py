@@ -91,7 +91,7 @@ def solve_exact(
 def newton(
     model: ConstrainedModel, ratios: tuple[float, ...], start: State | None = None, limit: int = 60
 ) -> Iterator[Balance]:
-    """Yield each Newton iterate, the start included, until the balance is exact or ``limit`` steps are made."""
+    """Yield each Newton iterate, the start included, until exact or ``limit`` steps are made."""
     energy = Energy(model, ratios)
     wanted = model.volume.side_volumes(model.tensegric.rest)
     moved = (at_rest(model) if start is None else start).moved
@@ -119,7 +119,7 @@ def newton(
 def _factor(
     model: ConstrainedModel, energy: Energy, moved: Points, pressures: Floats
 ) -> Callable[[Floats], Floats]:
-    """Return a solver of the first positive definite Hessian: the full one, then without what may spoil it."""
+    """Return a solver of the first positive definite Hessian: the full one, or without what spoils it."""
     shift = 1e-8 * model.tensegric.mean_stiffness * np.eye(3 * len(moved))
     bend = model.volume.hessian(model.tensegric.expand(moved), pressures)
     for clip, curved in ((False, True), (True, True), (True, False)):
@@ -175,7 +175,7 @@ def _retract(model: ConstrainedModel, moved: Points, push: Floats, wanted: Float
 
 
 def _small_solve(matrix: Floats, right: Floats) -> Floats:
-    """Solve the 2 x 2 system of the two breasts; a side on which nothing moves has a zero row and gets zero."""
+    """Solve the 2 x 2 system of the two breasts; a side on which nothing moves gets zero."""
     still = np.diag(matrix) == 0.0
     return np.asarray(
         np.linalg.solve(matrix + np.diag(still.astype(np.float64)), np.where(still, 0.0, right))

@@ -34,7 +34,8 @@ class Frame:
 
     ``points`` and ``normals`` (r, 3) belong to the body's vertices ``stages.moving.vertices``;
     ``control_points`` (n, 3) [mm]; ``lengths`` [mm] of the lines' front parts; ``tracks`` the records of each
-    run so far; ``exact_marks`` what the exact answer ends at; ``at_work`` whether turns are still being made.
+    run so far; ``exact_marks`` what the exact answer ends at; ``at_work`` whether turns are still being made;
+    ``seconds`` spent on them since the design last changed.
     """
 
     revision: int
@@ -49,6 +50,7 @@ class Frame:
     error_ml: float
     marks: Marks
     at_work: bool
+    seconds: float
 
 
 @dataclass(frozen=True)
@@ -82,6 +84,7 @@ class LiveSolver:
         self._stopping = False
         self._stages: Stages | None = None
         self._comparison: Comparison | None = None
+        self._seconds = 0.0
         self._thread = threading.Thread(target=self._work, name="busk-solver", daemon=True)
         self._thread.start()
 
@@ -129,7 +132,7 @@ class LiveSolver:
                         self._take(request)
                     self._advance()
                     if self._stages is not None and self._comparison is not None:
-                        self._publish(make_frame(revision, self._stages, self._comparison))
+                        self._publish(make_frame(revision, self._stages, self._comparison, self._seconds))
                 except UserError as error:
                     self._fail(Failure(revision, error))
                 except Exception as error:
@@ -149,19 +152,22 @@ class LiveSolver:
             self._tell("")
         old, self._stages = self._stages, stages
         targets = targets_of(request.design, stages)
+        start = time.perf_counter()
         same_body = old is not None and old.control is stages.control and old.binding is stages.binding
         if self._comparison is None or not same_body:
             self._comparison = Comparison(stages.model, targets, stages.watch)
         else:
             self._comparison.retarget(stages.model, targets, request.fresh)
+        self._seconds = time.perf_counter() - start
 
     def _advance(self) -> None:
         comparison = self._comparison
         if comparison is None:
             return
-        until = time.perf_counter() + _SLICE
-        while not comparison.resting and time.perf_counter() < until:
+        start = time.perf_counter()
+        while not comparison.resting and time.perf_counter() < start + _SLICE:
             comparison.advance()
+        self._seconds += time.perf_counter() - start
 
     def _publish(self, frame: Frame) -> None:
         with self._wake:
@@ -172,7 +178,7 @@ class LiveSolver:
             self._failure = failure
 
 
-def make_frame(revision: int, stages: Stages, comparison: Comparison) -> Frame:
+def make_frame(revision: int, stages: Stages, comparison: Comparison, seconds: float = 0.0) -> Frame:
     """Shape the body after the comparison's shown state and read everything off it."""
     control_points = stages.model.tensegric.expand(comparison.shown.moved)
     points, normals = stages.shape(control_points)
@@ -191,4 +197,5 @@ def make_frame(revision: int, stages: Stages, comparison: Comparison) -> Frame:
         change / 1000.0,
         stages.watch(control_points),
         not comparison.resting,
+        seconds,
     )

@@ -7,6 +7,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, TypeVar
 
 from core.body import Body, read_scan
@@ -18,7 +19,7 @@ from core.mesh import Points
 from core.moving import MovingFaces, moving_faces
 from core.patch import patch_fade
 from core.project import ScanFile, read_scan_file, scan_on_disk
-from core.solver import ConstrainedModel, Targets, constrained_model, gain_limit
+from core.solver import ConstrainedModel, Marks, Targets, constrained_model, gain_limit
 from core.template import read_template
 from core.tffd import Binding, bind, deform
 from core.watch import BodyWatch
@@ -56,6 +57,11 @@ class Stages:
     def gain(self) -> float:
         """The conventional gain in force [probe units]."""
         return GAIN_SHARE * self.gain_limit if self.design.gain is None else self.design.gain
+
+    @cached_property
+    def rest_marks(self) -> Marks:
+        """What is watched, at rest."""
+        return self.watch(self.control.mesh.vertices)
 
     def shape(self, control_points: Points) -> tuple[Points, Points]:
         """Return places [mm] and normals [1], shapes (r, 3), of ``moving.vertices`` for control points (n, 3)

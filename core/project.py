@@ -5,11 +5,12 @@ stored.
 from __future__ import annotations
 
 import os
+import re
 import tempfile
 import zipfile
 import zlib
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -19,6 +20,9 @@ from core.errors import ProjectError, ScanError
 SUFFIX = ".busk"
 _LARGEST_SCAN = 2_000_000_000
 _LARGEST_DESIGN = 1_000_000
+
+_UNSAFE = re.compile(r'[<>:"/\\|?*\x00-\x1f\ud800-\udfff]')
+_BROKEN_ARCHIVE = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError)
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +46,7 @@ def save_project(
     Raises ProjectError if the file cannot be written; what was there before then stays.
     """
     target = Path(path).absolute()
-    member = f"scan/{scan.name}"
+    member = f"scan/{_safe_name(scan.name)}"
     # The project may move to another place: inside it the scan needs no path.
     inside = replace(design, scan=replace(design.scan, path="", member=member))
     with whole_file(target) as partial, zipfile.ZipFile(partial, "w", zipfile.ZIP_STORED) as archive:
@@ -66,7 +70,7 @@ def open_project(path: str | os.PathLike[str]) -> Design:
 
 
 def read_scan_file(source: ScanSource) -> ScanFile:
-    """Read the bytes of a scan, from its own file or from inside a project. Raises ScanError or ProjectError."""
+    """Read the bytes of a scan, alone or inside a project. Raises ScanError or ProjectError."""
     if source.member:
         with _archive(Path(source.path)) as archive:
             return ScanFile(source.name, _member(archive, source.member, _LARGEST_SCAN))
@@ -88,10 +92,20 @@ def scan_on_disk(source: ScanSource, scan: ScanFile) -> Iterator[Path]:
     if not source.member:
         yield Path(source.path)
         return
-    with tempfile.TemporaryDirectory(prefix="busk-") as folder:
-        copy = Path(folder) / scan.name
-        copy.write_bytes(scan.data)
+    with tempfile.TemporaryDirectory(prefix="busk-", ignore_cleanup_errors=True) as folder:
+        copy = Path(folder) / _safe_name(scan.name)
+        try:
+            copy.write_bytes(scan.data)
+        except OSError as problem:
+            raise ProjectError(
+                f"{scan.name} cannot be unpacked: {problem.strerror}.", "Make room for temporary files."
+            ) from problem
         yield copy
+
+
+def _safe_name(name: str) -> str:
+    """Return a file name that every system takes, whatever system or hand the project came from."""
+    return _UNSAFE.sub("_", name)[-60:].strip(". ") or "scan"
 
 
 @contextmanager
@@ -112,7 +126,9 @@ def whole_file(target: Path) -> Iterator[Path]:
             "Choose another folder or make room.",
         ) from problem
     finally:
-        partial.unlink(missing_ok=True)
+        # Where nothing can be written nothing can be removed: the first problem is the one to tell.
+        with suppress(OSError):
+            partial.unlink(missing_ok=True)
 
 
 @contextmanager
@@ -122,7 +138,11 @@ def _archive(path: Path) -> Iterator[zipfile.ZipFile]:
             yield archive
     except FileNotFoundError:
         raise ProjectError(f"There is no project {path}.", "Check the name, or choose another one.") from None
-    except (OSError, zipfile.BadZipFile, zlib.error, EOFError) as problem:
+    except OSError as problem:
+        raise ProjectError(
+            f"{path.name} cannot be read: {problem.strerror or problem}.", "Check the file, or open a backup."
+        ) from problem
+    except _BROKEN_ARCHIVE as problem:
         raise ProjectError(
             f"{path.name} is not a whole Busk project.", "Open a backup, or start again from the scan."
         ) from problem

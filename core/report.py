@@ -59,7 +59,8 @@ def run(stages: Stages, turns: int | None = None) -> Solution:
     steps = iterate(
         stages.model, lambda: targets, turns=MOST_TURNS if turns is None else turns, watch=stages.watch
     )
-    for state, measured in steps:
+    for now, measured in steps:
+        state = now
         records.append(measured)
         if turns is None and judge(records).state in ("settled", "diverged"):
             break
@@ -126,7 +127,7 @@ def report(solution: Solution) -> dict[str, Any]:
         },
         "lines": {
             line.name: _line_report(line, stages, reached)
-            for line, reached in zip(stages.model.lines, last.lengths)
+            for line, reached in zip(stages.model.lines, last.lengths, strict=True)
         },
         "marks": {"rest": _marks(solution.rest), "final": _marks(last)},
         "settings": {
@@ -162,7 +163,7 @@ def notes(stages: Stages) -> list[str]:
         *stages.control.warnings,
         *stages.body.repairs,
         "Lengths are those of the front part of a line, side to side; the back does not change.",
-        "Not modelled: sliding of the garment on the skin, gravity, the stiffness of a real tape and of real tissue.",
+        "Not modelled: sliding of the garment on the skin, gravity, stiffness of real tape and real tissue.",
     ]
 
 

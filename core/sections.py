@@ -105,7 +105,7 @@ def resample(curve: Points, step: float) -> Points:
 
 
 def hull_perimeter(points: Points) -> float:
-    """Return the length of a tape round ``points``, shape (k, 3), in their horizontal plane [mm]; 0 if none."""
+    """Return the length of a tape round ``points``, shape (k, 3), in their level [mm]; 0 if none."""
     if len(points) < 3:
         return 0.0
     try:

@@ -96,7 +96,7 @@ class ConstrainedModel:
     @property
     def pressure_unit(self) -> float:
         """The pressure that would change the whole volume by 100 % in one turn, linearised."""
-        return abs(self.volume.rest_volume) / self.probe
+        return self.volume.rest_volume / self.probe
 
     def natural_lengths(self, ratios: tuple[float, ...]) -> Floats:
         """Return the natural lengths of the worn segments for a ratio per line, shape (s,) [mm] (paper
@@ -178,7 +178,7 @@ class Targets:
 
 @dataclass(frozen=True)
 class Marks:
-    """What is watched on the body itself: heights of the bust points, height and protrusion of the apex [mm]."""
+    """What is watched on the body: heights of the bust points, height and protrusion of the apex [mm]."""
 
     nipple_left_z: float
     nipple_right_z: float

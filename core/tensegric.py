@@ -57,7 +57,7 @@ class TensegricModel:
 
 
 def tensegric_model(mesh: Mesh, fixed: Flags) -> TensegricModel:
-    """Build the model on a control mesh; ``fixed``, shape (n,), marks the points that stay (paper section 4)."""
+    """Build the model on a control mesh; ``fixed``, shape (n,), marks what stays (paper section 4)."""
     lengths = np.linalg.norm(mesh.vertices[mesh.edges[:, 0]] - mesh.vertices[mesh.edges[:, 1]], axis=1)
     density = (1.0 / lengths) / np.mean(1.0 / lengths)
     moving = ~(fixed[mesh.edges[:, 0]] & fixed[mesh.edges[:, 1]])

@@ -43,6 +43,7 @@ class BodyWatch:
         self._back = float(control.mesh.vertices[control.border, 1].mean())
 
     def __call__(self, control_points: Points) -> Marks:
+        """Return the marks for control points, shape (n, 3) [mm]."""
         places = deform_moving(self._binding, control_points)
         apex = np.mean([_apex(places[self._left]), _apex(places[self._right])], axis=0)
         heights = places[:2, 2] + self._offset
@@ -57,7 +58,7 @@ def _sides(rest: Points, control: ControlMesh) -> tuple[Flags, Flags]:
 
 
 def _foremost(rest: Points, on_side: Flags) -> Indices:
-    """Return rows of vertices that may become the foremost: within reach of the present one, evenly thinned."""
+    """Return rows of vertices that may become the foremost: near the present one, evenly thinned."""
     rows = np.flatnonzero(on_side)
     near = rows[rest[rows, 1] < rest[rows, 1].min() + _REACH]
     return near[:: max(1, len(near) // _CANDIDATES)]

@@ -1,0 +1,38 @@
+"""One piece of work at a time beside the window's thread; its answer comes back as a signal in that thread."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+
+from PySide6.QtCore import QObject, Signal
+
+
+class Background(QObject):
+    """Runs plain functions in threads; ``finished`` carries (key, result) of those that came to an end."""
+
+    finished = Signal(object, object)
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._threads: list[threading.Thread] = []
+        self._open = True
+
+    def run(self, key: object, work: Callable[[], object]) -> None:
+        """Begin ``work``; ``key`` tells the receiver what the result belongs to."""
+
+        def at_work() -> None:
+            result = work()
+            if self._open:
+                self.finished.emit(key, result)
+
+        self._threads = [thread for thread in self._threads if thread.is_alive()]
+        thread = threading.Thread(target=at_work, name="busk-background", daemon=True)
+        self._threads.append(thread)
+        thread.start()
+
+    def close(self) -> None:
+        """Let no answer come any more, and wait for what is at work."""
+        self._open = False
+        for thread in self._threads:
+            thread.join()

@@ -1,0 +1,152 @@
+"""The main window: it puts the parts in their places and holds the one list of connections between them."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QResizeEvent
+from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QStackedWidget, QVBoxLayout, QWidget
+
+from app.actions import Actions
+from app.convergence import Strip
+from app.desk import Desk
+from app.notice import NoticeBar
+from app.panels.landmarks import LandmarksPanel
+from app.panels.lines import LinesPanel
+from app.panels.rail import Rail
+from app.panels.result import ResultPanel
+from app.panels.scan import ScanPanel
+from app.panels.status import StatusBar
+from app.panels.top_bar import TopBar
+from app.recent import fill_recent_menu
+from app.session import Session
+from app.view_area import ViewArea
+
+NARROW, WIDE = 340, 364
+"""Width of the inspector in windows narrower and wider than 1400 pixels."""
+
+
+class MainWindow(QMainWindow):
+    """The window of one session. It shows what the session says, and asks the session."""
+
+    def __init__(self, session: Session) -> None:
+        super().__init__()
+        self.session = session
+        session.setParent(self)
+        self.setWindowTitle("Busk")
+        self.setMinimumSize(1180, 700)
+        self.resize(1600, 1000)
+        self.setAcceptDrops(True)
+        self.view = ViewArea()
+        self.actions_ = Actions(self, session.undo_stack)
+        self.menus = self.actions_.menu_bar(self.view.tools.actions_by_name)
+        self.top = TopBar(self.menus, self.actions_.undo, self.actions_.redo, self.actions_.export)
+        self.rail, self.notices, self.strip, self.status = Rail(), NoticeBar(), Strip(), StatusBar()
+        self.scan, self.landmarks = ScanPanel(), LandmarksPanel()
+        self.lines, self.result = LinesPanel(), ResultPanel()
+        self.inspector = QStackedWidget()
+        self._lay_out()
+        self.desk = Desk(self)
+        self._connect()
+
+    def _lay_out(self) -> None:
+        for panel in (self.scan, self.landmarks, self.lines, self.result):
+            self.inspector.addWidget(panel)
+        middle = QVBoxLayout()
+        middle.setSpacing(0)
+        for part, stretch in ((self.notices, 0), (self.view, 1), (self.strip, 0)):
+            middle.addWidget(part, stretch)
+        across = QHBoxLayout()
+        across.setSpacing(0)
+        across.addWidget(self.rail)
+        across.addLayout(middle, 1)
+        across.addWidget(self.inspector)
+        central = QWidget()
+        down = QVBoxLayout(central)
+        down.setContentsMargins(0, 0, 0, 0)
+        down.setSpacing(0)
+        down.addWidget(self.top)
+        down.addLayout(across, 1)
+        down.addWidget(self.status)
+        self.setCentralWidget(central)
+        self.inspector.setFixedWidth(WIDE)
+
+    def _connect(self) -> None:
+        """Connect everything: the session to the desk, the parts to the session, the actions to both."""
+        session, desk, view, do = self.session, self.desk, self.view, self.actions_
+        session.opened.connect(desk.show_opened)
+        session.frame_ready.connect(desk.show_frame)
+        session.design_changed.connect(desk.show_design)
+        session.failed.connect(desk.show_failure)
+        session.working.connect(desk.show_work)
+        session.saved.connect(desk.show_saved)
+        session.undo_stack.cleanChanged.connect(desk.show_title)
+
+        self.rail.step_chosen.connect(desk.go_to)
+        self.lines.length_previewed.connect(session.preview_line)
+        self.lines.length_committed.connect(desk.commit_line)
+        self.lines.drag_cancelled.connect(lambda _: session.cancel_preview())
+        self.lines.selected.connect(desk.select_line)
+        self.lines.visibility_changed.connect(desk.set_line_visible)
+        self.lines.reset_all.connect(session.reset_lines)
+        self.strip.control_chosen.connect(session.choose_control)
+        self.scan.open_asked.connect(desk.open)
+        self.scan.unit_chosen.connect(session.choose_unit)
+        self.landmarks.landmark_selected.connect(desk.select_landmark)
+
+        view.viewport.band_clicked.connect(desk.select_line)
+        view.viewport.pin_pressed.connect(desk.select_landmark)
+        view.tools.view_chosen.connect(view.viewport.set_view)
+        view.tools.fit_asked.connect(view.viewport.frame_all)
+        view.tools.toggled.connect(view.set_layer)
+        view.tools.picture_asked.connect(desk.save_picture)
+        view.compare.after_chosen.connect(view.set_after)
+
+        do.open.triggered.connect(desk.open)
+        do.save.triggered.connect(desk.save)
+        do.save_as.triggered.connect(desk.save_as)
+        do.export.triggered.connect(desk.export)
+        do.quit.triggered.connect(self.close)
+        do.reset.triggered.connect(session.reset_lines)
+        do.flip.triggered.connect(lambda: view.set_after(not view.after))
+        do.strip.toggled.connect(lambda on: self.strip.set_folded(not on))
+        self.strip.folded.connect(lambda folded: do.strip.setChecked(not folded))
+        do.about.triggered.connect(desk.about)
+        do.recent.aboutToShow.connect(lambda: fill_recent_menu(do.recent, desk.open_file))
+        for name, action in do.samples.items():
+            action.triggered.connect(lambda _=False, sample=name: desk.open_sample(sample))
+        for group, ask in (
+            (do.controls, session.choose_control),
+            (do.templates, session.choose_template),
+            (do.themes, desk.choose_theme),
+            (do.languages, desk.choose_language),
+        ):
+            for name, action in group.items():
+                action.triggered.connect(lambda _=False, ask=ask, name=name: ask(name))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Give the view more room in a narrow window."""
+        super().resizeEvent(event)
+        self.inspector.setFixedWidth(WIDE if self.width() >= 1400 else NARROW)
+
+    def dragEnterEvent(self, event: QDragEnterEvent) -> None:  # noqa: N802
+        """Take files that are dragged onto the window."""
+        if any(url.isLocalFile() for url in event.mimeData().urls()):
+            event.acceptProposedAction()
+
+    def dropEvent(self, event: QDropEvent) -> None:  # noqa: N802
+        """Open a file that is dropped."""
+        files = [url.toLocalFile() for url in event.mimeData().urls() if url.isLocalFile()]
+        if files:
+            event.setDropAction(Qt.DropAction.CopyAction)
+            event.accept()
+            self.desk.open_file(files[0])
+
+    def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
+        """Ask about changes; then solver, background work and 3D view end before the window does."""
+        if not self.desk.may_leave():
+            event.ignore()
+            return
+        self.desk.close()
+        self.session.close()
+        self.view.close_view()
+        event.accept()

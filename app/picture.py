@@ -1,0 +1,110 @@
+"""Pictures with no display: the body from one side, or the whole window."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from app.application import application, off_screen
+from core.design import Design
+from core.errors import UserError
+
+_PATIENCE = 120.0
+
+
+def draw_picture(
+    design: Design,
+    out: Path,
+    *,
+    view: str = "three-quarter",
+    dark: bool = False,
+    size: tuple[int, int] = (1600, 1000),
+) -> None:
+    """Write a PNG of the reshaped body from one side. Raises UserError."""
+    import pyvista as pv
+
+    from app.camera import VIEWS
+    from app.present import BAND_WIDTHS, LINE_COLOURS, worn_bands
+    from app.scene import Scene
+    from app.scene_bands import Band
+    from app.scene_body import bake_occlusion
+    from core.pipeline import build
+    from core.report import run
+
+    side = {"side": "left"}.get(view, view)
+    if side not in VIEWS:
+        raise UserError(f"There is no view '{view}'.", f"Choose one of: {', '.join(VIEWS)}.")
+    solution = run(build(design))
+    stages = solution.stages
+    control_points = stages.model.tensegric.expand(solution.state.moved)
+    points, normals = stages.shape(control_points)
+    plotter = pv.Plotter(off_screen=True, window_size=list(size), lighting="none")
+    scene = Scene(plotter, dark)
+    scene.show_body(stages.body.mesh)
+    scene.set_occlusion(bake_occlusion(stages.body.mesh))
+    scene.show_control_mesh(stages.control.mesh, stages.control.fixed)
+    rest = stages.control.mesh.vertices
+    scene.show_bands(
+        Band(name, rest[list(stages.control.paths[name])], LINE_COLOURS[name], BAND_WIDTHS[name])
+        for name in worn_bands(stages.control, ())
+    )
+    scene.move_body(stages.moving.vertices, points, normals)
+    scene.set_view(side)
+    scene.frame_bust()
+    try:
+        plotter.screenshot(str(out))
+    except (OSError, ValueError) as problem:
+        raise UserError(f"{out} cannot be written.", "Choose a name that ends in .png.") from problem
+    finally:
+        plotter.close()
+
+
+def draw_window(
+    design: Design,
+    out: Path,
+    *,
+    dark: bool = False,
+    language: str = "en",
+    size: tuple[int, int] = (1600, 1000),
+) -> None:
+    """Write a PNG of the whole window on a settled design. Raises UserError."""
+    off_screen()
+    app = application(language=language, dark=dark)
+    from app.window import open_window
+
+    window = open_window(design)
+    failures: list[Exception] = []
+    window.session.failed.connect(failures.append)
+    shaded: list[bool] = []
+    window.view.shaded.connect(lambda: shaded.append(True))
+    window.view.viewport.motion = False
+    window.resize(*size)
+    window.show()
+
+    def ready() -> bool:
+        frame = window.session.frame
+        return bool(failures) or (frame is not None and not frame.at_work and bool(shaded))
+
+    try:
+        wait_until(ready, app.processEvents)
+        if failures:
+            raise failures[0]
+        window.desk.plot_now()
+        for _ in range(5):
+            app.processEvents()
+        if not window.grab().save(str(out)):
+            raise UserError(f"{out} cannot be written.", "Choose a name that ends in .png.")
+    finally:
+        window.session.undo_stack.setClean()
+        window.close()
+
+
+def wait_until(ready: Callable[[], bool], turn: Callable[[], None]) -> None:
+    """Let events pass until ``ready``. Raises UserError if that takes too long."""
+    patience = time.monotonic() + _PATIENCE
+    while not ready():
+        if time.monotonic() > patience:
+            raise UserError("Busk has waited too long for its own answer.", "Try again, or report this.")
+        turn()
+        time.sleep(0.005)

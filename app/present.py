@@ -1,0 +1,204 @@
+"""What the window says about a design and its frame: plain values for the panels, worked out in one place."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.convergence import Exact, Track
+from app.panels.landmarks import LandmarkView
+from app.panels.line_row import LineView
+from app.panels.result import MeasureView
+from app.panels.scan import ScanView
+from app.words import number, tr
+from core.control_mesh import ControlMesh
+from core.design import Design
+from core.landmarks import Landmarks
+from core.live import Frame
+from core.pipeline import Stages
+from core.solver import Marks
+
+LINE_COLOURS = {"full-bust": "#0A5F73", "mid-bust": "#E5536B", "under-bust": "#5A3F94"}
+"""Line colours by name, the same in both themes, told apart by the colour-blind; top line first."""
+
+BAND_WIDTHS = {"full-bust": 10.0, "mid-bust": 12.0, "under-bust": 22.0}
+"""Width of the bands as they are drawn [mm]; what they are made of comes with the garment."""
+
+PLOTTED_TURNS = 240
+"""Turns that the live plot looks back."""
+
+
+def line_title(name: str) -> str:
+    """Return a line's name in the window's language."""
+    titles = {"full-bust": tr("Full bust"), "mid-bust": tr("Mid-bust"), "under-bust": tr("Under-bust")}
+    return titles.get(name, name)
+
+
+def landmark_title(name: str) -> str:
+    """Return a landmark's name in the window's language."""
+    titles = {
+        "bust_point_left": tr("Bust point left"),
+        "bust_point_right": tr("Bust point right"),
+        "fold_left": tr("Under-bust fold left"),
+        "fold_right": tr("Under-bust fold right"),
+        "lowest_left": tr("Lowest point left"),
+        "lowest_right": tr("Lowest point right"),
+    }
+    return titles.get(name, name)
+
+
+def worn_bands(control: ControlMesh, hidden: Collection[str]) -> list[str]:
+    """Return the names of the lines that are drawn on the body."""
+    return [name for name in LINE_COLOURS if name in control.paths and name not in hidden]
+
+
+def line_views(design: Design, frame: Frame, hidden: Collection[str]) -> list[LineView]:
+    """Return the rows of the list of lines, top line first."""
+    lines = {line.name: line for line in frame.stages.model.lines}
+    return [
+        LineView(
+            name,
+            line_title(name),
+            colour,
+            design.ratio(name),
+            lines[name].rest_length,
+            frame.lengths[name],
+            lines[name].constrains,
+            name not in hidden,
+            lines[name].whole_length,
+        )
+        for name, colour in LINE_COLOURS.items()
+        if name in lines
+    ]
+
+
+def band_label(design: Design, frame: Frame, name: str) -> tuple[str, str]:
+    """Return what stands beside a line on the body: its name and length, and how much shorter that is."""
+    line = next(line for line in frame.stages.model.lines if line.name == name)
+    if not line.constrains:
+        return line_title(name), f"{number(line.rest_length)} mm"
+    ratio = design.ratio(name)
+    change = (ratio - 1.0) * line.rest_length
+    return f"{line_title(name)} {number(100.0 * ratio)} %", f"{number(change, 1, signed=True)} mm"
+
+
+def tracks(frame: Frame) -> dict[str, Track]:
+    """Return the runs of a frame as curves: volume error [%, ml], bust point height over its rest height
+    [mm].
+    """
+    rest = _bust_height(frame.stages.rest_marks)
+    result = {}
+    for control, records in frame.tracks.items():
+        rows = [
+            (row.turn, 100.0 * row.error, row.error_ml, _bust_height(row.marks) - rest)
+            for row in records[-PLOTTED_TURNS:]
+            if row.marks is not None
+        ]
+        result[control] = Track(*np.array(rows, dtype=np.float64).reshape(-1, 4).T)
+    return result
+
+
+def exact_answer(frame: Frame) -> Exact:
+    """Return what the exact answer ends at, for the dashed line."""
+    return Exact(0.0, _bust_height(frame.exact_marks) - _bust_height(frame.stages.rest_marks))
+
+
+def _bust_height(marks: Marks) -> float:
+    """Return the mean height of the two bust points [mm]."""
+    return 0.5 * (marks.nipple_left_z + marks.nipple_right_z)
+
+
+@dataclass(frozen=True)
+class StripVerdict:
+    """What the strip says of a run."""
+
+    state: str
+    numbers: list[tuple[str, str]]
+    turns: int
+    seconds: float
+
+
+def strip_verdict(frame: Frame) -> StripVerdict:
+    """Return how the run of a frame stands, with the figures that matter then."""
+    return StripVerdict(frame.verdict.state, _headline(frame), frame.verdict.turns, frame.seconds)
+
+
+def _headline(frame: Frame) -> list[tuple[str, str]]:
+    verdict, volume = frame.verdict, frame.stages.model.volume.rest_volume
+    lift = frame.marks.apex_z - frame.stages.rest_marks.apex_z
+    if verdict.state == "vibrating":
+        percent = f"{number(100.0 * verdict.error, 2)} ± {number(100.0 * verdict.amplitude, 2)} %"
+        return [
+            (tr("Period"), tr("{turns} turns").format(turns=number(verdict.period, 0))),
+            (tr("Volume error"), percent),
+            (tr("Growth per turn"), f"{number(100.0 * (verdict.growth - 1.0), 1, signed=True)} %"),
+        ]
+    percent = number(1e5 * frame.error_ml / volume, 2, signed=True)
+    return [
+        (tr("Volume error"), f"{percent} % · {number(frame.error_ml, 1, signed=True)} ml"),
+        (tr("Lift of apex"), f"{number(lift, 1, signed=True)} mm"),
+    ]
+
+
+def landmark_views(landmarks: Landmarks) -> list[LandmarkView]:
+    """Return the rows of the list of landmarks."""
+    return [
+        LandmarkView(mark.name, landmark_title(mark.name), mark.confidence, mark.rule)
+        for mark in landmarks.points.values()
+    ]
+
+
+def scan_view(design: Design, stages: Stages) -> ScanView:
+    """Return the facts of the scan."""
+    pose = stages.body.pose
+    return ScanView(
+        design.scan.name,
+        pose.unit,
+        pose.reason,
+        pose.sure,
+        pose.up,
+        pose.front,
+        len(stages.body.mesh.faces),
+        stages.body.repairs,
+    )
+
+
+def measure_views(frame: Frame) -> list[MeasureView]:
+    """Return the table of what changed."""
+    rest, now = frame.stages.rest_marks, frame.marks
+    volume = frame.stages.model.volume.rest_volume / 1000.0
+    rows: Sequence[tuple[str, str, float, float]] = (
+        (tr("Apex height"), "mm", rest.apex_z, now.apex_z),
+        (tr("Apex protrusion"), "mm", rest.apex_protrusion, now.apex_protrusion),
+        (tr("Bust point left, height"), "mm", rest.nipple_left_z, now.nipple_left_z),
+        (tr("Bust point right, height"), "mm", rest.nipple_right_z, now.nipple_right_z),
+        (tr("Volume of control mesh"), "ml", volume, volume + frame.error_ml),
+        *(
+            (tr("{line}, front part").format(line=line_title(line.name)), "mm", line.rest_length, reached)
+            for line, reached in zip(frame.stages.model.lines, frame.lengths.values(), strict=True)
+        ),
+    )
+    return [MeasureView(*row) for row in rows]
+
+
+def facts(frame: Frame) -> list[str]:
+    """Return the plain facts of the status bar."""
+    return [
+        "mm",
+        tr("{count} triangles").format(count=number(len(frame.stages.body.mesh.faces), 0)),
+        tr("{count} control mesh").format(count=len(frame.stages.control.mesh.faces)),
+    ]
+
+
+def stage_words(stage: str) -> str:
+    """Return what the status bar says of a stage at work; nothing for one that takes no time."""
+    words = {
+        "read scan": tr("Reading the scan"),
+        "find landmarks": tr("Finding the landmarks"),
+        "fit control mesh": tr("Fitting the control mesh"),
+        "find patch": tr("Binding the body"),
+        "bind body": tr("Binding the body"),
+    }
+    return words.get(stage, "")

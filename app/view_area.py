@@ -1,0 +1,167 @@
+"""The middle of the window: the 3D view with the tools that float on it, kept up with the session's frames."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QEvent, QObject, Signal
+from PySide6.QtGui import QImage, QResizeEvent
+from PySide6.QtWidgets import QVBoxLayout, QWidget
+
+from app.background import Background
+from app.overlay import Pin
+from app.panels.view_tools import CompareTools, ViewTools
+from app.present import BAND_WIDTHS, LINE_COLOURS, band_label, landmark_title, worn_bands
+from app.scene_bands import Band
+from app.scene_body import bake_occlusion
+from app.viewport import Viewport
+from core.body import Body
+from core.control_mesh import ControlMesh
+from core.design import Design
+from core.landmarks import Landmarks
+from core.live import Frame
+
+_MARGIN = 14
+
+
+class ViewArea(QWidget):
+    """Shows frames; ``shaded`` says that the soft shadows of a new body have been worked out."""
+
+    shaded = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.viewport = Viewport(self)
+        self.tools = ViewTools(self)
+        self.compare = CompareTools(self)
+        self.hidden_lines: set[str] = set()
+        self.selected_line = "mid-bust"
+        self.after = True
+        self._body: Body | None = None
+        self._control: ControlMesh | None = None
+        self._landmarks: Landmarks | None = None
+        self._landmark = ""
+        self._background = Background(self)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.viewport)
+        for panel in (self.tools, self.compare):
+            panel.installEventFilter(self)
+            panel.raise_()
+        self.tools.set_shown("bands", True)
+        self.tools.set_shown("perspective", True)
+        self._background.finished.connect(self._shade)
+
+    def show_frame(self, frame: Frame, design: Design) -> None:
+        """Bring the view up to date: what is new is built, what moved is moved."""
+        stages, scene = frame.stages, self.viewport.scene
+        if stages.body is not self._body:
+            self._show_body(stages.body)
+        if stages.control is not self._control:
+            self._control, self._landmarks = stages.control, stages.landmarks
+            scene.show_control_mesh(stages.control.mesh, stages.control.fixed)
+            self.show_bands()
+            self.viewport.frame_bust()
+            self._show_pins()
+        scene.move_body(stages.moving.vertices, frame.points, frame.normals)
+        scene.move_control_mesh(frame.control_points)
+        self._show_label(frame, design)
+        self.viewport.request_draw()
+
+    def show_bands(self) -> None:
+        """Lay the lines that are not hidden on the body."""
+        if self._control is None:
+            return
+        points = self._control.mesh.vertices
+        names = worn_bands(self._control, self.hidden_lines)
+        self.viewport.scene.show_bands(
+            Band(name, points[list(self._control.paths[name])], LINE_COLOURS[name], BAND_WIDTHS[name])
+            for name in names
+        )
+        self.select_line(self.selected_line)
+
+    def select_line(self, name: str) -> None:
+        """Put a casing round one line."""
+        self.selected_line = name
+        self.viewport.select_band(name if name not in self.hidden_lines else None)
+
+    def select_landmark(self, name: str) -> None:
+        """Mark one landmark's pin."""
+        self._landmark = name
+        self._show_pins()
+
+    def set_line_visible(self, name: str, visible: bool) -> None:
+        """Show or hide one line's band."""
+        self.hidden_lines = self.hidden_lines - {name} if visible else self.hidden_lines | {name}
+        self.show_bands()
+
+    def set_after(self, after: bool) -> None:
+        """Show the reshaped body, or the body at rest."""
+        self.after = after
+        self.compare.set_after(after)
+        if self._body is not None:
+            self.viewport.scene.before(not after)
+            self.viewport.request_draw()
+
+    def set_layer(self, layer: str, shown: bool) -> None:
+        """Show or hide a layer, as its tool says."""
+        self.tools.set_shown(layer, shown)
+        if layer == "perspective":
+            self.viewport.set_parallel(not shown)
+        elif layer == "landmarks":
+            self._show_pins()
+        else:
+            self.viewport.scene.set_visible({"control-mesh": "control", "bands": "bands"}[layer], shown)
+        self.viewport.request_draw()
+
+    def picture(self) -> QImage:
+        """Return what is seen."""
+        return self.viewport.picture()
+
+    def close_view(self) -> None:
+        """Give everything back, before the window goes."""
+        self._background.close()
+        self.viewport.close_view()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Keep the floating tools in their places."""
+        super().resizeEvent(event)
+        self._place_tools()
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+        """Place the tools again once they know their size."""
+        if event.type() == QEvent.Type.Show:
+            self._place_tools()
+        return False
+
+    def _place_tools(self) -> None:
+        for panel in (self.tools, self.compare):
+            panel.adjustSize()
+        self.tools.move(
+            (self.width() - self.tools.width()) // 2, self.height() - self.tools.height() - _MARGIN + 10
+        )
+        self.compare.move(_MARGIN - 10, _MARGIN - 8)
+
+    def _show_body(self, body: Body) -> None:
+        self._body = body
+        self.viewport.scene.show_body(body.mesh)
+        self.after = True
+        self.compare.set_after(True)
+        self._background.run(body, lambda: bake_occlusion(body.mesh))
+
+    def _shade(self, body: object, occlusion: object) -> None:
+        if body is self._body:
+            self.viewport.scene.set_occlusion(occlusion)  # type: ignore[arg-type]
+            self.viewport.request_draw()
+            self.shaded.emit()
+
+    def _show_label(self, frame: Frame, design: Design) -> None:
+        name = self.selected_line
+        if not self.after or name in self.hidden_lines or not self.viewport.scene.is_visible("bands"):
+            self.viewport.label_band(None)
+            return
+        self.viewport.label_band(name, *band_label(design, frame, name))
+
+    def _show_pins(self) -> None:
+        shown = self.tools.actions_by_name["landmarks"].isChecked()
+        found = self._landmarks.points.values() if shown and self._landmarks is not None else ()
+        pins = [Pin(mark.name, landmark_title(mark.name), mark.position, mark.confidence) for mark in found]
+        self.viewport.set_pins(pins, self._landmark)

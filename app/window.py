@@ -1,0 +1,51 @@
+"""From the command to the open window; what takes long to import is imported while the body is being read."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from app.application import application, has_display, keep_log
+from app.samples import sample_design
+from app.session import Session
+from core.design import Design
+from core.errors import UserError
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+
+
+def run_window(file: str | None = None) -> int:
+    """Open the window on a file, or on the sample, and stay until it is closed."""
+    if not has_display() and not _platform_chosen():
+        raise UserError(
+            "There is no display to open a window on.",
+            "Use 'busk demo --out out' for the same session in pictures, or 'busk --help' for the commands.",
+        )
+    app = application()
+    keep_log()
+    window = open_window(file if file is not None else sample_design())
+    window.show()
+    return app.exec()
+
+
+def open_window(what: str | Design) -> MainWindow:
+    """Return a window that is opening a file or a design."""
+    # The solver's thread reads the body while this one imports the 3D libraries.
+    session = Session()
+    if isinstance(what, Design):
+        session.open_design(what)
+    else:
+        session.open(what)
+    from app.main_window import MainWindow
+
+    return MainWindow(session)
+
+
+def _platform_chosen() -> bool:
+    import os
+
+    return bool(os.environ.get("QT_QPA_PLATFORM"))
+
+
+__all__: Sequence[str] = ("open_window", "run_window")
