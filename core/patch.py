@@ -153,16 +153,17 @@ def _by_distance(body: Mesh, control: ControlMesh, fade: float) -> Floats:
     nearest = order[np.searchsorted(pairs.point, np.arange(len(around)))]
     triangle = pairs.triangle[nearest]
     spots = np.einsum("ij,ijk->ik", place[nearest], mesh.vertices[mesh.faces[triangle]])
-    inwards = smooth_step(_to_loop(spots, mesh.vertices[control.border]) / fade)
+    inwards = _to_loop(spots, mesh.vertices[control.border])
+    inwards[inwards < 1e-6] = 0.0  # before the border itself, but for rounding
     near = smooth_step((FAR - np.sqrt(distance2[nearest])) / (FAR - CLOSE))
     facing = np.einsum("ij,ij->i", body.vertex_normals[around], mesh.face_normals[triangle])
     result = np.zeros(len(body.vertices))
-    result[around] = inwards * near * smooth_step(1.0 + 2.0 * facing)
+    result[around] = smooth_step(inwards / fade) * near * smooth_step(1.0 + 2.0 * facing)
     return result
 
 
 def _to_loop(points: Points, corners: Points) -> Floats:
-    """Return the distances of points, shape (k, 3), to the closed polyline through ``corners``, (b, 3) [mm]."""
+    """Return the distances from points, shape (k, 3), to the closed polyline of ``corners``, (b, 3) [mm]."""
     side = np.roll(corners, -1, axis=0) - corners
     offset = points[:, None] - corners
     along = np.einsum("kbi,bi->kb", offset, side) / np.maximum(np.einsum("bi,bi->b", side, side), 1e-12)
