@@ -110,9 +110,7 @@ def to_json(design: Design) -> str:
     """Return the design as text, format number first."""
     values = asdict(design)
     unknown = values.pop("unknown")
-    return json.dumps(
-        {"format": FORMAT, "length_unit": "mm", **unknown, **values}, indent=1, ensure_ascii=False
-    )
+    return json.dumps({"format": FORMAT, "length_unit": "mm", **unknown, **values}, indent=1)
 
 
 def from_json(text: str) -> Design:
@@ -132,7 +130,7 @@ def from_json(text: str) -> Design:
         return Design(scan=scan, lines=lines, unknown=unknown, **values)
     except UserError:
         raise
-    except (ValueError, KeyError, TypeError, AttributeError) as broken:
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as broken:
         raise ProjectError(
             "The project's design cannot be read.", "Open a backup or start from the scan."
         ) from broken
