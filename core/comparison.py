@@ -101,6 +101,8 @@ class Comparison:
                 state = replace(old.state, turn=0) if old and _sane(old) else at_rest(self.model)
                 runs[control] = Run(self.model, control, state, self.watch)
             else:
+                if not _sane(old):
+                    old.state = replace(at_rest(self.model), turn=old.state.turn)
                 runs[control] = old
                 old.changed_at = old.state.turn
         self.runs = runs
