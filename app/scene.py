@@ -157,24 +157,24 @@ class Scene:
 
     def frame_all(self) -> None:
         """Step back until the whole body is in the picture."""
-        self.look_from(self.framing_all())
+        self.look_from(self.framing_all(self._aspect()))
 
     def frame_bust(self) -> None:
         """Step closer, so that shoulders to waist fill the picture."""
-        self.look_from(self.framing_bust())
+        self.look_from(self.framing_bust(self._aspect()))
 
-    def framing_all(self) -> View:
-        """Return the view from the same side that shows the whole body."""
-        return self._view.framing(self._box(), self._aspect())
+    def framing_all(self, aspect: float) -> View:
+        """Return the view from the same side that shows the whole body; ``aspect`` is width by height."""
+        return self._view.framing(self._box(), aspect)
 
-    def framing_bust(self) -> View:
+    def framing_bust(self, aspect: float) -> View:
         """Return the view from the same side that shows the bust, from the shoulders to the waist."""
         box = self._box()
         level = box[4] + _BUST_HEIGHT * (box[5] - box[4])
         if self._control_points is not None:
             level = float(self._control_points[0][:, 2].mean())
         reach = 0.40 * (box[5] - box[4])
-        return self._view.framing([*box[:4], level - reach, level + reach], self._aspect(), margin=1.0)
+        return self._view.framing([*box[:4], level - reach, level + reach], aspect, margin=1.0)
 
     # -- what is under the pointer
 

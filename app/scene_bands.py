@@ -105,7 +105,9 @@ def build_casing(path: Points, surface: Surface, width: float) -> Ribbon:
     """Return the ribbon that looks out all round the one ``width`` [mm] wide along ``path``, shape (k, 3)."""
     centre, _ = centre_line(path, surface)
     first, last = unit(centre[[0, -1]] - centre[[1, -2]]) * CASING
-    longer = np.concatenate([[centre[0] + first], centre[1:-1], [centre[-1] + last]])
+    # Two rows beyond each end: the outer one dips under the skin, the inner one is seen.
+    steps = np.array([[1.0], [0.6]])
+    longer = np.concatenate([centre[0] + steps * first, centre, centre[-1] + steps[::-1] * last])
     return _puffed(*surface.lay(longer), surface, width + CASING, sink=1.2)
 
 
@@ -237,6 +239,15 @@ class Bands:
         met = {name: ribbon.sight.hit(start, end) for name, ribbon in self._ribbons.items() if self._visible}
         places = [(name, place) for name, place in met.items() if place is not None]
         return min(places, key=lambda each: float(np.linalg.norm(each[1] - start)), default=None)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the lines."""
+        return tuple(self._bands)
+
+    def colour(self, name: str) -> str:
+        """Return the colour of a line, ``"#rrggbb"``."""
+        return self._bands[name].colour
 
     def spine(self, name: str) -> tuple[Points, Points]:
         """Return the middle of the top of a ribbon as shown and its normals, both (rows, 3)."""
