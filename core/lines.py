@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from dataclasses import dataclass
 
 import numpy as np
@@ -66,7 +67,7 @@ def line_on(name: str, path: npt.ArrayLike, points: Points, free: Indices, back_
     return Line(name, nodes, frozen(segment_lengths(points, nodes)), back_length, constrains)
 
 
-_LENGTH = re.compile(r"^\s*=?\s*([+-]?)(\d+(?:[.,]\d+)?)\s*(%|mm|cm|in)?\s*$")
+_LENGTH = re.compile(r"^\s*=?\s*([+-]?)\s*(\d+(?:[.,]\d+)?)\s*(%|mm|cm|in)?\s*$")
 _MM = {"mm": 1.0, "cm": 10.0, "in": 25.4}
 
 
@@ -78,7 +79,9 @@ def length_ratio(text: str, line: Line) -> float:
     sense: the two never lie near each other. Raises LineError if the text is no length or lies outside
     RATIO_LIMITS.
     """
-    match = _LENGTH.match(text.replace("\N{MINUS SIGN}", "-"))
+    # A Japanese keyboard writes full-width digits and signs: the normal form has them plain.
+    plain = unicodedata.normalize("NFKC", text).replace("\N{MINUS SIGN}", "-").lower()
+    match = _LENGTH.match(plain)
     if match is None:
         raise LineError(
             f"'{text}' is not a length for {line.name}.",
