@@ -148,8 +148,8 @@ class LivePlot(QWidget):
             self._plot.addItem(pg.InfiniteLine(self._exact, angle=0, pen=pen))
 
     def _draw_frame(self, tokens: Tokens, low: float, high: float, last: float) -> None:
-        room = 0.06 * (high - low)
-        self._plot.setRange(xRange=(0.0, last * 1.04), yRange=(low - room, high + room), padding=0)
+        room = 0.08 * (high - low)
+        self._plot.setRange(xRange=(0.0, last * 1.02), yRange=(low - room, high + room), padding=0)
         left, bottom = self._plot.getAxis("left"), self._plot.getAxis("bottom")
         values = round_ticks(low, high, 4 if self.height() > 110 else 3)
         digits = 0 if all(abs(v - round(v)) < 1e-9 for v in values) else 1
@@ -226,7 +226,11 @@ def _bare_plot() -> pg.PlotWidget:
     plot.setFocusPolicy(Qt.FocusPolicy.NoFocus)
     for side in ("left", "bottom"):
         axis = plot.getAxis(side)
-        axis.setStyle(tickLength=0, tickFont=font("axis"), hideOverlappingLabels=False)
+        axis.setTickPen(QColor(0, 0, 0, 0))  # a tick of no length still draws a dot
+        axis.setStyle(
+            tickLength=0, tickAlpha=0, tickFont=font("axis", tabular=True), hideOverlappingLabels=False
+        )
+    plot.getPlotItem().layout.setContentsMargins(0, 0, 12, 0)
     plot.getAxis("left").setWidth(34)
     plot.getAxis("bottom").setHeight(18)
     return plot

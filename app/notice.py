@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from html import escape
 
 from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
@@ -101,15 +102,12 @@ class NoticeBar(QWidget):
         row.setContentsMargins(16, 5, 10, 6)
         row.setSpacing(8)
         self._icon = IconLabel("info", "info", 19)
-        self._sentence, self._hint, self._more = label("", "name"), label("", "body"), label("", "caption")
-        for each in (self._sentence, self._hint):
-            each.setTextFormat(Qt.TextFormat.PlainText)
-            each.setWordWrap(True)
+        self._words, self._more = label("", "body"), label("", "caption")
+        self._words.setTextFormat(Qt.TextFormat.RichText)
+        self._words.setWordWrap(True)
         row.addWidget(self._icon)
         row.addSpacing(2)
-        row.addWidget(self._sentence)
-        row.addSpacing(4)
-        row.addWidget(self._hint, 1)
+        row.addWidget(self._words, 1)
         row.addWidget(self._more)
         self._buttons: list[QPushButton] = []
         self._row = row
@@ -124,8 +122,8 @@ class NoticeBar(QWidget):
             return
         notice = self._shown = self._waiting.popleft()
         self._icon.show_icon(TONE_ICONS[notice.tone], notice.tone)
-        self._sentence.setText(notice.sentence)
-        self._hint.setText(notice.hint)
+        said, hint = escape(notice.sentence), escape(notice.hint)
+        self._words.setText(f'<span style="font-weight:600">{said}</span>&nbsp; {hint}')
         self._set_buttons(notice.actions)
         self._show_waiting()
         if not notice.lasting:

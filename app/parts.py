@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QAction, QColor, QPainter, QPaintEvent
+from PySide6.QtGui import QAction, QColor, QFont, QPainter, QPaintEvent
 from PySide6.QtWidgets import (
     QButtonGroup,
     QFrame,
@@ -124,6 +124,8 @@ class Segment(QFrame):
             each.setCheckable(True)
             each.setFont(font("title" if small else "name"))
             each.setFixedSize(each.fontMetrics().horizontalAdvance(title) + (20 if small else 24), 24)
+            each.toggled.connect(lambda on, b=each: b.setFont(_segment_font(on, small)))
+            each.setFont(_segment_font(False, small))
             each.clicked.connect(lambda _=False, chosen=name: self.chosen.emit(chosen))
             group.addButton(each)
             row.addWidget(each)
@@ -140,6 +142,12 @@ class Segment(QFrame):
     def button(self, name: str) -> QPushButton:
         """Return the button of one choice, for tooltip, shortcut or state."""
         return self._buttons[name]
+
+
+def _segment_font(on: bool, small: bool) -> QFont:
+    if small:
+        return font("title" if on else "secondary")
+    return font("name" if on else "body")
 
 
 class FloatingPanel(QWidget):

@@ -38,21 +38,22 @@ def load_fonts() -> tuple[str, ...]:
     return tuple(family for i in ids if i >= 0 for family in QFontDatabase.applicationFontFamilies(i))
 
 
-def font(role: str) -> QFont:
-    """Return the type of one role of ``ROLES``, with figures of equal width."""
+def font(role: str, tabular: bool = False) -> QFont:
+    """Return the type of one role of ``ROLES``; ``tabular`` gives figures of equal width, for numbers."""
     size, weight, _ = ROLES[role]
     result = QFont(list(FAMILIES))
     result.setPixelSize(size)
     result.setWeight(QFont.Weight(weight))
     result.setHintingPreference(QFont.HintingPreference.PreferNoHinting)
-    result.setFeature(QFont.Tag("tnum"), 1)
+    if tabular:
+        result.setFeature(QFont.Tag("tnum"), 1)
     return result
 
 
-def label(text: str = "", role: str = "body") -> QLabel:
+def label(text: str = "", role: str = "body", tabular: bool = False) -> QLabel:
     """Return a line of text in one role of ``ROLES``; its colour follows the theme."""
     result = QLabel(text)
-    result.setFont(font(role))
+    result.setFont(font(role, tabular))
     result.setProperty("role", role)
     return result
 
@@ -67,8 +68,8 @@ def set_tag(widget: QWidget, name: str, value: object) -> None:
 
 def tokens_of(widget: QWidget) -> Tokens:
     """Return the colours of the theme that ``widget`` is shown in; ask again on a palette change."""
-    window = widget.palette().color(QPalette.ColorRole.Window)
-    return DARK if window.lightness() < 128 else LIGHT
+    # A style sheet rewrites the colours of window, button and text in a widget's palette, but never this one.
+    return DARK if widget.palette().color(QPalette.ColorRole.Mid).lightness() < 128 else LIGHT
 
 
 def apply_theme(app: QApplication, dark: bool) -> None:

@@ -10,35 +10,34 @@ os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 os.environ.setdefault("PYQTGRAPH_QT_LIB", "PySide6")
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from dataclasses import dataclass  # noqa: E402
+from dataclasses import dataclass
 
-import numpy as np  # noqa: E402
-from PySide6.QtCore import Qt  # noqa: E402
-from PySide6.QtGui import QAction, QColor, QPainter  # noqa: E402
-from PySide6.QtWidgets import (  # noqa: E402
+import numpy as np
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QAction, QColor, QPainter
+from PySide6.QtWidgets import (
     QApplication,
     QGridLayout,
-    QHBoxLayout,
     QMenuBar,
     QStackedWidget,
     QVBoxLayout,
     QWidget,
 )
 
-from app import words  # noqa: E402
-from app.convergence import Exact, Strip, Track  # noqa: E402
-from app.notice import NoticeBar  # noqa: E402
-from app.panels.landmarks import LandmarksPanel, LandmarkView  # noqa: E402
-from app.panels.lines import LinesPanel, LineView  # noqa: E402
-from app.panels.rail import Rail  # noqa: E402
-from app.panels.result import MeasureView, ResultPanel  # noqa: E402
-from app.panels.scan import ScanPanel, ScanView  # noqa: E402
-from app.panels.status import StatusBar  # noqa: E402
-from app.panels.top_bar import TopBar  # noqa: E402
-from app.panels.view_tools import CompareTools, ViewTools  # noqa: E402
-from app.theme import apply_theme, tokens_of  # noqa: E402
-from app.tokens import LINE_COLORS  # noqa: E402
-from app.words import tr  # noqa: E402
+from app import words
+from app.convergence import Exact, Strip, Track
+from app.notice import NoticeBar
+from app.panels.landmarks import LandmarksPanel, LandmarkView
+from app.panels.lines import LinesPanel, LineView
+from app.panels.rail import Rail
+from app.panels.result import MeasureView, ResultPanel
+from app.panels.scan import ScanPanel, ScanView
+from app.panels.status import StatusBar
+from app.panels.top_bar import TopBar
+from app.panels.view_tools import CompareTools, ViewTools
+from app.theme import apply_theme, tokens_of
+from app.tokens import LINE_COLORS
+from app.words import tr
 
 LINES = (
     ("bust", "Mid-bust line", 0.965, 454.0, 440.9, True, True, 896.0),
@@ -120,7 +119,7 @@ class Mock(QWidget):
         self.tools.adjustSize()
         self.tools.move((self.view.width() - self.tools.width()) // 2, self.view.height() - 62)
 
-    def paintEvent(self, event: object) -> None:
+    def paintEvent(self, event: object) -> None:  # noqa: N802
         painter = QPainter(self)
         tokens = tokens_of(self)
         painter.fillRect(self.rect(), QColor(tokens.panel))
@@ -157,15 +156,26 @@ class Mock(QWidget):
 
     def _inspector(self, page: str) -> QStackedWidget:
         stack = QStackedWidget()
-        pages = {"scan": ScanPanel(), "landmarks": LandmarksPanel(), "lines": LinesPanel(), "result": ResultPanel()}
+        pages = {
+            "scan": ScanPanel(),
+            "landmarks": LandmarksPanel(),
+            "lines": LinesPanel(),
+            "result": ResultPanel(),
+        }
         for each in pages.values():
             stack.addWidget(each)
         pages["scan"].set_scan(
             ScanView(
-                "person.ply", "m", tr("A trunk of 0.9 m around can only be in metres."), True, "+z", "-y", 65742,
-                (tr("3 holes filled, the largest 42 mm wide."), tr("118 loose specks left out.")),
+                file="person.ply",
+                unit="m",
+                reason=tr("A trunk of 0.9 m around can only be in metres."),
+                sure=True,
+                up="+z",
+                front="-y",
+                triangles=65742,
+                repairs=(tr("3 holes filled, the largest 42 mm wide."), tr("118 loose specks left out.")),
             )
-        )  # fmt: skip
+        )
         rule = tr("The deepest fold in the side view section through the bust point.")
         pages["landmarks"].set_landmarks([LandmarkView(n, tr(t), c, rule) for n, t, c in LANDMARKS])
         pages["landmarks"].select("fold_right")
@@ -221,6 +231,7 @@ def main(folder: Path) -> None:
         window.show()
         app.processEvents()
         window.place()
+        window.view.setFocus()
         app.processEvents()
         name = f"{page}_{'dark' if dark else 'light'}_{language}_{width}.png"
         window.grab().save(str(folder / name))

@@ -161,7 +161,7 @@ class LandmarkRow(QAbstractButton):
         painter.setPen(QColor(tokens.text))
         left = Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft
         painter.drawText(QRectF(28, 0, self.width() - 140, self.height()), left, self.text())
-        painter.setFont(font("secondary"))
+        painter.setFont(font("secondary", tabular=True))
         painter.setPen(QColor(tokens.text if self.isChecked() else tokens.text_quiet))
         percent = QRectF(right - 48, 0, 48, self.height())
         past = Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight

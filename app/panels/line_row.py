@@ -55,7 +55,8 @@ class LineChip(QWidget):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         rim = QColor("#FFFFFF")
         rim.setAlpha(97 if tokens_of(self).dark else 0)
-        painter.setPen(QPen(rim if self._filled else QColor(self._color), 1 if self._filled else 1.5))
+        outline = QColor(self._color).lighter(150) if tokens_of(self).dark else QColor(self._color)
+        painter.setPen(QPen(rim, 1) if self._filled else QPen(outline, 1.5))
         painter.setBrush(QColor(self._color) if self._filled else Qt.BrushStyle.NoBrush)
         painter.drawRoundedRect(QRectF(0.75, 2.75, 12.5, 8.5), 3, 3)
 
@@ -141,7 +142,7 @@ class LineRow(QFrame):
         self._chip = LineChip(self.view.color)
         self._name = label("", "name")
         self._eye = ToolButton("eye", tr("Show or hide this line (H)"), size=16, room=24)
-        self._measure = label("", "name")
+        self._measure = label("", "name", tabular=True)
         self._measure.setContentsMargins(0, 3, 6, 3)
         head.addWidget(self._chip)
         head.addWidget(self._name)
@@ -209,7 +210,7 @@ class _Details(QWidget):
         self._values: list[QLabel] = []
         for place, title in enumerate((tr("Set"), tr("Reached"), tr("Gap"))):
             grid.addWidget(label(title, "caption"), 0, place)
-            value = label("", "heading")
+            value = label("", "heading", tabular=True)
             value.setTextFormat(Qt.TextFormat.RichText)
             grid.addWidget(value, 1, place)
             self._values.append(value)

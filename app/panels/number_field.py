@@ -58,7 +58,7 @@ class NumberField(QLineEdit):
     def __init__(self, unit: str) -> None:
         super().__init__()
         self._unit, self._ratio, self._rest_mm, self._whole_mm = unit, 1.0, 1.0, 1.0
-        self.setFont(font("name" if unit == "%" else "body"))
+        self.setFont(font("name" if unit == "%" else "body", tabular=True))
         self.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         self.setProperty("kind", "number")
         self.setTextMargins(0, 0, self._unit_width(), 0)
@@ -68,8 +68,7 @@ class NumberField(QLineEdit):
         self.textEdited.connect(lambda _: set_tag(self, "wrong", False))
 
     def sizeHint(self) -> QSize:
-        figures = "100.0" if self._unit == "%" else "1000.0"
-        return QSize(self.fontMetrics().horizontalAdvance(figures) + self._unit_width() + 20, 24)
+        return QSize(self.fontMetrics().horizontalAdvance("100.0") + self._unit_width() + 18, 24)
 
     def show_length(self, ratio: float, rest_mm: float, whole_mm: float) -> None:
         """Show a set length, as a share of ``rest_mm`` [1], unless something is being typed."""
@@ -103,7 +102,7 @@ class NumberField(QLineEdit):
         painter.drawText(self.rect().adjusted(0, 1, -7, 0), _RIGHT, self._unit)
 
     def _unit_width(self) -> int:
-        return 15 if self._unit == "%" else 24
+        return 12 if self._unit == "%" else 21
 
     def _show_number(self) -> None:
         value = self._ratio * 100 if self._unit == "%" else self._ratio * self._rest_mm

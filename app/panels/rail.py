@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QAction, QColor, QKeySequence, QPainter, QPaintEvent, QPen
+from PySide6.QtGui import QAction, QColor, QKeySequence, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QAbstractButton, QButtonGroup, QVBoxLayout, QWidget
 
 from app.icons import paint_icon
@@ -116,7 +116,9 @@ class RailItem(QAbstractButton):
         painter.setBrush(QColor(tokens.ok if self._state == "done" else tokens.warn))
         painter.drawEllipse(at, 7, 7)
         if self._state == "done":
-            paint_icon(painter, "check", tokens.panel, QRectF(at.x() - 4.5, at.y() - 4.5, 9, 9))
+            painter.setPen(QPen(QColor(tokens.panel), 1.5, c=Qt.PenCapStyle.RoundCap))
+            tick = [QPointF(-2.8, 0.1), QPointF(-0.8, 2.1), QPointF(2.8, -1.9)]
+            painter.drawPolyline(QPolygonF([at + each for each in tick]))
         elif self._count:
             type_ = font("axis")
             type_.setWeight(type_.Weight.Bold)

@@ -3,6 +3,7 @@
 # ruff: noqa: N802 - Qt names its events and says what they are
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -66,16 +67,16 @@ class ResultPanel(QWidget):
 
 
 class _Table(QWidget):
-    """The rows, painted: name, before, after, change and a bar about a middle line."""
+    """The measures, painted: a name, under it before, after, change and a bar about a middle line."""
 
-    ROW, BAR = 30, 44
+    HEAD, ROW, BAR = 26, 52, 44
 
     def __init__(self) -> None:
         super().__init__()
         self._rows: tuple[MeasureView, ...] = ()
 
     def sizeHint(self) -> QSize:
-        return QSize(300, self.ROW * (len(self._rows) + 1) + 4)
+        return QSize(280, self.HEAD + self.ROW * len(self._rows) + 1)
 
     def minimumSizeHint(self) -> QSize:
         return self.sizeHint()
@@ -90,39 +91,41 @@ class _Table(QWidget):
     def paintEvent(self, event: QPaintEvent) -> None:
         tokens = tokens_of(self)
         painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        columns = self._columns()
         painter.setPen(QColor(tokens.text_caption))
         painter.setFont(font("caption"))
-        for at, title in zip(columns[1:], (tr("Before"), tr("After"), tr("Change")), strict=False):
-            painter.drawText(at, _RIGHT, title)
-        changes = [_change(each) for each in self._rows]
-        for place, (row, change) in enumerate(zip(self._rows, changes, strict=True), start=1):
-            top = place * self.ROW
-            painter.fillRect(QRectF(4, top, self.width() - 8, 1), QColor(tokens.line))
-            cells = [each.translated(0, top) for each in columns]
-            painter.setFont(font("body"))
-            painter.setPen(QColor(tokens.text))
-            painter.drawText(cells[0], _LEFT, row.label)
-            painter.setPen(QColor(tokens.text_caption))
-            painter.drawText(cells[1], _RIGHT, _written(row.before, row.unit))
-            if row.after is None or change is None:
-                continue
-            painter.setPen(QColor(tokens.text_quiet))
-            painter.drawText(cells[3], _RIGHT, number(change, _digits(row.unit), signed=True))
-            painter.setFont(font("name"))
-            painter.setPen(QColor(tokens.text))
-            painter.drawText(cells[2], _RIGHT, _written(row.after, row.unit))
-            self._paint_bar(painter, cells[4], change / _full_bar(row.unit))
+        titles = (tr("Before"), tr("After"), tr("Change"))
+        for cell, title in zip(self._cells(0, self.HEAD), titles, strict=False):
+            painter.drawText(cell, _RIGHT, title)
+        for place, row in enumerate(self._rows):
+            self._paint_row(painter, row, self.HEAD + place * self.ROW)
 
-    def _columns(self) -> list[QRectF]:
-        """Return the cells of the head row: name, before, after, change, bar."""
-        right = self.width() - 4.0
-        cells: list[QRectF] = []
-        for width, gap in ((self.BAR, 8), (46, 4), (62, 4), (62, 4)):
-            cells.insert(0, QRectF(right - width, 0, width, self.ROW))
-            right -= width + gap
-        return [QRectF(4, 0, right - 4, self.ROW), *cells]
+    def _paint_row(self, painter: QPainter, row: MeasureView, top: float) -> None:
+        tokens = tokens_of(self)
+        painter.fillRect(QRectF(4, top, self.width() - 8, 1), QColor(tokens.line))
+        before, after, change, bar = self._cells(top + 24, 24)
+        painter.setFont(font("body", tabular=True))
+        painter.setPen(QColor(tokens.text))
+        painter.drawText(QRectF(4, top + 4, self.width() - 8, 22), _LEFT, row.label)
+        painter.setPen(QColor(tokens.text_caption))
+        painter.drawText(before, _RIGHT, _written(row.before, row.unit))
+        if row.after is None:
+            return
+        changed = row.after - row.before
+        painter.setPen(QColor(tokens.text_quiet))
+        painter.drawText(change, _RIGHT, number(changed, _digits(row.unit), signed=True))
+        painter.setFont(font("name", tabular=True))
+        painter.setPen(QColor(tokens.text))
+        painter.drawText(after, _RIGHT, _written(row.after, row.unit))
+        self._paint_bar(painter, bar, changed / _full_bar(row.unit))
+
+    def _cells(self, top: float, height: float) -> tuple[QRectF, QRectF, QRectF, QRectF]:
+        """Return the cells before, after, change and bar of a line of the table."""
+        room = self.width() - 8 - self.BAR - 14
+        edges = [4.0, 4 + 0.36 * room, 4 + 0.74 * room, 4.0 + room]
+        before, after, change = (
+            QRectF(left, top, right - left, height) for left, right in itertools.pairwise(edges)
+        )
+        return before, after, change, QRectF(edges[-1] + 14, top, self.BAR, height)
 
     def _paint_bar(self, painter: QPainter, cell: QRectF, share: float) -> None:
         tokens = tokens_of(self)
@@ -136,10 +139,6 @@ class _Table(QWidget):
 
 _LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
 _RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
-
-
-def _change(row: MeasureView) -> float | None:
-    return None if row.after is None else row.after - row.before
 
 
 def _digits(unit: str) -> int:

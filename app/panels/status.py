@@ -26,7 +26,7 @@ class StatusBar(QWidget):
         row.setContentsMargins(14, 1, 14, 0)
         row.setSpacing(16)
         self._facts = label("", "caption")
-        self._volume = label("", "caption")
+        self._volume = label("", "caption", tabular=True)
         row.addWidget(self._facts)
         row.addWidget(self._volume)
         row.addStretch(1)

@@ -25,7 +25,7 @@ class TopBar(QWidget):
         left, right = QHBoxLayout(), QHBoxLayout()
         left.setSpacing(12)
         left.addWidget(label("Busk", "wordmark"))
-        left.addWidget(menu)
+        left.addWidget(menu, alignment=Qt.AlignmentFlag.AlignVCenter)
         left.addStretch(1)
         right.addStretch(1)
         right.addWidget(ToolButton("arrow-u-up-left", action=undo))
