@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import cKDTree
 
+from core.control_mesh import ControlMesh
 from core.mesh import Flags, Floats, Indices, Mesh, Points, frozen
 from core.proximity import centroids, corner_reach, nearest_place, pairs_around
-
-if TYPE_CHECKING:
-    from core.control_mesh import ControlMesh
 
 FAR = 60.0
 """No vertex further than this from the control mesh belongs to the patch [mm]."""
