@@ -40,6 +40,7 @@ class Landmark:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "position", frozen(self.position))
+        object.__setattr__(self, "confidence", float(np.clip(self.confidence, 0.0, 1.0)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,19 +86,21 @@ def _check(mesh: Mesh, trunk: Survey, poles: tuple[Pole, Pole], landmarks: Landm
     """Raise LandmarkError where what was found cannot be a bust."""
     left, right = (landmarks.position(f"bust_point_{side}") for side in SIDES)
     under, bust = stable_level(mesh, landmarks.underbust_level), trunk_levels(mesh, landmarks.bust_level)[0]
+    if under.tape == 0.0 or bust.tape == 0.0:
+        raise _refusal("the trunk is missing there")
     across, middle = left - right, 0.5 * (left + right)
-    depth = float(np.ptp(under.points[:, 1])) if len(under.segments) else 0.0
+    wide, deep, _ = np.ptp(under.points, axis=0)
     creases = [landmarks.points[f"fold_{side}"].rule for side in SIDES]
     for wrong, why in (
-        (under.tape == 0.0 or bust.tape == 0.0, "the trunk is missing at the bust"),
         (under.longest_straight > 0.2 * under.tape, "the trunk is open, as if only a part of it was scanned"),
         (not 550.0 < under.tape < 1400.0, f"the girth under it would be {under.tape:.0f} mm"),
         (not 15.0 < bust.tape - under.tape < 420.0, "it would not be wider than the trunk under it"),
-        (not 1.0 < np.ptp(under.points[:, 0]) / max(depth, 1.0) < 2.3, "the trunk is not as deep as a body"),
+        (not 1.0 < wide / deep < 2.3, "the trunk is not as deep as a body"),
         (not 90.0 < across[0] < 380.0, f"its points would lie {across[0]:.0f} mm apart"),
         (abs(across[2]) > 45.0, "its points would lie at very different heights"),
         (abs(middle[0] - trunk.middle) > 30.0, "it would lie beside the middle of the body"),
         (min(pole.prominence for pole in poles) < 4.0, "nothing stands out of the chest"),
+        (not any(pole.inside for pole in poles), "the chest comes to no point"),
         (not 12.0 < middle[2] - landmarks.underbust_level < 190.0, "no fold lies at a likely depth under it"),
         (creases == [NO_CREASE, NO_CREASE], "there is no crease under it"),
     ):
@@ -166,10 +169,10 @@ def _fold_and_lowest(mesh: Mesh, bust: Points, anchor: Anchor, side: str) -> lis
         Landmark(
             f"fold_{side}",
             own[at],
-            float(np.clip(confidence, 0.0, 1.0)),
+            confidence,
             CREASE if mean[at] > 0.006 else NO_CREASE,
         ),
-        Landmark(f"lowest_{side}", lowest, float(np.clip(confidence, 0.0, 1.0)), LOWEST),
+        Landmark(f"lowest_{side}", lowest, confidence, LOWEST),
     ]
 
 

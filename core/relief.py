@@ -101,7 +101,11 @@ def find_poles(survey: Survey, anchor: Anchor) -> tuple[Pole, Pole]:
     p, row = survey.samples[near], survey.row[near]
     x = p[:, 0] - survey.middle
     depth = 0.5 * (survey.front + survey.back)[row] - p[:, 1]
-    under = (survey.z > anchor.z - 45.0) & (survey.z < anchor.z - 10.0)
+    under = (survey.z > anchor.z - 45.0) & (survey.z < anchor.z - 10.0) & (survey.tape > 0.0)
+    if not under.any() or survey.z[0] > anchor.z - 12.0:
+        raise LandmarkError(
+            "The trunk under the breasts is missing.", "Open a scan that shows the whole trunk."
+        )
     width = float(np.median(survey.half_width[under]))
     window = (depth > 0.0) & (np.abs(x) > 0.17 * width) & (np.abs(x) < max(1.25 * width, width + 35.0))
     azimuth = np.degrees(np.arctan2(np.abs(x), depth))

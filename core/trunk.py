@@ -230,6 +230,11 @@ class Survey:
         width, girth = np.percentile(w[alone], 70), np.percentile(self.tape[alone], 70)
         usable = full & (w > 0.7 * width) & (w < 1.3 * width) & (self.tape > 0.7 * girth)
         usable &= (self.z < self.z[full].max() - 60.0) & (self.z > self.z[full].min() + 30.0)
+        if not 400.0 < girth < 2000.0:
+            raise LandmarkError(
+                f"The trunk measures {girth:.0f} mm round, which no adult does.",
+                "Say in which unit the scan is.",
+            )
         return float(width), usable
 
     def back_width(self) -> Floats:
@@ -241,8 +246,15 @@ class Survey:
 
 
 def survey(mesh: Mesh, step: float = 5.0) -> Survey:
-    """Cut the whole ``mesh`` every ``step`` [mm] and measure its trunk."""
+    """Cut the whole ``mesh`` every ``step`` [mm] and measure its trunk.
+
+    Raises LandmarkError if it has not the height of a body.
+    """
     low, high = mesh.vertices[:, 2].min(), mesh.vertices[:, 2].max()
+    if not 100.0 < high - low < 2500.0:
+        raise LandmarkError(
+            f"The scan is {high - low:.0f} mm high, no upper body is.", "Say in which unit it is."
+        )
     z = np.arange(low + 0.5 * step, high, step)
     levels = trunk_levels(mesh, z)
     row = np.repeat(np.arange(len(z)), [len(level.segments) for level in levels])
