@@ -48,19 +48,6 @@ def application(language: str | None = None, dark: bool | None = None) -> QAppli
     return existing
 
 
-def off_screen() -> None:
-    """Let Qt draw into memory, if there is no display to draw on."""
-    if not has_display():
-        os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
-
-
-def has_display() -> bool:
-    """Tell whether a window can be shown."""
-    return sys.platform in ("win32", "darwin") or bool(
-        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
-    )
-
-
 def keep_log() -> Path:
     """Write faults to a log file, never the scan or its measures, and return its folder."""
     folder = Path(platformdirs.user_log_dir("Busk", appauthor=False))

@@ -1,4 +1,4 @@
-"""One piece of work at a time beside the window's thread; its answer comes back as a signal in that thread."""
+"""Work beside the window's thread; its answer comes back as a signal in that thread."""
 
 from __future__ import annotations
 

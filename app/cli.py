@@ -9,6 +9,7 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
 from pathlib import Path
+from typing import Any
 
 from core import __version__
 from core.design import Design, ScanSource
@@ -17,7 +18,7 @@ from core.lines import length_ratio
 from core.project import is_project, open_project
 
 SETTLED, BAD_INPUT, NOT_SETTLED = 0, 2, 3
-SETTINGS: dict[str, Callable[[str], object]] = {
+SETTINGS: dict[str, Callable[[str], Any]] = {
     "gain": float,
     "line_stiffness": float,
     "line_contact": str,
@@ -47,19 +48,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def design_of(path: str, options: argparse.Namespace) -> Design:
     """Return the design of a project, or a new one for a scan, with what the options overrule."""
-    if is_project(path):
-        design = open_project(path)
-    else:
-        design = Design(ScanSource(str(Path(path).absolute())))
+    scan = ScanSource(str(Path(path).absolute()))
+    design = open_project(path) if is_project(path) else Design(scan)
     axes = {key: getattr(options, key) for key in ("unit", "up", "front") if getattr(options, key, None)}
     if axes:
         design = replace(design, scan=replace(design.scan, **axes))
     return replace(design, **_settings(getattr(options, "settings", None) or []))
 
 
-def _settings(pairs: Sequence[str]) -> dict[str, object]:
+def _settings(pairs: Sequence[str]) -> dict[str, Any]:
     known = {field.name for field in fields(Design)}
-    values: dict[str, object] = {}
+    values: dict[str, Any] = {}
     for pair in pairs:
         key, equals, value = pair.partition("=")
         key = key.strip().replace("-", "_")

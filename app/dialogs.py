@@ -41,7 +41,7 @@ def ask_about_changes(parent: QWidget, name: str) -> str:
 
 def about_busk(parent: QWidget) -> None:
     """Say what Busk is, and under which licence."""
-    text = tr(
-        "Busk {version}\n\nSee how a foundation garment reshapes a body.\nApache-2.0. Nothing leaves this computer."
-    )
-    QMessageBox.about(parent, tr("About Busk"), text.format(version=__version__))
+    title = tr("Busk {version}").format(version=__version__)
+    purpose = tr("See how a foundation garment reshapes a body.")
+    terms = tr("Apache-2.0. Nothing leaves this computer.")
+    QMessageBox.about(parent, tr("About Busk"), f"{title}\n\n{purpose}\n{terms}")

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from app.application import application, off_screen
+from app.display import off_screen
 from core.design import Design
 from core.errors import UserError
 
@@ -22,6 +22,7 @@ def draw_picture(
     size: tuple[int, int] = (1600, 1000),
 ) -> None:
     """Write a PNG of the reshaped body from one side. Raises UserError."""
+    off_screen()
     import pyvista as pv
 
     from app.camera import VIEWS
@@ -70,8 +71,10 @@ def draw_window(
 ) -> None:
     """Write a PNG of the whole window on a settled design. Raises UserError."""
     off_screen()
-    app = application(language=language, dark=dark)
+    from app.application import application
     from app.window import open_window
+
+    app = application(language=language, dark=dark)
 
     window = open_window(design)
     failures: list[Exception] = []

@@ -1,4 +1,4 @@
-"""The middle of the window: the 3D view with the tools that float on it, kept up with the session's frames."""
+"""The middle of the window: the 3D view and the tools that float on it, kept up with the frames."""
 
 from __future__ import annotations
 
@@ -46,6 +46,8 @@ class ViewArea(QWidget):
         for panel in (self.tools, self.compare):
             panel.installEventFilter(self)
             panel.raise_()
+        self.viewport.set_view("three-quarter")
+        self.tools.set_view("three-quarter")
         self.tools.set_shown("bands", True)
         self.tools.set_shown("perspective", True)
         self._background.finished.connect(self._shade)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from app.application import application, has_display, keep_log
+from app.application import application, keep_log
+from app.display import has_display
 from app.samples import sample_design
 from app.session import Session
 from core.design import Design

@@ -61,7 +61,7 @@ def _foremost(rest: Points, on_side: Flags) -> Indices:
     """Return rows of vertices that may become the foremost: near the present one, evenly thinned."""
     rows = np.flatnonzero(on_side)
     near = rows[rest[rows, 1] < rest[rows, 1].min() + _REACH]
-    return near[:: max(1, len(near) // _CANDIDATES)]
+    return np.asarray(near[:: max(1, len(near) // _CANDIDATES)])
 
 
 def _apex(places: Points) -> Points:

@@ -1,0 +1,37 @@
+"""The sample session with no display: the same window off-screen, and everything that it can write."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from app.picture import draw_picture, draw_window
+from app.samples import sample_design
+from core.export import write_mesh
+from core.mesh import Mesh
+from core.pipeline import build
+from core.report import report, run, write_report, write_turns
+from core.tffd import deform
+
+
+def run_demo(out: Path) -> int:
+    """Write pictures, deformed body and report of the sample to ``out``, and say so."""
+    design = sample_design()
+    print("Busk has no display here: the sample session goes to files.")
+    draw_window(design, out / "window.png")
+    print(f"  {out / 'window.png'}: the window")
+    for view, lines, name in (("three-quarter", (), "before"), ("three-quarter", design.lines, "after")):
+        draw_picture(replace(design, lines=lines), out / f"{name}.png", view=view, size=(1000, 900))
+        print(f"  {out / f'{name}.png'}: the body {name}")
+    solution = run(build(design))
+    points = solution.stages.model.tensegric.expand(solution.state.moved)
+    write_mesh(
+        out / "body.ply", Mesh(deform(solution.stages.binding, points), solution.stages.body.mesh.faces)
+    )
+    print(f"  {out / 'body.ply'}: the deformed body")
+    write_turns(out / "turns.csv", solution.records, solution.stages.model.lines)
+    write_report(out / "report.json", report(solution))
+    print(f"  {out / 'turns.csv'}, {out / 'report.json'}: every turn, and the figures at the end")
+    last = solution.last
+    print(f"{solution.verdict.state} after {last.turn} turns, volume error {last.error_ml:+.2f} ml")
+    return 0
