@@ -18,7 +18,7 @@ find_python() {
             return
         fi
     done
-    fail "Busk needs Python 3.11, 3.12 or 3.13; here python3 is: $(python3 --version 2>&1 || true)" \
+    fail "Busk needs Python 3.11, 3.12 or 3.13; ${PYTHON:-python3} is: $("${PYTHON:-python3}" --version 2>&1 || true)" \
         "Install one of them (Debian and Ubuntu: apt-get install python3.12 python3.12-venv) and call make again." \
         "A Python in another place can be named: make setup PYTHON=/opt/python3.12/bin/python3"
 }
@@ -86,14 +86,16 @@ prepare_environment() {
     $pip install --no-index --no-deps --no-build-isolation --editable .
 }
 
+is_ready() {
+    [ -x .venv/bin/python ] && [ -x .venv/bin/busk ] && [ "$(cat ".venv/.ready-$1" 2>/dev/null)" = "$key" ]
+}
+
 level=${1:-run}
-ready=".venv/.ready-$level"
 key=$(cat requirements.lock pyproject.toml packaging/setup.sh | cksum; pwd -P)
-if [ -x .venv/bin/python ] && [ -x .venv/bin/busk ] && [ "$(cat "$ready" 2>/dev/null)" = "$key" ]; then
-    exit 0
+if ! is_ready "$level"; then
+    python=$(find_python)
+    prepare_system
+    is_ready run || prepare_environment
+    printf '%s\n' "$key" | tee .venv/.ready-run > ".venv/.ready-$level"
+    say "Ready."
 fi
-python=$(find_python)
-prepare_system
-prepare_environment
-printf '%s\n' "$key" > "$ready"
-say "Ready."

@@ -1,0 +1,38 @@
+"""What every test shares: the sample bodies, and a house in which the user's own settings are not touched."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+SAMPLES = Path(__file__).parent.parent / "resources" / "samples"
+
+os.environ.setdefault("QT_API", "pyside6")
+os.environ.setdefault("PYQTGRAPH_QT_LIB", "PySide6")
+if not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+    os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def own_folders() -> Iterator[None]:
+    """Settings, data and logs of this session go to a folder that is gone afterwards."""
+    with pytest.MonkeyPatch.context() as patch, tempfile.TemporaryDirectory() as folder:
+        for kind in ("CONFIG", "DATA", "STATE", "CACHE"):
+            patch.setenv(f"XDG_{kind}_HOME", str(Path(folder) / kind.lower()))
+        yield
+
+
+@pytest.fixture(scope="session")
+def mannequin() -> Path:
+    """The sample body on which the program opens: a smooth, watertight scan."""
+    return SAMPLES / "mannequin.ply"
+
+
+@pytest.fixture(scope="session")
+def person() -> Path:
+    """The sample body with the shape of a person: soft, uneven, with a deep fold."""
+    return SAMPLES / "person.ply"
