@@ -6,8 +6,6 @@ import os
 import sys
 from pathlib import Path
 
-os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
-os.environ.setdefault("PYQTGRAPH_QT_LIB", "PySide6")
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from dataclasses import dataclass
@@ -211,6 +209,7 @@ class Mock(QWidget):
 
 def main(folder: Path) -> None:
     """Write pictures of all pages, themes, languages and sizes into ``folder``."""
+    os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
     app = QApplication([])
     folder.mkdir(parents=True, exist_ok=True)
     for width, height, dark, language, page, vibrating in (
