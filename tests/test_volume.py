@@ -1,0 +1,186 @@
+"""Volume: hand values, derivatives against finite differences, identities, and the laws of its control."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from shapes import central_difference, octahedron, sphere, tent, torso
+
+from core.mesh import Mesh
+from core.tensegric import tensegric_model
+from core.volume import CONTROLS, Pressure, next_pressure, volume_measure
+
+
+def measured(control):
+    model = tensegric_model(control.mesh, control.fixed)
+    left = control.column[control.mesh.faces].sum(axis=1) > 0
+    return model, volume_measure(control.mesh, model.free, left)
+
+
+TORSO, TORSO_VOLUME = measured(torso(skew=0.3))
+RNG = np.random.default_rng(5)
+SOMEWHERE = 3.0 * RNG.normal(size=(len(TORSO.free), 3))
+
+
+def test_the_tent_by_hand():
+    mesh, fixed = tent(height=3.0)
+    volume = volume_measure(mesh, np.flatnonzero(~fixed))
+    np.testing.assert_allclose(volume.centre, 0.0, atol=1e-15)
+    assert volume.rest_volume == pytest.approx(64.0)
+    lifted = np.concatenate([mesh.vertices[:4], [[0, 0, 4.5]]])
+    assert volume.volume(lifted) == pytest.approx(96.0)
+    np.testing.assert_allclose(volume.gradient(lifted), [[0, 0, 64 / 3]], atol=1e-14)
+    np.testing.assert_allclose(volume.hessian(lifted, np.ones(2)), np.zeros((3, 3)), atol=1e-15)
+
+
+def test_a_tetrahedron_and_its_reversal():
+    corner = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
+    faces = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
+    for sign, wound in ((1.0, faces), (-1.0, faces[:, ::-1])):
+        volume = volume_measure(Mesh(corner, wound), np.arange(4))
+        assert volume.rest_volume == pytest.approx(sign / 6)
+        assert volume.volume(corner) == pytest.approx(sign / 6)
+        np.testing.assert_allclose(volume.gradient(corner)[3], [0, 0, sign / 6], atol=1e-16)
+
+
+def test_the_measure_agrees_with_the_mesh_at_rest_and_moved():
+    points = TORSO.expand(SOMEWHERE)
+    mesh = torso(skew=0.3).mesh
+    assert TORSO_VOLUME.volume(TORSO.rest) == pytest.approx(TORSO_VOLUME.rest_volume, rel=1e-14)
+    moved = mesh.moved(points)
+    assert TORSO_VOLUME.volume(points) == pytest.approx(moved.enclosed_volume(TORSO_VOLUME.centre), rel=1e-13)
+
+
+@given(st.tuples(*[st.floats(-500, 500)] * 3))
+def test_a_difference_of_volume_does_not_depend_on_the_centre(apex):
+    mesh = torso(skew=0.3).mesh
+    points = TORSO.expand(SOMEWHERE)
+    change = mesh.moved(points).enclosed_volume(apex) - mesh.enclosed_volume(apex)
+    assert change == pytest.approx(TORSO_VOLUME.volume(points) - TORSO_VOLUME.rest_volume, abs=1e-4)
+
+
+def test_both_sides_and_the_rest_make_the_whole():
+    points = TORSO.expand(SOMEWHERE)
+    whole = TORSO_VOLUME.side_volumes(points).sum() + TORSO_VOLUME.still_volume
+    assert whole == pytest.approx(TORSO_VOLUME.volume(points), rel=1e-14)
+    np.testing.assert_allclose(
+        TORSO_VOLUME.side_gradients(points).sum(axis=0), TORSO_VOLUME.gradient(points), atol=1e-11
+    )
+
+
+def test_each_breast_changes_the_volume_of_its_own_side_alone():
+    moved = np.zeros((len(TORSO.free), 3))
+    is_left = TORSO.rest[TORSO.free, 0] > 30.0
+    moved[is_left, 1] = -4.0
+    change = TORSO_VOLUME.side_volumes(TORSO.expand(moved)) - TORSO_VOLUME.side_volumes(TORSO.rest)
+    assert change[0] > 1e4
+    assert change[1] == 0.0
+
+
+def test_sides_default_to_the_side_of_the_centre():
+    control = torso()
+    by_place = volume_measure(control.mesh, np.flatnonzero(~control.fixed))
+    _, by_column = measured(control)
+    np.testing.assert_array_equal(by_place.left, by_column.left)
+
+
+def test_gradient_agrees_with_finite_differences():
+    # Volume is linear in every single coordinate: the difference is exact but for round-off.
+    found = central_difference(lambda d: TORSO_VOLUME.volume(TORSO.expand(d)), SOMEWHERE, 1.0)
+    gradient = TORSO_VOLUME.gradient(TORSO.expand(SOMEWHERE))
+    np.testing.assert_allclose(gradient, found.reshape(-1, 3), atol=1e-8 * np.abs(gradient).max())
+
+
+def test_gradient_is_of_second_order_along_a_skew_direction():
+    way = RNG.normal(size=SOMEWHERE.shape)
+    slope = np.sum(TORSO_VOLUME.gradient(TORSO.expand(SOMEWHERE)) * way)
+
+    def error(step):
+        return (
+            central_difference(
+                lambda t: TORSO_VOLUME.volume(TORSO.expand(SOMEWHERE + t[0] * way)), np.zeros(1), step
+            )[0]
+            - slope
+        )
+
+    # V is cubic along a straight way: the central difference errs by exactly its cubic part times h^2.
+    assert error(8.0) / error(4.0) == pytest.approx(4.0, rel=1e-5)
+    assert abs(error(0.01)) < 1e-5 * abs(slope)
+
+
+def test_hessian_agrees_with_finite_differences():
+    pressures = np.array([1.3, 0.7])
+    found = central_difference(
+        lambda d: np.tensordot(pressures, TORSO_VOLUME.side_gradients(TORSO.expand(d)), axes=1).ravel(),
+        SOMEWHERE,
+        1.0,
+    )
+    hessian = TORSO_VOLUME.hessian(TORSO.expand(SOMEWHERE), pressures)
+    np.testing.assert_allclose(hessian, found, atol=1e-11 * np.abs(found).max())
+    np.testing.assert_array_equal(hessian, hessian.T)
+
+
+def test_a_closed_volume_is_homogeneous_and_feels_no_net_force():
+    ball = sphere()
+    volume = volume_measure(ball, np.arange(len(ball.vertices)))
+    points = ball.vertices + RNG.normal(size=ball.vertices.shape)
+    force = volume.gradient(points)
+    np.testing.assert_allclose(force.sum(axis=0), 0.0, atol=1e-9)
+    np.testing.assert_allclose(np.cross(points, force).sum(axis=0), 0.0, atol=1e-6)
+    # Euler: a function of degree 3 satisfies x . grad V = 3 V, and its Hessian x . H x = 6 V.
+    assert np.sum(points * force) == pytest.approx(3 * volume.volume(points), rel=1e-12)
+    flat = (points - volume.centre).ravel()
+    assert flat @ volume.hessian(points, np.ones(2)) @ flat == pytest.approx(
+        6 * volume.volume(points), rel=1e-12
+    )
+
+
+def test_the_force_on_an_octahedron_points_outward():
+    shape = octahedron(2.0)
+    force = volume_measure(shape, np.arange(6)).gradient(shape.vertices)
+    # A third of the area vectors around each tip: four faces whose z parts are 2 each.
+    np.testing.assert_allclose(force, shape.vertices * (4 * 2 / 3) / 2, atol=1e-14)
+
+
+def test_conventional_pressure_is_the_gain_times_the_last_error():
+    after = next_pressure("conventional", Pressure(value=9.0), 0.02, gain=1.5)
+    assert after.value == pytest.approx(0.03)
+    assert after.error == 0.02
+
+
+def test_no_control_never_builds_up_pressure():
+    assert next_pressure("none", Pressure(), 0.5, gain=1.5).value == 0.0
+
+
+def test_adaptive_pressure_by_hand():
+    first = next_pressure("adaptive", Pressure(), 0.01, gain=99.0)
+    assert first.value == pytest.approx(0.8 * (0.01 + 0.8 * 0.01))
+    # Coming home fast: the push is taken back a little although volume is still missing.
+    second = next_pressure("adaptive", first, 0.004, gain=99.0)
+    assert second.value - first.value == pytest.approx(0.8 * (0.004 - 0.8 * 0.006))
+    assert second.step == 0.8
+
+
+def test_adaptive_step_halves_when_the_volume_flips_and_recovers_slowly():
+    flipped = next_pressure("adaptive", Pressure(error=0.01), -0.008, gain=0.0)
+    assert flipped.step == 0.4
+    assert next_pressure("adaptive", flipped, -0.007, gain=0.0).step == pytest.approx(0.42)
+    small_flip = next_pressure("adaptive", Pressure(error=0.01), -0.002, gain=0.0)
+    assert small_flip.step == 0.8
+    round_off = next_pressure("adaptive", Pressure(error=1e-8), -1e-8, gain=0.0)
+    assert round_off.step == 0.8
+
+
+@given(st.floats(0.5, 2.0), st.floats(0.5, 2.0))
+def test_the_adaptive_push_is_the_error_less_what_is_already_coming_home(before, now):
+    """The paper's wording: dP = step * e * (1 - damping * r), r = (V - V_before) / (V0 - V)."""
+    pressure = Pressure(value=0.3, error=before)
+    ratio = (before - now) / now
+    push = next_pressure("adaptive", pressure, now, gain=0.0).value - 0.3
+    assert push == pytest.approx(0.8 * now * (1.0 - 0.8 * ratio), abs=1e-12)
+
+
+def test_an_adaptive_pressure_that_reached_its_aim_stays():
+    steady = Pressure(value=0.7)
+    assert next_pressure("adaptive", steady, 0.0, gain=0.0) == steady
+    assert set(CONTROLS) == {"none", "conventional", "adaptive", "exact"}
