@@ -1,4 +1,4 @@
-"""The theme keeps its promises: everything can be read, colours stay apart, both themes reach every widget."""
+"""The theme keeps its promises: all can be read, colours stay apart, both themes reach all widgets."""
 
 from __future__ import annotations
 
