@@ -22,7 +22,7 @@ FLOORS = {
     "solving": "solver exact verdict comparison watch",
     "document": "design project pipeline live export report",
     "seeing": "camera scene_stage scene_body scene_bands scene_control scene",
-    "wording": "tokens words samples",
+    "wording": "display tokens words samples",
     "asking": "session",
     "dress": "icons theme parts",
     "showing": "background canvas overlay pointer viewport live_plot verdict_chip convergence notice "
