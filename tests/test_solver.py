@@ -1,0 +1,319 @@
+"""Turns: hand values on a tent, a plain sweep beside the matrix one, what each volume control promises."""
+
+from dataclasses import replace
+from itertools import islice
+
+import numpy as np
+import pytest
+from shapes import fitted, sphere, tent_model, torso
+
+from core.control_mesh import ControlMesh
+from core.lines import line_on
+from core.mesh import Mesh
+from core.solver import (
+    DEFAULT_LINE_STIFFNESS,
+    Marks,
+    State,
+    Targets,
+    assemble,
+    at_rest,
+    constrained_model,
+    gain_limit,
+    iterate,
+    record,
+    turn,
+)
+from core.tensegric import tensegric_model
+from core.volume import Pressure, volume_measure
+
+CONTROLS = ("none", "conventional", "adaptive")
+TORSO = constrained_model(torso(), worn=["mid-bust"])
+SKEW = constrained_model(torso(skew=0.3))
+
+
+def mid_bust(model, ratio):
+    return tuple(ratio if line.name == "mid-bust" else 1.0 for line in model.lines)
+
+
+def run(model, targets, turns, state=None):
+    states, records = zip(*iterate(model, lambda: targets, state, turns=turns), strict=True)
+    return states[-1], records
+
+
+def errors_of(model, targets, turns, state=None):
+    return np.array([measured.error for measured in run(model, targets, turns, state)[1]])
+
+
+def test_line_stiffness_by_hand():
+    model = tent_model(stiffness=16.0)
+    # Two equal segments, each 16 times what all cables at the tip make together.
+    np.testing.assert_allclose(model.line_stiffness, 16.0 * model.tensegric.mean_stiffness)
+    np.testing.assert_allclose(model.rest_segments, np.sqrt(41.0))
+    assert DEFAULT_LINE_STIFFNESS == 16.0
+
+
+def test_a_tape_is_the_same_along_a_line():
+    np.testing.assert_allclose(
+        TORSO.line_stiffness * TORSO.rest_segments,
+        (TORSO.line_stiffness * TORSO.rest_segments)[0],
+        rtol=1e-12,
+    )
+
+
+def test_hooke_force_by_hand():
+    model = tent_model()
+    k, length = model.line_stiffness[0], np.sqrt(41.0)
+    force = model.pull(model.tensegric.rest, model.natural_lengths((0.9,)))
+    # Both segments are too long by a tenth and pull the tip along them, which is 3 down in sqrt(41).
+    np.testing.assert_allclose(force, [[0, 0, -2 * k * (0.1 * length) * 3 / length]], atol=1e-12)
+    longer = model.pull(model.tensegric.rest, model.natural_lengths((1.1,)))
+    np.testing.assert_allclose(longer, -force, atol=1e-12)
+
+
+def test_hooke_force_equals_the_tension_of_every_segment():
+    """What the implicit member k (n u - e) adds beside its stiffness is the spring's k (n - |e|) u."""
+    rng = np.random.default_rng(2)
+    moved = 4.0 * rng.normal(size=(len(SKEW.tensegric.free), 3))
+    points, ratios = SKEW.tensegric.expand(moved), (0.9, 0.8, 1.1)
+    force = np.zeros_like(points)
+    for index, line in enumerate(SKEW.lines):
+        for (i, j), k, natural in zip(
+            line.pairs,
+            SKEW.line_stiffness[SKEW.owner == index],
+            ratios[index] * line.rest_lengths,
+            strict=line.constrains,
+        ):
+            span = points[i] - points[j]
+            tension = k * (np.linalg.norm(span) - natural) * span / np.linalg.norm(span)
+            force[i] -= tension
+            force[j] += tension
+    found = SKEW.pull(points, SKEW.natural_lengths(ratios)) - SKEW.line_laplacian @ moved
+    np.testing.assert_allclose(found, force[SKEW.tensegric.free], atol=1e-10)
+
+
+def test_first_turn_of_the_tent_by_hand():
+    model = tent_model(stiffness=2.0)
+    q = model.tensegric.mean_stiffness  # 4 cables; the line adds 2 segments of 2 q each
+    state, measured = turn(model, Targets((0.8,), "none"), at_rest(model))
+    down = -2 * (2 * q) * 0.2 * 3.0 / (q + 2 * 2 * q)
+    np.testing.assert_allclose(state.moved, [[0, 0, down]], atol=1e-14)
+    assert measured.turn == state.turn == 1
+    assert measured.step == pytest.approx(-down)
+    assert measured.error == pytest.approx(down / 3.0)  # the tent is a pyramid: volume goes with height
+    assert measured.error_ml == pytest.approx(64 * down / 3.0 / 1000)
+    assert measured.lengths == (pytest.approx(2 * np.sqrt(32 + (3 + down) ** 2)),)
+
+
+def test_pressure_of_the_tent_by_hand():
+    model = tent_model(stiffness=2.0)
+    q = model.tensegric.mean_stiffness
+    assert model.probe == pytest.approx((64 / 3) ** 2 / (5 * q))
+    # One unit of pressure fills the whole volume in one turn: for a pyramid exactly so.
+    state = State(np.zeros((1, 3)), Pressure(value=0.25))
+    _, measured = turn(model, Targets((1.0,), "conventional"), state)
+    assert measured.error == pytest.approx(0.25)
+
+
+def plain_sweep(model, targets, state):
+    """One turn as the paper tells it: point after point to its balance among neighbours as they are now."""
+    tensegric = model.tensegric
+    old, now = tensegric.expand(state.moved), tensegric.expand(state.moved)
+    natural = model.natural_lengths(targets.ratios)
+    volume_force = state.pressure.value * model.pressure_unit * model.volume.gradient(old)
+    for place, i in enumerate(tensegric.free):
+        total = volume_force[place] if targets.control != "none" else np.zeros(3)
+        stiffness = 0.0
+        for (a, b), q in zip(tensegric.cables, tensegric.density, strict=True):
+            if i in (a, b):
+                j = b if i == a else a
+                total = total + q * (now[j] + tensegric.rest[i] - tensegric.rest[j])
+                stiffness += q
+        for (a, b), k, length in zip(model.pairs, model.line_stiffness, natural, strict=True):
+            if i in (a, b):
+                j = b if i == a else a
+                way = old[i] - old[j]
+                total = total + k * (now[j] + length * way / np.linalg.norm(way))
+                stiffness += k
+        now[i] = total / stiffness
+    return now
+
+
+@pytest.mark.parametrize("control", CONTROLS)
+def test_a_turn_is_a_plain_gauss_seidel_sweep(control):
+    targets = Targets((0.9, 0.85, 1.05), control, 1.2)
+    state = at_rest(SKEW)
+    for _ in range(4):
+        expected = plain_sweep(SKEW, targets, state)
+        state, _ = turn(SKEW, targets, state)
+        np.testing.assert_allclose(SKEW.tensegric.expand(state.moved), expected, atol=1e-10)
+
+
+def test_probe_is_the_change_of_volume_in_one_turn():
+    def answer(pressure):
+        state = State(np.zeros((len(SKEW.tensegric.free), 3)), Pressure(value=pressure))
+        return turn(SKEW, Targets((1.0, 1.0, 1.0), "conventional"), state)[1].error / pressure
+
+    wrong = [abs(answer(pressure) - 1.0) for pressure in (1e-2, 1e-3, 1e-4)]
+    # Only the volume itself is not linear: ten times less push, ten times less deviation.
+    assert wrong[2] < 1e-4
+    assert wrong[0] / wrong[1] == pytest.approx(10.0, rel=0.1)
+
+
+@pytest.mark.parametrize("control", CONTROLS)
+@pytest.mark.parametrize("model", [TORSO, SKEW], ids=["one line", "skew, all lines"])
+def test_at_rest_nothing_drifts(control, model):
+    state, records = run(model, Targets((1.0,) * 3, control, 1.5), 50)
+    assert np.abs(state.moved).max() < 1e-10
+    assert max(abs(measured.error) for measured in records) < 1e-12
+
+
+@pytest.mark.parametrize("ratio", [0.7, 0.8, 0.9, 0.97, 1.03, 1.1])
+def test_adaptive_holds_the_volume_within_60_turns_without_ripple(ratio):
+    errors = errors_of(TORSO, Targets(mid_bust(TORSO, ratio)), 200)
+    assert np.abs(errors[60:]).max() < 1e-3
+    assert np.ptp(errors[-40:]) < 1e-5
+    assert np.abs(np.diff(errors[-40:])).max() < 1e-6
+
+
+def test_adaptive_holds_the_volume_on_a_skew_body_with_all_lines():
+    errors = errors_of(SKEW, Targets((1.0, 0.85, 0.9)), 200)
+    assert np.abs(errors[60:]).max() < 1e-3
+    assert np.ptp(errors[-40:]) < 1e-5
+
+
+def test_adaptive_follows_lengths_that_jump():
+    state = at_rest(TORSO)
+    for ratio in (0.97, 0.7, 1.05, 0.6):
+        state, records = run(TORSO, Targets(mid_bust(TORSO, ratio)), 60, state)
+        assert abs(records[-1].error) < 1e-3
+
+
+def test_conventional_leaves_an_error_that_no_control_exceeds():
+    ratios = mid_bust(TORSO, 0.9)
+    conventional = errors_of(TORSO, Targets(ratios, "conventional", 1.2), 300)[-1]
+    none = errors_of(TORSO, Targets(ratios, "none"), 300)[-1]
+    adaptive = errors_of(TORSO, Targets(ratios, "adaptive"), 300)[-1]
+    assert none < conventional < -10 * abs(adaptive)
+
+
+def flips(model, gain, ratio=0.97, turns=400):
+    """The flip-flop of the conventional volume error, turn by turn: its second differences."""
+    errors = errors_of(model, Targets(mid_bust(model, ratio), "conventional", gain), turns)
+    return np.abs(errors[:-2] - 2 * errors[1:-1] + errors[2:])
+
+
+@pytest.mark.parametrize("model", [TORSO, SKEW], ids=["one line", "skew, all lines"])
+def test_conventional_vibrates_above_the_limit_and_not_below(model):
+    limit = gain_limit(model)
+    assert 1.2 < limit < 2.0
+    assert flips(model, 0.95 * limit)[-1] < 1e-6
+    assert flips(model, 1.05 * limit)[-1] > 1e-3
+
+
+def test_the_limit_is_sharp_where_moves_are_small():
+    limit = gain_limit(TORSO)
+    for factor, grows in ((0.99, False), (1.01, True)):
+        swing = flips(TORSO, factor * limit, ratio=0.999, turns=160)
+        assert (swing[-1] > swing[-41]) == grows
+
+
+@pytest.mark.parametrize("ratio", [0.6, 0.8, 0.97, 1.1])
+def test_without_control_nothing_vibrates(ratio):
+    errors = errors_of(TORSO, Targets(mid_bust(TORSO, ratio), "none"), 200)[20:]
+    steps = np.diff(errors)
+    assert (steps[1:] * steps[:-1] >= -1e-20).all()
+
+
+def test_winding_does_not_turn_the_volume_force_round():
+    control = torso()
+    inside_out = replace(control, mesh=Mesh(control.mesh.vertices, control.mesh.faces[:, ::-1]))
+    twin = constrained_model(inside_out, worn=["mid-bust"])
+    state, records = run(TORSO, Targets(mid_bust(TORSO, 0.9)), 40)
+    other, others = run(twin, Targets(mid_bust(TORSO, 0.9)), 40)
+    np.testing.assert_allclose(other.moved, state.moved, atol=1e-9)
+    assert others[-1].error == pytest.approx(records[-1].error, abs=1e-12)
+
+
+def test_a_shorter_line_reaches_near_its_length_and_a_longer_one_too():
+    for ratio in (0.9, 1.1):
+        _, records = run(TORSO, Targets(mid_bust(TORSO, ratio)), 200)
+        reached = records[-1].lengths[1] / TORSO.lines[1].rest_length
+        assert min(ratio, 1.0) < reached < max(ratio, 1.0)
+
+
+def test_a_line_that_is_not_worn_is_measured_but_does_not_pull():
+    bare = constrained_model(torso(), worn=[])
+    state, records = run(bare, Targets((0.6, 0.6, 0.6)), 5)
+    assert np.abs(state.moved).max() < 1e-12
+    assert records[-1].lengths == pytest.approx([line.rest_length for line in bare.lines])
+
+
+def test_a_line_on_fixed_points_alone_does_not_pull():
+    assert [line.constrains for line in SKEW.lines] == [False, True, True]
+    assert set(SKEW.owner.tolist()) == {1, 2}
+
+
+def test_back_lengths_reach_their_lines():
+    model = constrained_model(torso(), back_lengths={"mid-bust": 400.0})
+    assert [line.back_length for line in model.lines] == [0.0, 400.0, 0.0]
+
+
+def test_a_run_is_asked_for_turn_by_turn_and_its_targets_too():
+    asked = []
+
+    def targets():
+        asked.append(None)
+        return Targets(mid_bust(TORSO, 0.9))
+
+    turns = list(islice(iterate(TORSO, targets, turns=50), 3))
+    assert len(asked) == 3
+    assert [measured.turn for _, measured in turns] == [1, 2, 3]
+
+
+def test_a_run_that_blows_up_ends():
+    _, records = run(TORSO, Targets(mid_bust(TORSO, 0.9), "conventional", 9.0), 500)
+    assert len(records) < 500
+    assert abs(records[-1].error) > 10.0
+    assert all(abs(measured.error) <= 10.0 for measured in records[:-1])
+
+
+def test_the_same_run_twice_is_the_same_to_the_bit():
+    one, _ = run(SKEW, Targets((1.0, 0.85, 0.9)), 30)
+    two, _ = run(constrained_model(torso(skew=0.3)), Targets((1.0, 0.85, 0.9)), 30)
+    np.testing.assert_array_equal(one.moved, two.moved)
+
+
+def test_what_is_watched_is_recorded():
+    marks = Marks(1.0, 2.0, 3.0, 4.0)
+    assert record(TORSO, at_rest(TORSO), 0.0, lambda points: marks).marks is marks
+    assert turn(TORSO, Targets((1.0,) * 3), at_rest(TORSO))[1].marks is None
+
+
+def test_a_closed_line_round_a_ball_waists_it_at_constant_volume():
+    """Figure 2 of the paper: the sphere-like shape with a horizontal line."""
+    ball = sphere(rings=7, spokes=12)
+    fixed = np.arange(len(ball.vertices)) >= 84  # the poles
+    tensegric = tensegric_model(ball, fixed)
+    line = line_on("equator", [*range(36, 48), 36], ball.vertices, tensegric.free)
+    model = assemble(tensegric, (line,), volume_measure(ball, tensegric.free), ("equator",))
+    state, records = run(model, Targets((0.9,)), 400)
+    assert abs(records[-1].error) < 1e-5
+    radius = np.linalg.norm(tensegric.expand(state.moved)[:84, :2], axis=1).reshape(7, 12)
+    assert radius[3].max() < 96.0
+    assert radius[1].min() > 72.0  # 70.7 at rest: what the waist gives away goes there
+    np.testing.assert_allclose(radius, radius[::-1], rtol=2e-3)
+
+
+@pytest.mark.parametrize("sample", ["mannequin", "person"])
+def test_real_bodies_keep_their_volume_and_their_calm(sample: str):
+    control: ControlMesh = fitted(sample)
+    model = constrained_model(control, worn=["mid-bust"])
+    state, _ = run(model, Targets((1.0,) * 3), 50)
+    assert np.abs(state.moved).max() < 1e-10
+    for ratio in (0.7, 0.9, 1.1):
+        errors = errors_of(model, Targets(mid_bust(model, ratio)), 150)
+        assert np.abs(errors[60:]).max() < 1e-3
+        assert np.ptp(errors[-40:]) < 1e-5
+    limit = gain_limit(model)
+    assert flips(model, 0.95 * limit)[-1] < 1e-6
+    assert flips(model, 1.05 * limit)[-1] > 1e-3
