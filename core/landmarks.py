@@ -140,7 +140,10 @@ def _nipple_confidence(nipple: Nipple) -> float:
 
 def _fold_and_lowest(mesh: Mesh, bust: Points, anchor: Anchor, side: str) -> list[Landmark]:
     """Find the fold on the profiles through and beside the bust point, and the lowest point above it."""
-    walks = [_profile(mesh, bust, offset, anchor.z - 75.0) for offset in OFFSETS]
+    x = mesh.vertices[:, 0][mesh.faces.T] - bust[0]
+    crossed = (x.min(axis=0) <= max(OFFSETS)) & (x.max(axis=0) >= min(OFFSETS))
+    strip = Mesh(mesh.vertices, mesh.faces[crossed])
+    walks = [_profile(strip, bust, offset, anchor.z - 75.0) for offset in OFFSETS]
     curves = [_smoothed(curve) for curve, _ in walks]
     count = min(len(curve) for curve in curves)
     bends = np.array([_concavity(curve)[:count] for curve in curves])

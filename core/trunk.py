@@ -120,13 +120,13 @@ def stable_level(mesh: Mesh, underbust_level: float) -> Level:
 
 def _cut_levels(mesh: Mesh, z: Floats) -> tuple[Points, Indices, Indices]:
     """Return the segments of all levels, the edges that their ends lie on, shape (s, 2), and their levels."""
-    height = mesh.vertices[mesh.faces, 2]
-    first = np.searchsorted(z, height.min(axis=1), side="right")
-    count = np.searchsorted(z, height.max(axis=1), side="right") - first
-    face = np.repeat(np.arange(len(height)), count)
+    height = mesh.vertices[:, 2][mesh.faces.T]
+    first = np.searchsorted(z, height.min(axis=0), side="right")
+    count = np.searchsorted(z, height.max(axis=0), side="right") - first
+    face = np.repeat(np.arange(len(mesh.faces)), count)
     level = np.arange(len(face)) - np.repeat(np.cumsum(count) - count - first, count)
-    above = height[face] >= z[level][:, None]
-    lone = np.argmax(above == (above.sum(axis=1) == 1)[:, None], axis=1)
+    above = height[:, face] >= z[level]
+    lone = np.argmax(above == (above.sum(axis=0) == 1), axis=0)
     corners = mesh.faces[face]
     rows = np.arange(len(face))
     tip = corners[rows, lone]
@@ -271,5 +271,5 @@ def survey(mesh: Mesh, step: float = 5.0) -> Survey:
             lo[k], hi[k] = level.points.min(axis=0), level.points.max(axis=0)
     full = hi[:, 0] > lo[:, 0]
     middle = float(np.median(0.5 * (lo + hi)[full, 0])) if full.any() else 0.0
-    tape = np.array([level.tape for level in levels])
+    tape = np.array([hull_perimeter(level.segments.mean(axis=1)) for level in levels])
     return Survey(z, step, middle, 0.5 * (hi - lo)[:, 0], lo[:, 1], hi[:, 1], tape, samples, row)
