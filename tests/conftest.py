@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
+
+from core.design import Design, ScanSource, WornLine
+from core.pipeline import Stages, build
 
 SAMPLES = Path(__file__).parent.parent / "resources" / "samples"
 
@@ -36,3 +40,14 @@ def mannequin() -> Path:
 def person() -> Path:
     """The sample body with the shape of a person: soft, uneven, with a deep fold."""
     return SAMPLES / "person.ply"
+
+
+@pytest.fixture(scope="session")
+def built() -> Callable[[str], Stages]:
+    """The stages of a sample body with its mid-bust line at 97 %, built once for all tests."""
+
+    @cache
+    def stages(sample: str) -> Stages:
+        return build(Design(ScanSource(str(SAMPLES / f"{sample}.ply")), lines=(WornLine("mid-bust", 0.97),)))
+
+    return stages

@@ -1,0 +1,196 @@
+"""The command line is a contract: forms, files, exit codes, sentences."""
+
+from __future__ import annotations
+
+import csv
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from app.cli import main
+from core import __version__
+from core.design import Design, ScanSource, WornLine
+from core.project import ScanFile, open_project, save_project
+
+TURN_COLUMNS = [
+    "turn",
+    "volume_error_percent",
+    "volume_error_ml",
+    "nipple_left_z_mm",
+    "nipple_right_z_mm",
+    "apex_z_mm",
+    "apex_protrusion_mm",
+    "length_under-bust_mm",
+    "length_mid-bust_mm",
+    "length_full-bust_mm",
+    "step_mm",
+]
+
+
+def test_solve_writes_everything(person: Path, tmp_path: Path) -> None:
+    lines = ["--line", "under-bust=97%", "--line", "mid-bust=-20mm"]
+    assert main(["solve", str(person), *lines, "--volume", "adaptive", "--out", str(tmp_path / "out")]) == 0
+    rows = list(csv.reader((tmp_path / "out" / "turns.csv").read_text("utf-8").splitlines()))
+    assert rows[0] == TURN_COLUMNS
+    figures = json.loads((tmp_path / "out" / "report.json").read_text("utf-8"))
+    assert figures["state"] == "settled"
+    assert figures["turns"] == len(rows) - 1 == int(rows[-1][0])
+    assert abs(float(rows[-1][1])) < 0.001
+    line = figures["lines"]["mid-bust"]
+    assert line["set_mm"] == pytest.approx(line["rest_mm"] - 20.0)
+    assert line["set_mm"] < line["reached_mm"] < line["rest_mm"]
+    assert any("under-bust" in note and "rib cage" in note for note in figures["notes"])
+    assert figures["versions"]["busk"] == __version__
+    assert "read scan" in figures["seconds"]
+
+
+def test_the_written_body_is_the_scan_with_a_moved_bust(mannequin: Path, tmp_path: Path) -> None:
+    assert (
+        main(["solve", str(mannequin), "--line", "mid-bust=95%", "--volume", "exact", "--out", str(tmp_path)])
+        == 0
+    )
+    before = trimesh.load(mannequin, process=False)
+    after = trimesh.load(tmp_path / "body.ply", process=False)
+    assert np.array_equal(before.faces, after.faces)
+    away = np.linalg.norm(before.vertices - after.vertices, axis=1)
+    assert 2.0 < away.max() < 20.0
+    assert np.mean(away < 1e-4) > 0.6
+    control = trimesh.load(tmp_path / "control.ply", process=False)
+    assert len(control.faces) == 168
+
+
+@pytest.mark.parametrize(("volume", "line", "code"), [("none", "97%", 0), ("conventional", "60%", 3)])
+def test_the_exit_code_says_whether_it_settled(
+    mannequin: Path, tmp_path: Path, volume: str, line: str, code: int
+) -> None:
+    arguments = [
+        "solve",
+        str(mannequin),
+        "--line",
+        f"mid-bust={line}",
+        "--volume",
+        volume,
+        "--out",
+        str(tmp_path),
+    ]
+    assert main(arguments) == code
+    state = json.loads((tmp_path / "report.json").read_text("utf-8"))["state"]
+    assert state == ("settled" if code == 0 else "vibrating")
+
+
+def test_turns_are_made_exactly_as_often_as_asked(mannequin: Path, tmp_path: Path) -> None:
+    main(["solve", str(mannequin), "--line", "mid-bust=97%", "--turns", "7", "--out", str(tmp_path)])
+    assert len((tmp_path / "turns.csv").read_text("utf-8").splitlines()) == 8
+
+
+def test_settings_reach_the_solver(mannequin: Path, tmp_path: Path) -> None:
+    arguments = [
+        "solve",
+        str(mannequin),
+        "--line",
+        "mid-bust=97%",
+        "--volume",
+        "conventional",
+        "--turns",
+        "80",
+    ]
+    arguments += [
+        "--settings",
+        "gain=2",
+        "--settings",
+        "line_stiffness=8",
+        "--settings",
+        "line_contact=glued",
+    ]
+    assert main([*arguments, "--out", str(tmp_path)]) == 3
+    figures = json.loads((tmp_path / "report.json").read_text("utf-8"))
+    assert figures["settings"]["gain"] == 2.0
+    assert figures["settings"]["line_stiffness"] == 8.0
+    assert figures["state"] in ("vibrating", "diverged")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["--line", "wing=97%"], "names no line"),
+        (["--line", "mid-bust"], "names no line"),
+        (["--line", "mid-bust=soon"], "not a length"),
+        (["--line", "mid-bust=20%"], "Stay between"),
+        (["--settings", "colour=red"], "no setting"),
+        (["--settings", "gain=high"], "not a number"),
+    ],
+)
+def test_bad_requests_get_one_sentence(
+    mannequin: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], sentence: str
+) -> None:
+    assert main(["solve", str(mannequin), *arguments, "--out", str(tmp_path / "out")]) == 2
+    said = capsys.readouterr()
+    assert sentence in said.err
+    assert said.err.count("\n") == 1
+    assert not (tmp_path / "out" / "body.ply").exists()
+
+
+@pytest.mark.parametrize("name", ["gone.ply", "note.txt", "broken.ply", "broken.busk"])
+def test_bad_files_get_one_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str) -> None:
+    path = tmp_path / name
+    if name != "gone.ply":
+        path.write_bytes(b"not a body at all")
+    assert main(["solve", str(path), "--out", str(tmp_path / "out")]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("busk: ")
+    assert said.count("\n") == 1
+    assert "Traceback" not in said
+
+
+def test_detect_prints_the_contract(person: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["detect", str(person), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    names = {f"{what}_{side}" for what in ("bust_point", "fold", "lowest") for side in ("left", "right")}
+    assert names <= set(found["landmarks"])
+    for mark in found["landmarks"].values():
+        assert 0.0 <= mark["confidence"] <= 1.0
+        assert mark["rule"]
+        in_mm = np.array(found["file_to_mm"]) @ [*mark["file"], 1.0]
+        assert in_mm[:3] == pytest.approx(mark["mm"], abs=1e-6)
+    assert found["unit"] == "mm"
+    assert set(found["levels"]) == {"bust", "underbust"}
+    assert found["girths"]["bust"]["tape_mm"] > found["girths"]["underbust"]["tape_mm"]
+    assert {"level_mm", "tape_mm", "skin_mm"} <= set(found["girths"]["bust"])
+
+
+def test_a_project_can_be_solved_and_overruled(mannequin: Path, tmp_path: Path) -> None:
+    design = Design(ScanSource(str(mannequin)), lines=(WornLine("mid-bust", 0.96),))
+    save_project(tmp_path / "a.busk", design, ScanFile("scan.ply", mannequin.read_bytes()), None)
+    assert open_project(tmp_path / "a.busk").ratio("mid-bust") == 0.96
+    for extra, expected in (([], 96.0), (["--line", "mid-bust=98%"], 98.0)):
+        assert (
+            main(["solve", str(tmp_path / "a.busk"), *extra, "--volume", "exact", "--out", str(tmp_path)])
+            == 0
+        )
+        figures = json.loads((tmp_path / "report.json").read_text("utf-8"))
+        assert figures["lines"]["mid-bust"]["set_percent"] == pytest.approx(expected)
+
+
+def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
+    for words in (["--version"], ["--help"], ["solve", "--help"]):
+        with pytest.raises(SystemExit) as leaving:
+            main(words)
+        assert leaving.value.code == 0
+    said = capsys.readouterr().out
+    assert f"busk {__version__}" in said
+    assert "detect" in said
+
+
+def test_batch_commands_load_no_qt(mannequin: Path, tmp_path: Path) -> None:
+    code = (
+        "import sys; from app.cli import main; "
+        f"code = main(['solve', {str(mannequin)!r}, '--line', 'mid-bust=97%', '--volume', 'exact', "
+        f"'--out', {str(tmp_path)!r}]); "
+        "sys.exit(code or any(name.startswith(('PySide6', 'pyvistaqt')) for name in sys.modules))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False, capture_output=True).returncode == 0

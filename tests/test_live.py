@@ -1,0 +1,126 @@
+"""LiveSolver: newest wins, nothing is lost, stop joins, the last good frame survives an error."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from core.design import Design, ScanSource
+from core.errors import UserError
+from core.exact import solve_exact
+from core.live import Failure, Frame, LiveSolver
+from core.pipeline import Stages
+
+Built = Callable[[str], Stages]
+PATIENCE = 60.0
+
+
+@pytest.fixture
+def solver() -> Iterator[LiveSolver]:
+    live = LiveSolver()
+    yield live
+    live.stop()
+
+
+def answer(solver: LiveSolver, until: Callable[[Frame], bool]) -> Frame:
+    """The first frame that fits; a failure is raised."""
+    deadline = time.monotonic() + PATIENCE
+    while time.monotonic() < deadline:
+        latest = solver.latest()
+        if isinstance(latest, Failure):
+            raise latest.error
+        if latest is not None and until(latest):
+            return latest
+        time.sleep(0.002)
+    raise AssertionError("no such frame")
+
+
+def settled(solver: LiveSolver, revision: int) -> Frame:
+    return answer(solver, lambda frame: frame.revision == revision and not frame.at_work)
+
+
+def test_the_newest_design_wins(solver: LiveSolver, built: Built) -> None:
+    design = built("mannequin").design
+    settled(solver, solver.submit(design))
+    for ratio in np.linspace(0.99, 0.91, 50):
+        last = solver.submit(design.with_line("mid-bust", float(ratio)))
+    frame = settled(solver, last)
+    assert frame.stages.design.ratio("mid-bust") == pytest.approx(0.91)
+    exact = solve_exact(frame.stages.model, (1.0, 0.91, 1.0))
+    points = frame.stages.model.tensegric.expand(exact.state.moved)
+    assert np.abs(points - frame.control_points).max() < 0.3
+
+
+def test_no_record_is_lost_while_lengths_change(solver: LiveSolver, built: Built) -> None:
+    design = built("mannequin").design
+    settled(solver, solver.submit(design, fresh=True))
+    for ratio in (0.96, 0.95, 0.94, 0.93):
+        revision = solver.submit(design.with_line("mid-bust", ratio))
+        time.sleep(0.02)
+    frame = settled(solver, revision)
+    for records in frame.tracks.values():
+        assert [record.turn for record in records] == list(range(len(records)))
+
+
+def test_fresh_begins_a_new_run_without_a_jump(solver: LiveSolver, built: Built) -> None:
+    design = built("mannequin").design
+    before = settled(solver, solver.submit(design, fresh=True))
+    revision = solver.submit(design.with_line("mid-bust", 0.965), fresh=True)
+    after = answer(solver, lambda frame: frame.revision == revision)
+    assert after.tracks["adaptive"][0].turn == 0
+    assert after.tracks["adaptive"][0].lengths == before.tracks["adaptive"][-1].lengths
+    settled(solver, revision)
+
+
+def test_stop_joins_even_in_the_middle_of_work(built: Built) -> None:
+    solver = LiveSolver()
+    solver.submit(built("mannequin").design)
+    time.sleep(0.05)
+    solver.stop()
+    assert not [thread for thread in threading.enumerate() if thread.name == "busk-solver"]
+
+
+def test_a_failure_is_told_and_the_solver_goes_on(solver: LiveSolver, built: Built) -> None:
+    design = built("mannequin").design
+    settled(solver, solver.submit(design))
+    bad = solver.submit(Design(ScanSource("no-such-scan.ply")))
+    deadline = time.monotonic() + PATIENCE
+    failure = None
+    while failure is None and time.monotonic() < deadline:
+        latest = solver.latest()
+        failure = latest if isinstance(latest, Failure) else None
+        time.sleep(0.002)
+    assert failure is not None
+    assert failure.revision == bad
+    assert isinstance(failure.error, UserError)
+    assert settled(solver, solver.submit(design)).verdict.state == "settled"
+
+
+def test_the_stages_at_work_are_named(built: Built) -> None:
+    told: list[str] = []
+    solver = LiveSolver(told.append)
+    settled(solver, solver.submit(built("mannequin").design))
+    solver.stop()
+    assert told[0] == "read scan"
+    assert "fit control mesh" in told
+    assert told[-1] == ""
+
+
+@pytest.mark.parametrize("control", ["adaptive", "conventional", "none", "exact"])
+def test_each_control_shows_its_own_answer(solver: LiveSolver, built: Built, control: str) -> None:
+    design = replace(built("mannequin").design, volume=control)
+    frame = settled(solver, solver.submit(design))
+    share = abs(frame.error_ml) / (frame.stages.model.volume.rest_volume / 1000.0)
+    low, high = {
+        "adaptive": (0, 1e-5),
+        "exact": (0, 1e-9),
+        "conventional": (5e-4, 3e-3),
+        "none": (4e-3, 2e-2),
+    }[control]
+    assert low <= share <= high
+    assert {"adaptive", "conventional"} <= set(frame.tracks)
