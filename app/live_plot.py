@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 import pyqtgraph as pg
 from numpy.typing import NDArray
-from PySide6.QtCore import QEvent, Qt
-from PySide6.QtGui import QColor, QPen, QResizeEvent
+from PySide6.QtCore import QEvent, QLineF, QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen, QResizeEvent, QTransform
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from app.theme import font, label, tokens_of
@@ -72,7 +72,8 @@ class LivePlot(QWidget):
         self._curves: tuple[Curve, ...] = ()
         self._exact: float | None = None
         self._exact_is_main = False
-        self._range: tuple[float, float] | None = None
+        self._range = (0.0, 1.0)
+        self._levels: list[float] = []
         self._smooth = True
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Expanding)
         column = QVBoxLayout(self)
@@ -85,7 +86,8 @@ class LivePlot(QWidget):
         self.head.addWidget(label(unit, "caption"))
         self.head.addStretch(1)
         column.addLayout(self.head)
-        self._plot = _bare_plot()
+        self._plot, self._drawing = _bare_plot(), _Drawing(self)
+        self._plot.addItem(self._drawing, ignoreBounds=True)
         self._plot.setAccessibleName(f"{title} {unit}")
         column.addWidget(self._plot, 1)
 
@@ -101,7 +103,7 @@ class LivePlot(QWidget):
         self._curves, self._exact, self._exact_is_main = tuple(curves), exact, exact_is_main
         self._smooth = refit
         self._fit(refit)
-        self._draw()
+        self._set_axes()
 
     def drawn_as_envelope(self, curve: Curve) -> bool:
         """Return whether a curve flips so densely that its envelope is drawn."""
@@ -111,13 +113,29 @@ class LivePlot(QWidget):
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
         if event.type() == QEvent.Type.PaletteChange:
-            self._draw()
+            self._set_axes()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
-        self._draw()
+        self._set_axes()
+
+    def paint_curves(self, painter: QPainter, to_pixels: QTransform) -> None:
+        """Paint all curves; ``to_pixels`` maps turns and values to pixels."""
+        tokens = tokens_of(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing, self._smooth)
+        self._paint_grid(painter, to_pixels, tokens)
+        for curve in sorted(self._curves, key=lambda each: each.role != "ghost"):
+            if len(curve.turns) > 1:
+                self._paint_curve(painter, to_pixels, curve, tokens)
+        if self._exact is not None:
+            color = tokens.accent if self._exact_is_main else tokens.exact_curve
+            pen = QPen(QColor(color), 2.0 if self._exact_is_main else 1.3)
+            pen.setDashPattern([4, 3])
+            painter.setPen(pen)
+            painter.drawLine(_level(painter, to_pixels, self._exact))
 
     def _fit(self, refit: bool) -> None:
+        """Set the range of values: all that is drawn, at least the smallest span worth seeing."""
         values = [curve.values[np.isfinite(curve.values)] for curve in self._curves]
         if self._exact is not None:
             values.append(np.array([self._exact]))
@@ -125,94 +143,111 @@ class LivePlot(QWidget):
             values.append(np.array([-self._tolerance, self._tolerance]))
         together = np.concatenate([*values, np.empty(0)])
         low, high = (float(together.min()), float(together.max())) if len(together) else (0.0, 0.0)
-        if self._range is not None and not refit:
+        if not refit:
             low, high = min(low, self._range[0]), max(high, self._range[1])
         slack = max(self._least_span - (high - low), 0.0) / 2
         self._range = (low - slack, high + slack)
 
-    def _draw(self) -> None:
-        tokens = tokens_of(self)
-        self._plot.clear()
-        low, high = self._range or (0.0, 1.0)
-        last = max((float(curve.turns[-1]) for curve in self._curves if len(curve.turns)), default=0.0)
-        self._draw_frame(tokens, low, high, max(last, 10.0))
-        if self._tolerance:
-            self._band(tokens)
-        for curve in sorted(self._curves, key=lambda each: each.role != "ghost"):
-            if len(curve.turns):
-                self._draw_curve(curve, tokens)
-        if self._exact is not None:
-            color = tokens.accent if self._exact_is_main else tokens.exact_curve
-            pen = self._pen(color, 2.0 if self._exact_is_main else 1.3)
-            pen.setDashPattern([4, 4])
-            self._plot.addItem(pg.InfiniteLine(self._exact, angle=0, pen=pen))
-
-    def _draw_frame(self, tokens: Tokens, low: float, high: float, last: float) -> None:
+    def _set_axes(self) -> None:
+        low, high = self._range
+        ends = [(float(curve.turns[0]), float(curve.turns[-1])) for curve in self._curves if len(curve.turns)]
+        first = min((end[0] for end in ends), default=0.0)
+        last = max(max((end[1] for end in ends), default=0.0), first + 10.0)
         room = 0.08 * (high - low)
-        self._plot.setRange(xRange=(0.0, last * 1.02), yRange=(low - room, high + room), padding=0)
+        within = (first, last + 0.02 * (last - first))
+        self._plot.setRange(xRange=within, yRange=(low - room, high + room), padding=0)
+        self._levels = round_ticks(low, high, 4 if self.height() > 110 else 3)
+        digits = next((d for d in (0, 1, 2) if all(abs(v - round(v, d)) < 1e-9 for v in self._levels)), 3)
+        turns = [turn for turn in round_ticks(first, last, 4) if turn < last - 0.14 * (last - first)]
         left, bottom = self._plot.getAxis("left"), self._plot.getAxis("bottom")
-        values = round_ticks(low, high, 4 if self.height() > 110 else 3)
-        digits = 0 if all(abs(v - round(v)) < 1e-9 for v in values) else 1
-        if any(abs(v * 10 - round(v * 10)) > 1e-6 for v in values):
-            digits = 2
-        left.setTicks([[(value, number(value, digits)) for value in values]])
-        turns = [turn for turn in round_ticks(0.0, last, 4) if turn < 0.95 * last]
+        left.setTicks([[(level, number(level, digits)) for level in self._levels]])
         bottom.setTicks([[*((turn, f"{turn:.0f}") for turn in turns), (last, tr("turn"))]])
+        tokens = tokens_of(self)
         for axis in (left, bottom):
             axis.setTextPen(QColor(tokens.text_caption))
         left.setPen(QPen(Qt.PenStyle.NoPen))
         bottom.setPen(QColor(tokens.outline))
-        for value in values:
-            self._plot.addItem(pg.InfiniteLine(value, angle=0, pen=self._pen(tokens.line, 1.0)))
+        self._drawing.update()
 
-    def _band(self, tokens: Tokens) -> None:
-        fill = QColor(tokens.ok)
-        fill.setAlphaF(0.13)
-        within = (-self._tolerance, self._tolerance)
-        band = pg.LinearRegionItem(
-            within, "horizontal", brush=fill, pen=QPen(Qt.PenStyle.NoPen), movable=False
-        )
-        self._plot.addItem(band)
+    def _paint_grid(self, painter: QPainter, to_pixels: QTransform, tokens: Tokens) -> None:
+        painter.setPen(QPen(QColor(tokens.line), 1))
+        for level in self._levels:
+            painter.drawLine(_level(painter, to_pixels, level))
+        if self._tolerance:
+            upper = _level(painter, to_pixels, self._tolerance)
+            lower = _level(painter, to_pixels, -self._tolerance)
+            painter.fillRect(QRectF(upper.p1(), lower.p2()), _fade(tokens.ok, 0.13))
 
-    def _draw_curve(self, curve: Curve, tokens: Tokens) -> None:
-        name = {"main": "accent", "warning": "warn_mark", "ghost": "ghost_curve"}[curve.role]
-        color, ghost = QColor(getattr(tokens, name)), curve.role == "ghost"
+    def _paint_curve(self, painter: QPainter, to_pixels: QTransform, curve: Curve, tokens: Tokens) -> None:
+        ghost = curve.role == "ghost"
+        color = {"main": tokens.accent, "warning": tokens.warn_mark, "ghost": tokens.ghost_curve}[curve.role]
+        path = _path(to_pixels, curve.turns, curve.values)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
         if self.drawn_as_envelope(curve):
-            self._draw_envelope(curve, color, ghost)
+            lower, upper = (_path(to_pixels, curve.turns, each) for each in envelope(curve.values))
+            painter.fillPath(_between(lower, upper), _fade(color, 0.10 if ghost else 0.22))
+            painter.setPen(QPen(_fade(color, 0.2 if ghost else 0.45), 1))
+            painter.drawPath(path)
+            painter.setPen(QPen(_fade(color, 0.62 if ghost else 1.0), 1 if ghost else 1.6))
+            painter.drawPath(lower)
+            painter.drawPath(upper)
         else:
-            color.setAlphaF(0.62 if ghost else 1.0)
-            self._line(curve.turns, curve.values, self._pen(color, 1.0 if ghost else 2.0))
+            painter.setPen(QPen(_fade(color, 0.62 if ghost else 1.0), 1 if ghost else 2))
+            painter.drawPath(path)
         if not ghost and np.isfinite(curve.values[-1]):
-            dot = pg.ScatterPlotItem(
-                [curve.turns[-1]],
-                [curve.values[-1]],
-                size=8 * self.devicePixelRatioF(),
-                brush=QColor(getattr(tokens, name)),
-                pen=self._pen(tokens.panel, 1.5),
-            )
-            self._plot.addItem(dot)
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            painter.setPen(QPen(QColor(tokens.panel), 1.5))
+            painter.setBrush(QColor(color))
+            painter.drawEllipse(to_pixels.map(QPointF(curve.turns[-1], curve.values[-1])), 4, 4)
 
-    def _draw_envelope(self, curve: Curve, color: QColor, ghost: bool) -> None:
-        lower, upper = envelope(curve.values)
-        zigzag, fill, edge = QColor(color), QColor(color), QColor(color)
-        zigzag.setAlphaF(0.2 if ghost else 0.45)
-        fill.setAlphaF(0.1 if ghost else 0.22)
-        edge.setAlphaF(0.62 if ghost else 1.0)
-        pen = self._pen(edge, 1.0 if ghost else 1.6)
-        edges = [self._line(curve.turns, each, pen) for each in (lower, upper)]
-        self._plot.addItem(pg.FillBetweenItem(*edges, brush=fill))
-        self._line(curve.turns, curve.values, self._pen(zigzag, 1.0))
 
-    def _line(self, turns: Numbers, values: Numbers, pen: QPen) -> pg.PlotDataItem:
-        line = pg.PlotDataItem(turns, values, pen=pen, antialias=self._smooth)
-        self._plot.addItem(line)
-        return line
+class _Drawing(pg.GraphicsObject):  # type: ignore[misc]
+    """All curves as one item, because one item a line costs a millisecond each time it is drawn anew."""
 
-    def _pen(self, color: str | QColor, width: float) -> QPen:
-        """Return a cosmetic pen ``width`` logical pixels wide; Qt counts its width in device pixels."""
-        pen = QPen(QColor(color), width * self.devicePixelRatioF())
-        pen.setCosmetic(True)
-        return pen
+    def __init__(self, owner: LivePlot) -> None:
+        super().__init__()
+        self._owner = owner
+
+    def boundingRect(self) -> QRectF:
+        return QRectF(self.viewRect())
+
+    def viewRangeChanged(self) -> None:
+        self.prepareGeometryChange()
+
+    def paint(self, painter: QPainter, *_: object) -> None:
+        # In pixels, pens are as wide as they say at any screen scale.
+        to_pixels = painter.transform()
+        painter.resetTransform()
+        self._owner.paint_curves(painter, to_pixels)
+
+
+def _fade(color: str, share: float) -> QColor:
+    result = QColor(color)
+    result.setAlphaF(share)
+    return result
+
+
+def _level(painter: QPainter, to_pixels: QTransform, value: float) -> QLineF:
+    """Return the line across the plot at ``value`` [px]."""
+    y = to_pixels.map(QPointF(0.0, value)).y()
+    edges = painter.clipBoundingRect()
+    return QLineF(edges.left(), y, edges.right(), y)
+
+
+def _path(to_pixels: QTransform, turns: Numbers, values: Numbers) -> QPainterPath:
+    """Return the curve [px]; it is broken where a value is not finite."""
+    x = to_pixels.m11() * turns + to_pixels.dx()
+    y = to_pixels.m22() * values + to_pixels.dy()
+    path: QPainterPath = pg.arrayToQPath(x, y, connect="finite")
+    return path
+
+
+def _between(lower: QPainterPath, upper: QPainterPath) -> QPainterPath:
+    """Return the area between two curves."""
+    area = QPainterPath(lower)
+    area.connectPath(upper.toReversed())
+    area.closeSubpath()
+    return area
 
 
 def _bare_plot() -> pg.PlotWidget:
@@ -224,13 +259,12 @@ def _bare_plot() -> pg.PlotWidget:
     plot.setMouseEnabled(False, False)
     plot.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Ignored)
     plot.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+    plot.getPlotItem().layout.setContentsMargins(0, 0, 12, 0)
     for side in ("left", "bottom"):
         axis = plot.getAxis(side)
         axis.setTickPen(QColor(0, 0, 0, 0))  # a tick of no length still draws a dot
-        axis.setStyle(
-            tickLength=0, tickAlpha=0, tickFont=font("axis", tabular=True), hideOverlappingLabels=False
-        )
-    plot.getPlotItem().layout.setContentsMargins(0, 0, 12, 0)
+        axis.setStyle(tickLength=0, tickAlpha=0, hideOverlappingLabels=False)
+        axis.setStyle(tickFont=font("axis", tabular=True))
     plot.getAxis("left").setWidth(34)
     plot.getAxis("bottom").setHeight(18)
     return plot
