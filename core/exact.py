@@ -175,8 +175,5 @@ def _retract(model: ConstrainedModel, moved: Points, push: Floats, wanted: Float
 
 
 def _small_solve(matrix: Floats, right: Floats) -> Floats:
-    """Solve the 2 x 2 system of the two breasts; a side on which nothing moves gets zero."""
-    still = np.diag(matrix) == 0.0
-    return np.asarray(
-        np.linalg.solve(matrix + np.diag(still.astype(np.float64)), np.where(still, 0.0, right))
-    )
+    """Solve the 2 x 2 system of the two breasts; least pressures where they do not matter."""
+    return np.asarray(np.linalg.lstsq(matrix, right, rcond=1e-12)[0])
