@@ -1,0 +1,281 @@
+"""The exact answer: its promises, and three independent ways to the same place."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq, minimize
+from shapes import central_difference, fitted, mirrored, tent, torso
+
+from core.exact import Energy, newton, solve_exact
+from core.lines import line_on
+from core.solver import State, Targets, assemble, at_rest, constrained_model, iterate
+from core.tensegric import tensegric_model
+from core.volume import volume_measure
+
+TORSO = constrained_model(torso(), worn=["mid-bust"])
+SKEW = constrained_model(torso(skew=0.3))
+RATIOS = (0.7, 0.8, 0.9, 0.97, 1.03, 1.1)
+RNG = np.random.default_rng(11)
+
+
+def mid_bust(model, ratio):
+    return tuple(ratio if line.name == "mid-bust" else 1.0 for line in model.lines)
+
+
+def assert_exact(model, balance):
+    """Balance, volumes and steps as promised, judged from outside the solver."""
+    points = model.tensegric.expand(balance.state.moved)
+    missing = model.volume.side_volumes(points) - model.volume.side_volumes(model.tensegric.rest)
+    assert np.abs(missing).max() / model.volume.rest_volume < 1e-9
+    assert balance.found
+    assert balance.residual < 1e-9
+    assert balance.steps <= 12
+
+
+def test_energy_of_a_stretched_tent_by_hand():
+    mesh, fixed = tent(height=3.0)
+    tensegric = tensegric_model(mesh, fixed)
+    line = line_on("ridge", (2, 4, 0), mesh.vertices, tensegric.free)
+    model = assemble(tensegric, (line,), volume_measure(mesh, tensegric.free), ("ridge",), 2.0)
+    energy = Energy(model, (1.0,))
+    lift = np.array([[0.0, 0.0, 4.0]])  # the tip goes up to 7: the cables grow from sqrt(41) to 9
+    cables = 0.5 * tensegric.mean_stiffness * 16.0
+    lines = 2 * 0.5 * (2.0 * tensegric.mean_stiffness) * (9.0 - np.sqrt(41.0)) ** 2
+    assert energy.value(np.zeros((1, 3))) == 0.0
+    assert energy.value(lift) == pytest.approx(cables + lines, rel=1e-14)
+
+
+def test_energy_derivatives_converge_with_second_order():
+    energy = Energy(SKEW, (0.9, 0.8, 1.1))
+    moved = 3.0 * RNG.normal(size=(len(SKEW.tensegric.free), 3))
+    gradient, hessian = energy.gradient(moved), energy.hessian(moved, clip=False)
+    np.testing.assert_allclose(hessian, hessian.T, atol=1e-12)
+
+    def errors(step):
+        slope = central_difference(energy.value, moved, step).reshape(-1, 3)
+        bend = central_difference(lambda d: energy.gradient(d).ravel(), moved, step)
+        return np.abs(slope - gradient).max(), np.abs(bend - hessian).max()
+
+    coarse, fine = errors(2.0), errors(1.0)
+    assert coarse[0] / fine[0] == pytest.approx(4.0, rel=0.05)
+    assert coarse[1] / fine[1] == pytest.approx(4.0, rel=0.05)
+    assert errors(1e-3)[1] < 1e-6 * np.abs(hessian).max()
+
+
+def test_the_clipped_hessian_is_positive_even_under_compression():
+    energy = Energy(TORSO, mid_bust(TORSO, 3.0))
+    rest = np.zeros((len(TORSO.tensegric.free), 3))
+    assert np.linalg.eigvalsh(energy.hessian(rest, clip=False))[0] < 0.0
+    assert np.linalg.eigvalsh(energy.hessian(rest, clip=True))[0] > 0.0
+
+
+def test_the_energy_of_the_turns_is_the_energy_of_the_answer():
+    """What a sweep balances, with frozen directions, is minus the gradient of the exact energy."""
+    moved = 3.0 * RNG.normal(size=(len(SKEW.tensegric.free), 3))
+    ratios = (0.9, 0.8, 1.1)
+    pull = SKEW.pull(SKEW.tensegric.expand(moved), SKEW.natural_lengths(ratios))
+    np.testing.assert_allclose(
+        Energy(SKEW, ratios).gradient(moved), SKEW.stiffness @ moved - pull, atol=1e-10
+    )
+
+
+@pytest.mark.parametrize("ratio", RATIOS)
+def test_the_answer_is_exact_in_few_steps(ratio):
+    assert_exact(TORSO, solve_exact(TORSO, mid_bust(TORSO, ratio)))
+
+
+@pytest.mark.parametrize("ratios", [(1.0, 0.85, 0.9), (1.0, 0.7, 0.7), (1.0, 1.1, 0.8), (0.5, 0.97, 1.1)])
+def test_several_lines_at_once_on_a_skew_body(ratios):
+    balance = solve_exact(SKEW, ratios)
+    assert_exact(SKEW, balance)
+    # One breast does not feed the other: their pressures differ.
+    assert balance.pressures[0] != pytest.approx(balance.pressures[1], rel=1e-3)
+
+
+def test_at_rest_the_answer_is_rest():
+    balance = solve_exact(SKEW, (1.0, 1.0, 1.0))
+    np.testing.assert_allclose(balance.state.moved, 0.0, atol=1e-12)
+    assert balance.found
+
+
+def test_the_balance_is_force_against_pressure():
+    balance = solve_exact(SKEW, (1.0, 0.85, 0.9))
+    moved = balance.state.moved
+    sides = SKEW.volume.side_gradients(SKEW.tensegric.expand(moved))
+    force = Energy(SKEW, (1.0, 0.85, 0.9)).gradient(moved)
+    held = np.tensordot(balance.pressures, sides, axes=1)
+    np.testing.assert_allclose(force, held, atol=1e-9 * np.abs(force).max())
+    assert (balance.pressures > 0.0).all()
+
+
+def test_every_iterate_keeps_the_volumes_and_lowers_the_energy():
+    ratios = (1.0, 0.7, 0.8)
+    wanted = SKEW.volume.side_volumes(SKEW.tensegric.rest)
+    iterates = [balance.state.moved for balance in newton(SKEW, ratios)]
+    energies = [Energy(SKEW, ratios).value(moved) for moved in iterates]
+    for moved in iterates:
+        found = SKEW.volume.side_volumes(SKEW.tensegric.expand(moved))
+        assert np.abs(found - wanted).max() / SKEW.volume.rest_volume < 1e-12
+    drops = np.diff(energies)
+    assert (drops <= 1e-12 * energies[0]).all()
+    assert drops[0] < -0.1 * energies[0]
+
+
+def test_the_last_steps_converge_quadratically():
+    residuals = [balance.residual for balance in newton(TORSO, mid_bust(TORSO, 0.8))][2:]
+    fast = [after / before**2 for before, after in pairwise(residuals[:-1])]
+    assert residuals[-1] < 1e-10
+    assert max(fast) < 1.0
+
+
+def settle(model, ratios, turns):
+    *_, (state, _) = iterate(model, lambda: Targets(ratios), turns=turns)
+    return state.moved
+
+
+@pytest.mark.parametrize("ratio", [0.8, 0.97])
+def test_thousands_of_adaptive_turns_arrive_at_the_same_place(ratio):
+    ratios = mid_bust(TORSO, ratio)
+    exact = solve_exact(TORSO, ratios).state.moved
+    np.testing.assert_allclose(settle(TORSO, ratios, 2500), exact, atol=1e-6)
+
+
+def small_model():
+    control = torso(skew=0.3)
+    few = (control.row >= 2) & (control.row <= 3) & (np.abs(control.column) <= 3)
+    return constrained_model(replace(control, fixed=~few))
+
+
+def test_a_general_optimiser_finds_the_same_place():
+    model, ratios = small_model(), (1.0, 0.85, 0.95)
+    energy, volume, tensegric = Energy(model, ratios), model.volume, model.tensegric
+    wanted, litre = volume.side_volumes(tensegric.rest), 1e6
+    found = minimize(
+        lambda d: energy.value(d.reshape(-1, 3)),
+        np.zeros(3 * len(tensegric.free)),
+        jac=lambda d: energy.gradient(d.reshape(-1, 3)).ravel(),
+        constraints={
+            "type": "eq",
+            "fun": lambda d: (volume.side_volumes(tensegric.expand(d.reshape(-1, 3))) - wanted) / litre,
+            "jac": lambda d: volume.side_gradients(tensegric.expand(d.reshape(-1, 3))).reshape(2, -1) / litre,
+        },
+        method="SLSQP",
+        options={"ftol": 1e-15, "maxiter": 1000},
+    )
+    assert found.success
+    exact = solve_exact(model, ratios)
+    assert_exact(model, exact)
+    np.testing.assert_allclose(found.x.reshape(-1, 3), exact.state.moved, atol=1e-6)
+
+
+def test_a_tip_that_slides_level_by_hand():
+    """The volume of a tent is its height: the tip slides level towards the corner that pulls it."""
+    mesh, fixed = tent(height=3.0)
+    tensegric = tensegric_model(mesh, fixed)
+    line = line_on("stay", (0, 4), mesh.vertices, tensegric.free)
+    model = assemble(tensegric, (line,), volume_measure(mesh, tensegric.free), ("stay",), 2.0)
+    q, k, natural = tensegric.mean_stiffness, model.line_stiffness[0], 0.7 * np.sqrt(41.0)
+
+    def force(t):
+        length = np.sqrt(2.0 * (4.0 - t) ** 2 + 9.0)
+        return q * t - k * (length - natural) * (4.0 - t) / length
+
+    slide = brentq(force, 0.0, 4.0, xtol=1e-14)
+    assert slide > 0.5
+    np.testing.assert_allclose(solve_exact(model, (0.7,)).state.moved, [[slide, slide, 0.0]], atol=1e-9)
+
+
+def test_the_body_in_the_mirror_moves_as_the_mirror_of_the_body():
+    control = torso(skew=0.3)
+    twin, was = mirrored(control)
+    model, mirror = constrained_model(control), constrained_model(twin)
+    ratios = (1.0, 0.8, 0.9)
+    balance, image = solve_exact(model, ratios), solve_exact(mirror, ratios)
+    shift = model.tensegric.expand(balance.state.moved) - model.tensegric.rest
+    image_shift = mirror.tensegric.expand(image.state.moved) - mirror.tensegric.rest
+    np.testing.assert_allclose(image_shift, shift[was] * [-1.0, 1.0, 1.0], atol=1e-9)
+    np.testing.assert_allclose(image.pressures, balance.pressures[::-1], rtol=1e-9)
+
+
+def test_a_symmetric_body_moves_symmetrically():
+    moved = TORSO.tensegric.expand(solve_exact(TORSO, mid_bust(TORSO, 0.8)).state.moved)
+    other_way = moved.reshape(8, 13, 3)[:, ::-1] * [-1.0, 1.0, 1.0]
+    np.testing.assert_allclose(other_way.reshape(-1, 3), moved, atol=1e-9)
+
+
+def test_moving_and_turning_the_body_moves_and_turns_the_answer():
+    control = torso(skew=0.3)
+    turned = control.mesh.vertices @ np.array([[0.0, 1, 0], [-1, 0, 0], [0, 0, 1]]) + [500.0, -80.0, 1200.0]
+    model = constrained_model(control)
+    other = constrained_model(replace(control, mesh=control.mesh.moved(turned)))
+    ratios = (1.0, 0.8, 0.9)
+    here, there = (solve_exact(m, ratios).state.moved for m in (model, other))
+    np.testing.assert_allclose(there, here @ np.array([[0.0, 1, 0], [-1, 0, 0], [0, 0, 1]]), atol=1e-8)
+
+
+def test_a_body_twice_as_large_moves_twice_as_far():
+    control = torso(skew=0.3)
+    large = constrained_model(replace(control, mesh=control.mesh.moved(2.0 * control.mesh.vertices)))
+    ratios = (1.0, 0.8, 0.9)
+    np.testing.assert_allclose(
+        solve_exact(large, ratios).state.moved,
+        2.0 * solve_exact(constrained_model(control), ratios).state.moved,
+        atol=1e-8,
+    )
+
+
+def test_a_neighbouring_answer_is_a_good_start():
+    near = solve_exact(TORSO, mid_bust(TORSO, 0.9))
+    warm = solve_exact(TORSO, mid_bust(TORSO, 0.89), near.state)
+    cold = solve_exact(TORSO, mid_bust(TORSO, 0.89))
+    np.testing.assert_allclose(warm.state.moved, cold.state.moved, atol=1e-9)
+    assert warm.steps < cold.steps
+
+
+def test_an_answer_that_was_found_before_stays():
+    found = solve_exact(SKEW, (1.0, 0.8, 0.9))
+    again = solve_exact(SKEW, (1.0, 0.8, 0.9), found.state)
+    assert again.found
+    np.testing.assert_allclose(again.state.moved, found.state.moved, atol=1e-10)
+
+
+def test_a_solve_that_may_not_take_its_steps_says_so():
+    balance = solve_exact(TORSO, mid_bust(TORSO, 0.7), limit=2)
+    assert not balance.found
+    assert balance.steps == 2
+
+
+def test_a_model_of_one_breast_only():
+    control = torso()
+    one = constrained_model(replace(control, fixed=control.fixed | (control.column < 1)))
+    balance = solve_exact(one, (1.0, 0.8, 0.9))
+    assert_exact(one, balance)
+    assert balance.pressures[1] == 0.0
+    assert balance.pressures[0] > 0.0
+
+
+@pytest.mark.parametrize("ratio", [0.5, 0.6, 1.2, 1.3])
+def test_even_at_the_ends_of_the_range_an_answer_is_found(ratio):
+    balance = solve_exact(SKEW, (1.0, ratio, ratio))
+    assert balance.found
+    missing = SKEW.volume.volume(SKEW.tensegric.expand(balance.state.moved)) - SKEW.volume.rest_volume
+    assert abs(missing) / SKEW.volume.rest_volume < 1e-9
+
+
+@pytest.mark.parametrize("sample", ["mannequin", "person"])
+def test_real_bodies_with_one_line_and_with_all(sample):
+    control = fitted(sample)
+    for worn in (["mid-bust"], list(control.paths)):
+        model = constrained_model(control, worn=worn)
+        for ratio in RATIOS:
+            ratios = tuple(ratio if line.name in worn else 1.0 for line in model.lines)
+            assert_exact(model, solve_exact(model, ratios))
+
+
+def test_the_start_is_not_written_to():
+    start = at_rest(TORSO)
+    solve_exact(TORSO, mid_bust(TORSO, 0.8), start)
+    np.testing.assert_array_equal(start.moved, 0.0)
+    assert isinstance(start, State)
