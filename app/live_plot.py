@@ -105,6 +105,10 @@ class LivePlot(QWidget):
         self._fit(refit)
         self._set_axes()
 
+    def value_range(self) -> tuple[float, float]:
+        """Return the lowest and the highest value that has room."""
+        return self._range
+
     def drawn_as_envelope(self, curve: Curve) -> bool:
         """Return whether a curve flips so densely that its envelope is drawn."""
         turns = max(float(curve.turns[-1] - curve.turns[0]), 1.0) if len(curve.turns) else 1.0

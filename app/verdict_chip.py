@@ -61,6 +61,10 @@ class VerdictChip(QWidget):
         """Return the state that is shown."""
         return self._state
 
+    def spinning(self) -> bool:
+        """Return whether the arc turns."""
+        return self._spin.isActive()
+
     def set_state(self, state: str) -> None:
         """Show a state of ``TONES``, at the latest when the last one has been seen long enough."""
         if state not in TONES:

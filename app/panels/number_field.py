@@ -15,6 +15,11 @@ from app.theme import font, set_tag, tokens_of
 from app.words import number, tr
 
 _MM_PER_UNIT = {"mm": 1.0, "cm": 10.0, "in": 25.4}
+_BY_KEY = (
+    Qt.FocusReason.TabFocusReason,
+    Qt.FocusReason.BacktabFocusReason,
+    Qt.FocusReason.ShortcutFocusReason,
+)
 _TYPED = re.compile(r"([+-]?)(\d+(?:\.\d*)?|\.\d+)(%|mm|cm|in)?")
 
 
@@ -28,7 +33,7 @@ def parse_length(text: str, rest_mm: float, whole_mm: float, unit: str = "%") ->
     plain = unicodedata.normalize("NFKC", text).replace("\N{MINUS SIGN}", "-").replace(",", ".")
     match = _TYPED.fullmatch(re.sub(r"\s+", "", plain).lower())
     if match is None:
-        raise ValueError(text)
+        raise ValueError(f"no length: {text}")
     sign, figures, typed_unit = match.groups()
     value = float(sign + figures)
     typed_unit = typed_unit or unit
@@ -41,7 +46,7 @@ def parse_length(text: str, rest_mm: float, whole_mm: float, unit: str = "%") ->
             share = of_whole
     ratio = 1.0 + share if sign else share
     if not _can_be_set(ratio):
-        raise ValueError(text)
+        raise ValueError(f"no length: {text}")
     return ratio
 
 
@@ -78,9 +83,10 @@ class NumberField(QLineEdit):
 
     def focusInEvent(self, event: QFocusEvent) -> None:
         super().focusInEvent(event)
-        self.opened.emit()
-        if event.reason() != Qt.FocusReason.MouseFocusReason:
+        if event.reason() in _BY_KEY:
             self.selectAll()
+        if event.reason() in (*_BY_KEY, _FOCUS.MouseFocusReason):
+            self.opened.emit()  # not when a window only comes to the front
 
     def focusOutEvent(self, event: QFocusEvent) -> None:
         super().focusOutEvent(event)

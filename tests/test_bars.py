@@ -1,0 +1,251 @@
+"""The bars around the view: notices, rail, tools, status, and the strip that shows how a run stands."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+import pytest
+from PySide6.QtWidgets import QApplication, QLabel, QPushButton
+from pytestqt.qtbot import QtBot
+
+from app.convergence import Exact, Strip, Track
+from app.live_plot import Curve, LivePlot, envelope, flips_every_turn, round_ticks
+from app.notice import NoticeBar
+from app.panels.rail import Rail
+from app.panels.status import StatusBar
+from app.panels.view_tools import VIEWS, CompareTools, ViewTools
+from app.theme import apply_theme, tokens_of
+from app.verdict_chip import SHORTEST_SHOW_MS, TONES, VerdictChip
+
+
+@pytest.fixture(autouse=True)
+def dressed(qapp: QApplication) -> Iterator[None]:
+    apply_theme(qapp, dark=False)
+    yield
+    qapp.setStyleSheet("")
+
+
+def test_notices_wait_for_each_other(qtbot: QtBot) -> None:
+    bar, acted = NoticeBar(), []
+    qtbot.addWidget(bar)
+    bar.show_notice("warn", "First.", "Do this.", [("Do", lambda: acted.append("done"))], lasting=True)
+    bar.show_notice("bad", "Second <b>.", lasting=True)
+    bar.show_notice("bad", "Second <b>.", lasting=True)
+    assert bar.notice().sentence == "First."
+    next(each for each in bar.findChildren(QPushButton) if each.text() == "Do").click()
+    assert acted == ["done"]
+    assert bar.notice().sentence == "Second <b>."
+    assert any("&lt;b&gt;" in label.text() for label in bar.findChildren(QLabel)), "names are not markup"
+    bar.close_notice()
+    assert bar.notice() is None
+    assert bar.isHidden()
+
+
+def test_the_rail_says_what_is_chosen_not_what_is_set(qtbot: QtBot) -> None:
+    rail = Rail()
+    qtbot.addWidget(rail)
+    with qtbot.assertNotEmitted(rail.step_chosen):
+        rail.set_current("lines")
+        rail.set_state("landmarks", "look", 2)
+    with qtbot.waitSignal(rail.step_chosen) as said:
+        rail.items["landmarks"].click()
+    assert said.args == ["landmarks"]
+    with pytest.raises(ValueError, match="locked"):
+        rail.set_state("scan", "locked")
+
+
+def test_every_view_tool_has_name_tip_and_key(qtbot: QtBot) -> None:
+    tools = ViewTools()
+    qtbot.addWidget(tools)
+    assert len({action.shortcut().toString() for action in tools.actions_by_name.values()}) == 12
+    assert all(action.text() and action.toolTip() for action in tools.actions_by_name.values())
+    with qtbot.waitSignal(tools.view_chosen) as said:
+        tools.actions_by_name["back"].trigger()
+    assert said.args == ["back"]
+    assert [name for name in VIEWS if tools.actions_by_name[name].isChecked()] == ["back"]
+    with qtbot.assertNotEmitted(tools.toggled):
+        tools.set_shown("bands", True)
+
+
+def test_the_status_bar_shows_a_job_only_while_it_runs(qtbot: QtBot) -> None:
+    bar = StatusBar()
+    qtbot.addWidget(bar)
+    bar.show()
+    bar.set_volume(-0.021, -1.14)
+    bar.set_job("Reading the scan", 0.4)
+    said = [label.text() for label in bar.findChildren(QLabel) if label.isVisible()]
+    assert "Reading the scan" in said
+    assert "Volume −0.02 % (−1.1 ml)" in said
+    bar.set_job("")
+    bar.set_volume(None)
+    said = [label.text() for label in bar.findChildren(QLabel) if label.isVisible()]
+    assert "".join(said) == ""
+
+
+def test_before_and_after_are_asked_for(qtbot: QtBot) -> None:
+    tools = CompareTools()
+    qtbot.addWidget(tools)
+    with qtbot.assertNotEmitted(tools.after_chosen):
+        tools.set_after(False)
+    with qtbot.waitSignal(tools.after_chosen) as said:
+        next(each for each in tools.findChildren(QPushButton) if each.text() == "After").click()
+    assert said.args == [True]
+
+
+def test_a_chip_does_not_flicker(qtbot: QtBot) -> None:
+    chip = VerdictChip()
+    qtbot.addWidget(chip)
+    chip.set_state("stale")
+    chip.set_state("vibrating")
+    chip.set_state("settled")
+    assert chip.state() == "stale"
+    qtbot.waitUntil(lambda: chip.state() != "stale", timeout=20 * SHORTEST_SHOW_MS)
+    assert chip.state() == "settled"
+    with pytest.raises(ValueError, match="dancing"):
+        chip.set_state("dancing")
+
+
+def test_a_chip_turns_only_while_it_settles_and_is_seen(qtbot: QtBot) -> None:
+    chip = VerdictChip()
+    qtbot.addWidget(chip)
+    chip.set_state("settling")
+    qtbot.waitUntil(lambda: chip.state() == "settling")
+    assert not chip.spinning()
+    chip.show()
+    assert chip.spinning()
+    chip.hide()
+    assert not chip.spinning()
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "ticks"),
+    [
+        (0.0, 4.0, [0, 1, 2, 3, 4]),
+        (-0.1, 1.4, [0.0, 0.5, 1.0]),
+        (-15.2, -0.6, [-15.0, -10.0, -5.0]),
+        (3.0, 3.0, [3.0]),
+    ],
+)
+def test_ticks_are_round(low: float, high: float, ticks: list[float]) -> None:
+    assert round_ticks(low, high) == pytest.approx(ticks)
+
+
+def test_the_envelope_of_a_flip_flop_is_its_two_branches() -> None:
+    turns = np.arange(60.0)
+    values = 2.0 + 0.01 * turns + (-1.0) ** turns * 0.5
+    lower, upper = envelope(values)
+    assert upper[1:-1] == pytest.approx(2.5 + 0.01 * turns[1:-1])
+    assert lower[1:-1] == pytest.approx(1.5 + 0.01 * turns[1:-1])
+    assert (lower <= values).all()
+    assert (values <= upper).all()
+
+
+def test_only_what_flips_every_turn_flips() -> None:
+    turns = np.arange(60.0)
+    assert flips_every_turn((-1.0) ** turns)
+    assert not flips_every_turn(np.exp(-turns / 8))
+    assert not flips_every_turn(np.sin(turns / 5)), "a slow swing is no flip-flop"
+    assert not flips_every_turn(np.exp(-turns) + 1e-6 * (-1.0) ** turns), "nobody sees the ripple"
+    assert not flips_every_turn(np.array([1.0, -1.0, 1.0]))
+
+
+def test_a_zigzag_is_drawn_as_an_envelope_once_it_is_dense(qtbot: QtBot) -> None:
+    plot = LivePlot("Volume error", "%", 0.4)
+    qtbot.addWidget(plot)
+    plot.resize(400, 160)
+    plot.show()
+    few, many = np.arange(20.0), np.arange(200.0)
+    wide, dense = (Curve(turns, (-1.0) ** turns, "warning") for turns in (few, many))
+    plot.set_curves([wide])
+    assert not plot.drawn_as_envelope(wide)
+    plot.set_curves([dense])
+    assert plot.drawn_as_envelope(dense)
+
+
+def test_the_range_only_grows_while_a_line_is_dragged(qtbot: QtBot) -> None:
+    plot = LivePlot("Volume error", "%", 0.4, tolerance=0.1)
+    qtbot.addWidget(plot)
+    turns = np.arange(10.0)
+    plot.set_curves([Curve(turns, np.full(10, 3.0), "main")])
+    plot.set_curves([Curve(turns, np.full(10, 0.2), "main")], refit=False)
+    assert plot.value_range() == (-0.1, 3.0)
+    plot.set_curves([Curve(turns, np.full(10, 0.2), "main")])
+    assert plot.value_range() == pytest.approx((-0.15, 0.25)), "widened to the least span about its middle"
+
+
+def test_broken_numbers_do_not_break_the_plot(qtbot: QtBot) -> None:
+    plot = LivePlot("Volume error", "%", 0.4)
+    qtbot.addWidget(plot)
+    plot.resize(300, 150)
+    plot.show()
+    plot.set_curves([Curve(np.arange(4.0), np.array([0.1, np.inf, np.nan, 9.0]), "warning")], exact=0.0)
+    plot.grab()
+    assert plot.value_range() == (0.0, 9.0)
+
+
+@dataclass(frozen=True)
+class Said:
+    state: str
+    numbers: list[tuple[str, str]] = field(default_factory=lambda: [("Volume error", "0.1 %")])
+    turns: int = 1200
+    seconds: float = 0.9
+
+
+def run(values: np.ndarray) -> Track:
+    return Track(np.arange(float(len(values))), values, values, values)
+
+
+@pytest.fixture
+def strip(qtbot: QtBot) -> Strip:
+    result = Strip()
+    qtbot.addWidget(result)
+    result.resize(1100, 172)
+    result.show()
+    return result
+
+
+def test_the_strip_says_the_verdict(strip: Strip, qtbot: QtBot) -> None:
+    strip.set_verdict(Said("vibrating"))
+    qtbot.waitUntil(lambda: strip.chip.state() == "vibrating")
+    said = [label.text() for label in strip.findChildren(QLabel) if label.isVisible()]
+    assert {"1,200 turns · 0.9 s", "Volume error", "0.1 %"} <= set(said)
+    assert set(TONES) == {"settled", "settling", "vibrating", "diverged", "stale", "paused"}
+
+
+@pytest.mark.parametrize(("state", "token"), [("settled", "accent"), ("vibrating", "warn_mark")])
+def test_a_vibrating_run_is_amber(strip: Strip, state: str, token: str) -> None:
+    strip.set_verdict(Said(state))
+    strip.set_run({"conventional": run(np.linspace(0.0, 2.0, 50))}, "conventional", None)
+    QApplication.processEvents()
+    image = strip.error_plot.grab().toImage()
+    wanted = getattr(tokens_of(strip), token).lower()
+    names = (image.pixelColor(x, y).name() for x in range(image.width()) for y in range(image.height()))
+    assert sum(name == wanted for name in names) > 50
+
+
+def test_the_strip_folds_to_one_line(strip: Strip, qtbot: QtBot) -> None:
+    with qtbot.waitSignal(strip.folded) as said:
+        strip.set_folded(True)
+    assert said.args == [True]
+    assert (strip.is_folded(), strip.maximumHeight()) == (True, 36)
+    assert not strip.error_plot.isVisible()
+    strip.set_folded(False)
+    assert strip.minimumHeight() > 100
+
+
+def test_the_strip_is_empty_before_a_run_and_without_one_track(strip: Strip) -> None:
+    assert not strip.error_plot.isVisible()
+    strip.set_run({"adaptive": run(np.empty(0))}, "adaptive", None)
+    assert not strip.error_plot.isVisible()
+    strip.set_run({}, "exact", Exact(0.0, 12.0))
+    assert strip.error_plot.isVisible()
+
+
+def test_the_method_is_asked_for(strip: Strip, qtbot: QtBot) -> None:
+    with qtbot.assertNotEmitted(strip.control_chosen):
+        strip.set_control("adaptive")
+    with qtbot.waitSignal(strip.control_chosen) as said:
+        next(each for each in strip.findChildren(QPushButton) if each.text() == "Exact").click()
+    assert said.args == ["exact"]
