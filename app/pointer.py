@@ -142,7 +142,7 @@ class Pointer(QObject):
             self.pin_moved.emit(self._pin, skin)
 
     def _band_at(self, place: QPointF) -> str:
-        return self._scene.band_at(place.x(), place.y(), self._canvas.width(), self._canvas.height()) or ""
+        return self._scene.band_at(place.x(), place.y(), self._canvas.width(), self._canvas.height())
 
     def _skin_at(self, place: QPointF) -> Floats | None:
         view = self._scene.view

@@ -18,6 +18,8 @@ from core.mesh import Flags, Floats, Indices, Mesh, Points
 PARTS = ("body", "bands", "control", "floor")
 """What ``Scene.set_visible`` knows."""
 
+_ABOVE_BUST, _BELOW_BUST = 320.0, 240.0  # what a framed bust shows: from the neck to the waist [mm]
+
 _BUST_HEIGHT = 0.56  # of a torso cut at the hips, used until the landmarks are known
 
 
@@ -72,8 +74,11 @@ class Scene:
         self.bands.show(bands, self._shown_body().rest)
         self._follow()
 
-    def mark_bands(self, selected: str | None = None, hovered: str | None = None) -> None:
-        """Put a white casing round the selected line and a faint one round the line under the pointer."""
+    def mark_bands(self, selected: str = "", hovered: str = "") -> None:
+        """Put a white casing round the selected line and a faint one round the one under the pointer.
+
+        An empty or unknown name marks none.
+        """
         self.bands.mark(selected, hovered)
 
     # -- what moves
@@ -173,8 +178,8 @@ class Scene:
         level = box[4] + _BUST_HEIGHT * (box[5] - box[4])
         if self._control_points is not None:
             level = float(self._control_points[0][:, 2].mean())
-        reach = 0.40 * (box[5] - box[4])
-        return self._view.framing([*box[:4], level - reach, level + reach], aspect, margin=1.0)
+        top, bottom = min(level + _ABOVE_BUST, box[5]), max(level - _BELOW_BUST, box[4])
+        return self._view.framing([*box[:4], bottom, top], aspect, margin=1.08)
 
     # -- what is under the pointer
 
@@ -188,12 +193,12 @@ class Scene:
         nearer = point - clearance * sight / np.linalg.norm(sight)
         return self.hit_body(self._view.eye, nearer) is not None
 
-    def band_at(self, x: float, y: float, width: float, height: float) -> str | None:
-        """Return the line seen at the pixel (x, y), counted from the top left of a picture, or None."""
+    def band_at(self, x: float, y: float, width: float, height: float) -> str:
+        """Return the line seen at the pixel (x, y), counted from the top left, or an empty string."""
         start, sight = self._view.ray(x, y, width, height)
         met = self.bands.hit(start, start + 2.0 * self._view.distance * sight)
         if met is None or self.hit_body(start, met[1] - sight) is not None:
-            return None
+            return ""
         return met[0]
 
     def band_anchor(self, name: str) -> Floats:

@@ -24,7 +24,7 @@ CASING = 7.0
 """How much wider the white casing of the selected ribbon is [mm]."""
 
 _ACROSS = np.array([-1.0, -1.0, -0.86, -0.4, 0.4, 0.86, 1.0, 1.0])
-_PUFF = np.array([-0.6, 0.55, 1.0, 1.0, 1.0, 1.0, 0.55, -0.6])
+_PUFF = np.array([-1.2, 0.55, 1.0, 1.0, 1.0, 1.0, 0.55, -1.2])
 _SHADE = np.array([0.62, 0.62, 0.86, 1.0, 1.0, 0.86, 0.62, 0.62])
 
 
@@ -167,6 +167,11 @@ class RibbonActor:
         self.actor.prop.interpolation = "Gouraud"
         self.data.point_data.active_normals_name = "Normals"
 
+    def set_rank(self, rank: int) -> None:
+        """Draw the ribbon over those of lower rank where they overlap; one is about 0.3 mm."""
+        self.actor.mapper.SetResolveCoincidentTopologyToPolygonOffset()
+        self.actor.mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(0.0, -10.0 * rank)
+
     def paint(self, colour: str) -> None:
         """Give the ribbon its colour, with darker edges."""
         shade = np.tile(_SHADE, self.ribbon.rows)[:, None]
@@ -194,8 +199,8 @@ class Bands:
         self._surface: Surface | None = None
         self._displacement: Points = np.zeros((0, 3))
         self._visible = True
-        self.selected: str | None = None
-        self.hovered: str | None = None
+        self.selected = ""
+        self.hovered = ""
 
     def show(self, bands: Iterable[Band], rest: Mesh) -> None:
         """Replace all ribbons by ``bands``, laid on the body at rest; the old selection stays if it can."""
@@ -224,7 +229,7 @@ class Bands:
             if casing.actor.GetVisibility():
                 casing.move(displacement)
 
-    def mark(self, selected: str | None, hovered: str | None) -> None:
+    def mark(self, selected: str, hovered: str) -> None:
         """Put a white casing round the selected band and a faint one round the band under the pointer."""
         self.selected, self.hovered = selected, hovered
         self._show_what_is_asked()
@@ -260,13 +265,15 @@ class Bands:
         return points, unit(normals)
 
     def _show_what_is_asked(self) -> None:
-        for ribbon in self._ribbons.values():
+        for rank, (name, ribbon) in enumerate(self._ribbons.items()):
             ribbon.actor.SetVisibility(self._visible)
+            ribbon.set_rank(len(self._ribbons) + 5 if name == self.selected else rank)
         for casing in self._casings.values():
             casing.actor.SetVisibility(False)
         for name, opacity in ((self.hovered, 0.4), (self.selected, 1.0)):
             if self._visible and name in self._bands:
                 casing = self._casing(name)
+                casing.set_rank(len(self._ribbons) + 5)
                 casing.actor.prop.opacity = opacity
                 casing.move(self._displacement)
                 casing.actor.SetVisibility(True)

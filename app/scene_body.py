@@ -19,6 +19,11 @@ from core.mesh import Flags, Floats, Indices, Mesh, Points, area_vectors, incide
 Colours = npt.NDArray[np.uint8]
 Singles = npt.NDArray[np.float32]
 
+_DIM_INSIDE = """//VTK::Color::Impl
+  if (!gl_FrontFacing) { ambientColor *= 1.5; diffuseColor *= 0.3; }
+"""
+"""What is seen from inside, through an open neck or arm, lies in its own shadow."""
+
 PLATE_AREA = 1500.0
 """Smallest flat area that counts as a cut plate and not as skin [mm^2]."""
 
@@ -198,6 +203,10 @@ class BodyActor:
             specular_power=14,
         )
         self.actor.prop.interpolation = "Gouraud"
+        # Coloured points overrule VTK's own property for back faces, hence these lines of shader.
+        self.actor.GetShaderProperty().AddFragmentShaderReplacement(
+            "//VTK::Color::Impl", True, _DIM_INSIDE, False
+        )
         self._data.point_data.active_normals_name = "Normals"
         self.sight = Sight(self._data)
         self.set_look(look)

@@ -114,19 +114,19 @@ class Viewport(QWidget):
 
     # -- what is shown over the view
 
-    def select_band(self, name: str) -> None:
+    def select_band(self, name: str | None) -> None:
         """Put a white casing round one line, or round none."""
-        self.scene.mark_bands(name, self.scene.bands.hovered)
+        self.scene.mark_bands(name or "", self.scene.bands.hovered)
         self.request_draw()
 
-    def hover_band(self, name: str) -> None:
-        """Put a faint casing round one line, or round none, as the pointer does."""
-        self.scene.mark_bands(self.scene.bands.selected, name)
+    def hover_band(self, name: str | None) -> None:
+        """Put a faint casing round one line, as the pointer does, or round none."""
+        self.scene.mark_bands(self.scene.bands.selected, name or "")
         self.request_draw()
 
-    def label_band(self, name: str, text: str = "", detail: str = "") -> None:
-        """Write beside a line; an unknown or empty name takes the label away."""
-        self._label = (name, text, detail)
+    def label_band(self, name: str | None, text: str = "", detail: str = "") -> None:
+        """Write beside a line, or take the label away."""
+        self._label = (name or "", text, detail)
         self._place_label()
 
     def _place_label(self) -> None:

@@ -14,7 +14,7 @@ from PySide6.QtGui import QGuiApplication, QImage, QMouseEvent, QWheelEvent
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.overlay import MARGIN, SPACING, Pin, spread
+from app.overlay import Pin
 from app.pointer import NOTCH, TURN
 from app.scene_bands import Band
 from app.theme import apply_theme
@@ -79,16 +79,8 @@ def drag(
 def wheel(view: Viewport, x: float, y: float, notches: int) -> None:
     canvas = view.overlay.parentWidget()
     place = QPointF(x, y)
-    event = QWheelEvent(
-        place,
-        QPointF(canvas.mapToGlobal(place)),
-        QPoint(),
-        QPoint(0, 120 * notches),
-        NONE,
-        PLAIN,
-        Qt.ScrollPhase.NoScrollPhase,
-        False,
-    )
+    turn, phase = QPoint(0, 120 * notches), Qt.ScrollPhase.NoScrollPhase
+    event = QWheelEvent(place, QPointF(canvas.mapToGlobal(place)), QPoint(), turn, NONE, PLAIN, phase, False)
     QApplication.sendEvent(canvas, event)
 
 
@@ -272,29 +264,10 @@ def test_a_dragged_pin_stays_on_the_skin(view: Viewport, qtbot: QtBot) -> None:
         drag(view, (x, y), (x - 20.0, y + 10.0))
     assert view.scene.view.azimuth == direction
     name, skin = heard[-1]
-    assert name == "bust"
+    assert (name, len(heard)) == ("bust", 2)
     assert np.linalg.norm(skin) == pytest.approx(RADIUS, abs=1.0)
     spot = view.scene.view.to_picture(skin, 360, 270)[0, :2]
     assert spot == pytest.approx((x - 20.0, y + 10.0), abs=0.01)
-
-
-def test_labels_of_crowded_pins_keep_apart_and_inside(view: Viewport) -> None:
-    places = [np.array([side * 60.0, -130.0, z]) for side in (-1, 1) for z in (0.0, 4.0, 8.0)]
-    view.set_pins([Pin(str(i), "Lowest point", place, 0.9) for i, place in enumerate(places)])
-    pills = view.overlay.pills()
-    for column in (pills[:3], pills[3:]):
-        heights = sorted(pill.center().y() for pill in column)
-        assert np.diff(heights) == pytest.approx([SPACING, SPACING])
-    assert all(pill.left() >= MARGIN and pill.right() <= view.width() - MARGIN for pill in pills)
-
-
-def test_labels_spread_about_their_places_in_order() -> None:
-    assert spread([100.0, 200.0], 0.0, 300.0) == [100.0, 200.0]
-    assert spread([200.0, 100.0], 0.0, 300.0) == [200.0, 100.0]
-    assert spread([100.0, 100.0], 0.0, 300.0) == [100.0 - SPACING / 2, 100.0 + SPACING / 2]
-    assert spread([5.0, 5.0], 20.0, 300.0) == [20.0, 20.0 + SPACING]
-    assert spread([299.0, 299.0], 0.0, 300.0) == [300.0 - SPACING, 300.0]
-    assert spread([], 0.0, 300.0) == []
 
 
 # -- the end
