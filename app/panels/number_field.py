@@ -15,11 +15,8 @@ from app.theme import font, set_tag, tokens_of
 from app.words import number, tr
 
 _MM_PER_UNIT = {"mm": 1.0, "cm": 10.0, "in": 25.4}
-_BY_KEY = (
-    Qt.FocusReason.TabFocusReason,
-    Qt.FocusReason.BacktabFocusReason,
-    Qt.FocusReason.ShortcutFocusReason,
-)
+_FOCUS = Qt.FocusReason
+_BY_KEY = (_FOCUS.TabFocusReason, _FOCUS.BacktabFocusReason, _FOCUS.ShortcutFocusReason)
 _TYPED = re.compile(r"([+-]?)(\d+(?:\.\d*)?|\.\d+)(%|mm|cm|in)?")
 
 
