@@ -11,10 +11,14 @@ from core.body import Body
 from core.errors import FitError
 from core.fit_check import faulty_faces
 from core.landmarks import Landmarks
-from core.laying import Crease, Ground, find_creases, lay_outline, lay_rest, survey_ground
+from core.laying import Crease, Ground, bridged, find_creases, lay_outline, lay_rest, survey_ground
 from core.mesh import Flags, Floats, Indices, Mesh, Points
 from core.template import Template
-from core.trunk import trunk_levels
+from core.torso import cropped
+from core.trunk import calmed, trunk_levels
+
+AROUND = 40.0
+"""The skin within this of a level is calmed before it is measured there [mm]."""
 
 LINE_HEIGHTS = (0.25, 0.75)
 """Where the line row may run between fold (0) and bust point (1)."""
@@ -52,20 +56,16 @@ def fit_control_mesh(
     if not low <= line_height <= high:
         raise FitError(f"The line height {line_height:g} is out of range.", f"Choose {low:g} to {high:g}.")
     ground = survey_ground(template, body.mesh, landmarks)
-    outline = lay_outline(ground, landmarks)
+    outline, holes = bridged(lay_outline(ground, landmarks))
     creases = find_creases(ground, outline, landmarks)
     warnings = _early_warnings(ground, creases)
     while True:
-        points = lay_rest(ground, outline, creases, line_height).reshape(-1, 3)
-        if np.isnan(points).any():
-            raise FitError(
-                f"The scan has no skin where {np.isnan(points[:, 0]).sum()} control points must lie.",
-                "Close the holes of the scan, or open one that reaches from the ribs to the collarbones.",
-            )
-        mesh = Mesh(points, template.faces)
+        points, more_holes = bridged(lay_rest(ground, outline, creases, line_height))
+        _refuse_holes(points)
+        mesh = Mesh(points.reshape(-1, 3), template.faces)
         faulty = faulty_faces(mesh, ground.front, template.row == template.row_of("fold"))
         if not faulty.any():
-            return _control_mesh(template, mesh, warnings)
+            return _control_mesh(template, mesh, warnings + _hole_warning(holes + more_holes))
         blamed = set(template.column[template.faces[faulty]].ravel().tolist()) & set(creases)
         if not blamed:
             raise FitError(
@@ -75,6 +75,21 @@ def fit_control_mesh(
         shallowest = min(blamed, key=lambda number: creases[number].depth)
         del creases[shallowest]
         warnings.append(_without_fold(template, shallowest))
+
+
+def _refuse_holes(points: Points) -> None:
+    missing = int(np.isnan(points[..., 0]).sum())
+    if missing:
+        raise FitError(
+            f"The scan has no skin where {missing} of the {points[..., 0].size} control points must lie.",
+            "Close the holes of the scan, or open one that reaches from the ribs to the collarbones.",
+        )
+
+
+def _hole_warning(count: int) -> list[str]:
+    if count == 0:
+        return []
+    return [f"The scan has holes at {count} control points: they lie straight between their neighbours."]
 
 
 def _early_warnings(ground: Ground, creases: Mapping[int, Crease]) -> list[str]:
@@ -118,7 +133,8 @@ def back_length(body_mesh: Mesh, control: ControlMesh, path_name: str) -> float:
     """
     path = control.paths[path_name]
     right, left = control.mesh.vertices[path[0]], control.mesh.vertices[path[-1]]
-    level = trunk_levels(body_mesh, [0.5 * (right[2] + left[2])])[0]
+    z = 0.5 * (right[2] + left[2])
+    level = trunk_levels(calmed(cropped(body_mesh, np.abs(body_mesh.vertices[:, 2] - z) < AROUND)), [z])[0]
     if len(level.segments) == 0:
         raise FitError(
             f"The scan has no back at the height of the {path_name} line.", "Open a whole upper body."

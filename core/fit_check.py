@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from core.mesh import Flags, Floats, Indices, Mesh, unit
+from core.mesh import Flags, Floats, Indices, Mesh, frozen, unit
 
 SMALLEST_ANGLE = 8.0
 """Smallest angle of a triangle [deg]."""
@@ -14,10 +14,10 @@ SHORTEST_EDGE = 10.0
 """Shortest edge [mm]."""
 
 SAME_WAY = 0.3
-"""Smallest cosine between a triangle's normal and that of the skin behind its middle."""
+"""Smallest cosine between a triangle's normal and the mean normal of the skin behind it."""
 
-NEIGHBOURS = 6
-"""The normal of the skin is the mean of so many vertices."""
+SAMPLES = frozen([[8, 2, 2], [2, 8, 2], [2, 2, 8], [2, 5, 5], [5, 2, 5], [5, 5, 2]]) / 12.0
+"""The skin behind a triangle is looked up from these places, as shares of its corners."""
 
 
 def corner_angles(mesh: Mesh) -> Floats:
@@ -29,9 +29,9 @@ def corner_angles(mesh: Mesh) -> Floats:
 
 
 def agreement(mesh: Mesh, skin: Mesh) -> Floats:
-    """Return the cosine between each triangle's normal and that of the skin nearest to it, shape (m,) [1]."""
-    middles = mesh.vertices[mesh.faces].mean(axis=1)
-    near = cKDTree(skin.vertices).query(middles, NEIGHBOURS)[1]
+    """Return the cosine between a triangle's normal and the mean one of the skin there, shape (m,) [1]."""
+    places = np.einsum("sc,mcj->msj", SAMPLES, mesh.vertices[mesh.faces])
+    near = cKDTree(skin.vertices).query(places)[1]
     outward = unit(skin.vertex_normals[near].sum(axis=1))
     return np.asarray((outward * mesh.face_normals).sum(axis=1))
 

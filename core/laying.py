@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from core.errors import FitError
 from core.landmarks import Landmarks
 from core.mesh import Flags, Floats, Indices, Mesh, Points, unit
 from core.profiles import Profile, exits, find_fold, heading, profile
 from core.template import Template
-from core.torso import Torso, measure_torso
+from core.torso import Torso, cropped, measure_torso
 
 FORWARD = np.array([0.0, -1.0, 0.0])
 
@@ -27,8 +28,8 @@ BEHIND = 120.0
 SHALLOW = 2.0
 """A hollow less deep than this is no fold [mm]."""
 
-ROOM = 0.45
-"""The fold row lies at least this part of the height from bust row to collar down the skin [1]."""
+SPACE = 16.0
+"""The line row keeps so far from the rows of fold and bust points, where there is that much room [mm]."""
 
 ALIKE = 3.0
 """The body counts as symmetric where landmarks of both sides mirror each other as well as this [mm]."""
@@ -66,10 +67,11 @@ def survey_ground(template: Template, mesh: Mesh, landmarks: Landmarks) -> Groun
     column = np.arange(-template.half, template.half + 1)
     azimuth = np.array([_azimuth(template, torso, number) for number in column.tolist()])
     below = torso.height("lowest", azimuth) - value["below"]
-    edge = 0.5 * (torso.left.fold + torso.right.fold) + value["edge"]
-    edge = max(edge, torso.armpit + 25.0 * torso.scale)
-    above = edge + value["above"]
-    front = _front(mesh, torso, below.min() - 60.0 * torso.scale, above + 40.0 * torso.scale)
+    edge, above = _upper_levels(torso, mesh, value["edge"], value["above"])
+    y, z = mesh.vertices[:, 1], mesh.vertices[:, 2]
+    margin = 60.0 * torso.scale
+    near = (y < torso.axis[1] + margin) & (z > below.min() - margin) & (z < above + margin)
+    front = cropped(mesh, near)
     bust = torso.height("bust", azimuth)
     return Ground(template, torso, front, column, azimuth, below, bust, edge, above)
 
@@ -82,12 +84,39 @@ def _azimuth(template: Template, torso: Torso, number: int) -> float:
     )
 
 
-def _front(mesh: Mesh, torso: Torso, low: float, high: float) -> Mesh:
-    y, z = mesh.vertices[:, 1], mesh.vertices[:, 2]
-    near = (y < torso.axis[1] + 60.0 * torso.scale) & (z > low) & (z < high)
-    faces = mesh.faces[near[mesh.faces].all(axis=1)]
-    used, faces = np.unique(faces, return_inverse=True)
-    return Mesh(mesh.vertices[used], faces.reshape(-1, 3))
+def _upper_levels(torso: Torso, mesh: Mesh, rise: float, collar: float) -> tuple[float, float]:
+    """Return the heights of the upper edge and of the collar above, as high as the scan allows [mm]."""
+    scale = torso.scale
+    edge = 0.5 * (torso.left.fold + torso.right.fold) + rise
+    edge = max(edge, torso.armpit + 25.0 * scale)
+    above = min(edge + collar, float(mesh.vertices[:, 2].max()) - 10.0 * scale)
+    edge = min(edge, above - 25.0 * scale)
+    if edge < max(torso.left.bust, torso.right.bust) + 45.0 * scale:
+        raise FitError(
+            "The scan ends too close above the bust points.",
+            "Open a scan that reaches to the collarbones, or correct the bust points.",
+        )
+    return edge, above
+
+
+def bridged(points: Points) -> tuple[Points, int]:
+    """Fill places without skin from their neighbours in the row, points of shape (rows, columns, 3) [mm].
+
+    Returns the points and how many were filled. NaN stays where one of the two outermost columns, or more
+    than two columns side by side, are missing.
+    """
+    filled = points.copy()
+    for row in filled:
+        missing = np.isnan(row[:, 0])
+        known = np.flatnonzero(~missing)
+        if len(known) < 2:
+            continue
+        for place in np.flatnonzero(missing):
+            after = int(np.searchsorted(known, place))
+            if 0 < after < len(known) and known[after] - known[after - 1] <= 3:
+                low, high = known[after - 1], known[after]
+                row[place] = row[low] + (row[high] - row[low]) * (place - low) / (high - low)
+    return filled, int((np.isnan(points) & ~np.isnan(filled))[..., 0].sum())
 
 
 def lay_outline(ground: Ground, landmarks: Landmarks) -> Points:
@@ -166,7 +195,7 @@ def find_creases(ground: Ground, outline: Points, landmarks: Landmarks) -> dict[
             continue
         bottom = ground.below[place] - 2.0 * ground.torso.scale
         down = profile(ground.front, ground.axis, start[place], bottom)
-        crease = None if down is None else _crease(ground, place, down, column.fold == "crease")
+        crease = None if down is None else _crease(ground, place, down)
         if crease is not None:
             creases[number] = crease
     if _symmetric(ground.axis, landmarks):
@@ -176,9 +205,10 @@ def find_creases(ground: Ground, outline: Points, landmarks: Landmarks) -> dict[
     return creases
 
 
-def _crease(ground: Ground, place: int, down: Profile, sharpest: bool) -> Crease | None:
+def _crease(ground: Ground, place: int, down: Profile) -> Crease | None:
     """Return the fold on the profile of a column, None if no hollow lies where a fold may be."""
-    fold = find_fold(down, sharpest)
+    column = ground.template.columns[abs(ground.column[place])]
+    fold = find_fold(down, column.fold == "crease")
     torso, azimuth, bust = ground.torso, ground.azimuth[[place]], ground.bust[place]
     usual, lowest = torso.height("fold", azimuth)[0], torso.height("lowest", azimuth)[0]
     highest = usual + 0.35 * (bust - usual)
@@ -187,7 +217,7 @@ def _crease(ground: Ground, place: int, down: Profile, sharpest: bool) -> Crease
     if fold.z > highest + 6.0 * torso.scale:
         return None
     arc = fold.arc if fold.z <= highest else down.first_below(highest)
-    return Crease(down, max(arc, ROOM * (bust - ground.below[place])), fold.depth)
+    return Crease(down, max(arc, column.room * (bust - ground.below[place])), fold.depth)
 
 
 def _symmetric(axis: Points, landmarks: Landmarks) -> bool:
@@ -208,14 +238,14 @@ def lay_rest(ground: Ground, outline: Points, creases: Mapping[int, Crease], lin
     """
     points = outline.copy()
     fold, line, bust = (ground.template.row_of(rule) for rule in ("fold", "line", "bust point"))
-    share = _fold_shares(ground)
     breast = np.abs(ground.azimuth) <= BREAST
-    for row, part in ((fold, share), (line, share + (1.0 - share) * line_height)):
-        points[row] = _level_exits(ground, ground.below + part * (ground.bust - ground.below), breast)
+    rise = (1.0 - _fold_shares(ground)) * (ground.bust - ground.below)
+    points[fold] = _level_exits(ground, ground.bust - rise, breast)
+    points[line] = _level_exits(ground, ground.bust - rise + _up_to_line(rise, line_height), breast)
     for number, crease in creases.items():
         place = number + ground.template.half
         points[fold, place] = crease.profile.at(crease.arc)
-        points[line, place] = crease.profile.at(crease.arc * (1.0 - line_height))
+        points[line, place] = crease.profile.at(crease.arc - float(_up_to_line(crease.arc, line_height)))
     radial = np.array([heading(azimuth) for azimuth in ground.azimuth])
     for row, rule in enumerate(ground.template.rows):
         if rule.rule != "upper":
@@ -224,6 +254,12 @@ def lay_rest(ground: Ground, outline: Points, creases: Mapping[int, Crease], lin
         direction = unit((1.0 - rule.value) * radial + rule.value * FORWARD)
         points[row] = _skin_nearest(ground.front, expected, direction, ground.torso.scale)
     return points
+
+
+def _up_to_line(way: Floats | float, line_height: float) -> Floats:
+    """Return how far up the ``way`` from fold to bust row the line row lies, with space to both [mm]."""
+    space = np.minimum(SPACE / way, 0.5)
+    return np.asarray(way * np.clip(line_height, space, 1.0 - space))
 
 
 def _fold_shares(ground: Ground) -> Floats:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-from core.mesh import Faces, Floats, Mesh, Points, unit
+from core.mesh import Floats, Mesh, Points, unit
 from core.sections import Section, arc_length, chains, cut, resample
 
 STEP = 2.0
@@ -29,10 +29,14 @@ def exits(mesh: Mesh, origins: Points, directions: Points) -> list[Floats]:
     through triangles whose outward normal points along it; one through an edge counts both its triangles.
     """
     frames = _ray_frames(unit(directions))
-    local = (
-        np.einsum("kij,nj->kin", frames, mesh.vertices) - np.einsum("kij,kj->ki", frames, origins)[..., None]
-    )
-    return [_exits_along_z(places, mesh.faces) for places in local]
+    above = frames[:, 0] @ mesh.vertices.T >= (frames[:, 0] * origins).sum(axis=1)[:, None]
+    a, b, c = np.ascontiguousarray(mesh.faces.T)
+    ways = []
+    for origin, frame, side in zip(origins, frames, above, strict=True):
+        first = side[a]
+        crossed = (first != side[b]) | (first != side[c])
+        ways.append(_exits_along_z((mesh.vertices[mesh.faces[crossed]] - origin) @ frame.T))
+    return ways
 
 
 def _ray_frames(along: Points) -> Points:
@@ -41,12 +45,9 @@ def _ray_frames(along: Points) -> Points:
     return np.stack([across, np.cross(along, across), along], axis=1)
 
 
-def _exits_along_z(places: Floats, faces: Faces) -> Floats:
-    """Return the positive z where the z axis leaves the triangles, for vertices ``places``, shape (3, n)."""
-    for axis in (0, 1):
-        low, high = (places[axis] <= 0.0)[faces], (places[axis] >= 0.0)[faces]
-        faces = faces[low.any(axis=1) & high.any(axis=1)]
-    u, v, depth = places[:, faces]
+def _exits_along_z(corners: Points) -> Floats:
+    """Return the positive z where the z axis leaves triangles with these corners, shape (m, 3, 3)."""
+    u, v, depth = corners[:, :, 0], corners[:, :, 1], corners[:, :, 2]
     weight = np.stack([u[:, k - 2] * v[:, k - 1] - u[:, k - 1] * v[:, k - 2] for k in range(3)], axis=1)
     area = weight.sum(axis=1)
     hit = (weight >= 0.0).all(axis=1) & (area > 0.0)

@@ -29,8 +29,9 @@ class Column:
     Its azimuth about the torso axis is ``bust_point`` times that of the bust point plus ``outer_root`` times
     that of the outer root of the breast plus ``degrees``. ``upper_edge`` [1] is where it ends across the
     upper edge. ``fold`` tells how its fold is found: "none" is looked for, the deepest place under the convex
-    "hull", or the "crease" near that. ``without_fold`` [1] is the height of the fold row from the collar
-    below (0) to the bust row (1) where there is no fold; None: as high as the folds of both sides.
+    "hull", or the "crease" near that; it lies at least ``room`` down the skin, in parts of the height from
+    the bust row to the collar below. ``without_fold`` [1] is the height of the fold row from that collar (0)
+    to the bust row (1) where there is no fold; None: as high as the folds of both sides.
     """
 
     meaning: str
@@ -39,6 +40,7 @@ class Column:
     degrees: float
     upper_edge: float
     fold: str
+    room: float
     without_fold: float | None
     free: bool
 
@@ -172,6 +174,7 @@ def _column(entry: Mapping[str, Any]) -> Column:
         float(azimuth.get("degrees", 0.0)),
         float(entry["upper_edge"]),
         str(entry["fold"]),
+        float(entry["room"]),
         None if low is None else float(low),
         bool(entry["free"]),
     )

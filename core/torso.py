@@ -8,7 +8,7 @@ import numpy as np
 
 from core.errors import FitError
 from core.landmarks import Landmarks
-from core.mesh import Floats, Mesh, Points
+from core.mesh import Flags, Floats, Mesh, Points
 from core.trunk import trunk_levels
 
 REFERENCE = 130.0
@@ -61,6 +61,12 @@ class Torso:
         return np.asarray(left * getattr(self.left, what) + (1.0 - left) * getattr(self.right, what))
 
 
+def cropped(mesh: Mesh, keep: Flags) -> Mesh:
+    """Return the triangles all whose corners are in ``keep``, shape (n,), with these vertices only."""
+    used, faces = np.unique(mesh.faces[keep[mesh.faces].all(axis=1)], return_inverse=True)
+    return Mesh(mesh.vertices[used], faces.reshape(-1, 3))
+
+
 def measure_torso(mesh: Mesh, landmarks: Landmarks) -> Torso:
     """Measure the torso of a body. Raises FitError if there is none under the breasts. Source: ours."""
     level = trunk_levels(mesh, [landmarks.underbust_level - 20.0])[0].points
@@ -81,7 +87,7 @@ def measure_torso(mesh: Mesh, landmarks: Landmarks) -> Torso:
 def _armpit(mesh: Mesh, landmarks: Landmarks, half_width: float) -> tuple[float, float]:
     """Return height and half width of the last level, going up, that is not yet as wide as shoulders [mm]."""
     scale = half_width / REFERENCE
-    z = np.arange(landmarks.underbust_level, landmarks.bust_level + 150.0 * scale, 3.0)
+    z = np.arange(landmarks.bust_level - 12.0, landmarks.bust_level + 150.0 * scale, 3.0)
     levels = [level.points for level in trunk_levels(mesh, z)]
     widths = np.array([0.5 * np.ptp(points[:, 0]) if len(points) else np.inf for points in levels])
     over = np.flatnonzero(widths > SHOULDER * half_width)
