@@ -155,6 +155,6 @@ def _member(archive: zipfile.ZipFile, name: str, largest: int) -> bytes:
         raise ProjectError("This file is no Busk project.", "Open a .busk file or a scan.") from None
     if size > largest:
         raise ProjectError(
-            f"{name} in this project claims {size / 1e9:.1f} GB.", "It is broken: open a backup."
+            f"{name} in this project claims to be {size / 1e6:.0f} MB.", "It is broken: open a backup."
         )
     return archive.read(name)
