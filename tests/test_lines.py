@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapes import torso
 
@@ -111,6 +111,7 @@ def test_lengths_out_of_range_name_the_range(text):
     assert "between 50 and 130 %: 200 to 520 mm" in refused.value.hint
 
 
+@settings(deadline=None)
 @given(st.floats(*RATIO_LIMITS))
 def test_every_way_of_writing_a_length_means_the_same(ratio):
     texts = (

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapes import central_difference, octahedron, sphere, tent, torso
 
@@ -51,6 +51,7 @@ def test_the_measure_agrees_with_the_mesh_at_rest_and_moved():
     assert TORSO_VOLUME.volume(points) == pytest.approx(moved.enclosed_volume(TORSO_VOLUME.centre), rel=1e-13)
 
 
+@settings(deadline=None)
 @given(st.tuples(*[st.floats(-500, 500)] * 3))
 def test_a_difference_of_volume_does_not_depend_on_the_centre(apex):
     mesh = torso(skew=0.3).mesh
@@ -171,6 +172,7 @@ def test_adaptive_step_halves_when_the_volume_flips_and_recovers_slowly():
     assert round_off.step == 0.8
 
 
+@settings(deadline=None)
 @given(st.floats(0.5, 2.0), st.floats(0.5, 2.0))
 def test_the_adaptive_push_is_the_error_less_what_is_already_coming_home(before, now):
     """The paper's wording: dP = step * e * (1 - damping * r), r = (V - V_before) / (V0 - V)."""

@@ -1,0 +1,187 @@
+"""Runs side by side: in lockstep, warm after a change, fresh on request, at rest in the end."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from shapes import torso
+
+from core.comparison import MOST_TURNS, Comparison, judge_balance
+from core.exact import solve_exact
+from core.solver import Marks, Targets, constrained_model, gain_limit, iterate
+
+MODEL = constrained_model(torso(), worn=["mid-bust"])
+CALM = 0.9 * gain_limit(MODEL)
+
+
+def targets(ratio, control="adaptive", gain=CALM):
+    return Targets((1.0, ratio, 1.0), control, gain)
+
+
+def finish(comparison):
+    turns = 0
+    while not comparison.resting:
+        comparison.advance()
+        turns += 1
+    return turns
+
+
+def test_both_turn_controls_run_and_none_joins_when_chosen():
+    assert set(Comparison(MODEL, targets(0.9)).runs) == {"adaptive", "conventional"}
+    assert set(Comparison(MODEL, targets(0.9, "exact")).runs) == {"adaptive", "conventional"}
+    assert set(Comparison(MODEL, targets(0.9, "none")).runs) == {"adaptive", "conventional", "none"}
+
+
+def test_a_run_here_is_the_run_of_the_solver():
+    comparison = Comparison(MODEL, targets(0.9))
+    for _ in range(20):
+        comparison.advance()
+    for control in ("adaptive", "conventional"):
+        asked = targets(0.9, control)
+        alone = [measured for _, measured in iterate(MODEL, lambda asked=asked: asked, turns=20)]
+        assert comparison.runs[control].records[1:] == alone
+
+
+def test_runs_go_in_lockstep_from_turn_0_at_rest():
+    comparison = Comparison(MODEL, targets(0.9, "none"))
+    for _ in range(7):
+        comparison.advance()
+    for run in comparison.runs.values():
+        assert [measured.turn for measured in run.records] == list(range(8))
+        assert run.records[0].error == 0.0
+        assert run.records[0].lengths[1] == pytest.approx(MODEL.lines[1].rest_length)
+
+
+def test_everything_rests_in_the_end_near_the_exact_answer():
+    comparison = Comparison(MODEL, targets(0.97))
+    turns = finish(comparison)
+    assert turns <= MOST_TURNS
+    assert comparison.verdict.state == "settled"
+    np.testing.assert_allclose(
+        comparison.runs["adaptive"].state.moved, comparison.exact.state.moved, atol=0.1
+    )
+    comparison.advance()
+    assert all(len(run.records) <= turns + 1 for run in comparison.runs.values())
+
+
+def test_what_is_shown_is_the_chosen_run_or_the_exact_answer():
+    comparison = Comparison(MODEL, targets(0.9, "conventional"))
+    comparison.advance()
+    assert comparison.main is comparison.runs["conventional"]
+    assert comparison.shown is comparison.runs["conventional"].state
+    comparison.retarget(MODEL, targets(0.9, "exact"))
+    assert comparison.main is None
+    assert comparison.shown is comparison.exact.state
+    assert comparison.verdict.state == "settled"
+
+
+def test_new_lengths_go_on_warm_and_lose_no_record():
+    comparison = Comparison(MODEL, targets(0.9))
+    finish(comparison)
+    before = {name: (run.state, tuple(run.records)) for name, run in comparison.runs.items()}
+    comparison.retarget(MODEL, targets(0.88))
+    assert not comparison.resting
+    comparison.advance()
+    for name, run in comparison.runs.items():
+        state, records = before[name]
+        assert tuple(run.records[:-1]) == records
+        assert run.records[-1].turn == state.turn + 1
+        assert run.records[-1].step < 3.0
+    np.testing.assert_allclose(
+        comparison.exact.state.moved, solve_exact(MODEL, (1.0, 0.88, 1.0)).state.moved, atol=1e-8
+    )
+
+
+def test_the_verdict_counts_only_what_came_after_the_change():
+    comparison = Comparison(MODEL, targets(0.97))
+    finish(comparison)
+    assert comparison.verdict.state == "settled"
+    comparison.retarget(MODEL, targets(0.8))
+    assert comparison.verdict.state == "settling"
+    finish(comparison)
+    assert comparison.verdict.state == "settled"
+
+
+def test_fresh_begins_new_records_from_where_the_body_is():
+    comparison = Comparison(MODEL, targets(0.9))
+    finish(comparison)
+    here = comparison.runs["adaptive"].state.moved
+    comparison.retarget(MODEL, targets(0.85), fresh=True)
+    run = comparison.runs["adaptive"]
+    assert [measured.turn for measured in run.records] == [0]
+    np.testing.assert_array_equal(run.state.moved, here)
+    assert run.records[0].lengths[1] < MODEL.lines[1].rest_length
+    finish(comparison)
+    assert comparison.verdict.state == "settled"
+
+
+def test_other_lines_may_be_worn_while_the_runs_go_on():
+    comparison = Comparison(MODEL, targets(0.9))
+    finish(comparison)
+    both = constrained_model(torso(), worn=["mid-bust", "full-bust"])
+    asked = Targets((1.0, 0.9, 0.95), "adaptive", CALM)
+    comparison.retarget(both, asked)
+    finish(comparison)
+    assert comparison.verdict.state == "settled"
+    np.testing.assert_allclose(comparison.shown.moved, solve_exact(both, asked.ratios).state.moved, atol=0.2)
+    bare = constrained_model(torso(), worn=[])
+    comparison.retarget(bare, targets(1.0))
+    finish(comparison)
+    np.testing.assert_allclose(comparison.shown.moved, 0.0, atol=0.1)
+    np.testing.assert_allclose(comparison.exact.state.moved, 0.0, atol=1e-9)
+
+
+def test_a_slider_dragged_while_turns_are_made_ends_where_it_was_left():
+    comparison = Comparison(MODEL, targets(1.0))
+    for ratio in np.linspace(1.0, 0.85, 40):
+        comparison.retarget(MODEL, targets(float(ratio)))
+        comparison.advance()
+    finish(comparison)
+    turns = [measured.turn for measured in comparison.runs["adaptive"].records]
+    assert turns == list(range(len(turns)))
+    assert comparison.verdict.state == "settled"
+    np.testing.assert_allclose(
+        comparison.shown.moved, solve_exact(MODEL, (1.0, 0.85, 1.0)).state.moved, atol=0.1
+    )
+
+
+def test_a_vibrating_run_is_watched_long_enough_and_then_left():
+    comparison = Comparison(MODEL, targets(0.9, "conventional", 1.05 * gain_limit(MODEL)))
+    assert finish(comparison) == MOST_TURNS
+    assert comparison.verdict.state == "vibrating"
+    assert comparison.verdict.period == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize("fresh", [False, True])
+def test_a_run_that_diverged_starts_again_at_rest_once_the_gain_is_lowered(fresh):
+    comparison = Comparison(MODEL, targets(0.9, "conventional", 9.0))
+    finish(comparison)
+    assert comparison.verdict.state == "diverged"
+    records = len(comparison.runs["conventional"].records)
+    comparison.retarget(MODEL, targets(0.9, "conventional"), fresh)
+    assert np.abs(comparison.shown.moved).max() == 0.0
+    finish(comparison)
+    assert comparison.verdict.state == "settled"
+    turns = [measured.turn for measured in comparison.runs["conventional"].records]
+    assert turns == list(range(len(turns)))
+    assert fresh or len(turns) > records
+
+
+def test_one_diverged_run_does_not_disturb_the_others():
+    comparison = Comparison(MODEL, targets(0.9, "adaptive", 9.0))
+    finish(comparison)
+    assert comparison.runs["conventional"].verdict.state == "diverged"
+    assert comparison.verdict.state == "settled"
+
+
+def test_body_marks_are_recorded_from_the_start():
+    marks = Marks(1.0, 2.0, 3.0, 4.0)
+    comparison = Comparison(MODEL, targets(0.9), watch=lambda points: marks)
+    comparison.advance()
+    assert [measured.marks for measured in comparison.runs["adaptive"].records] == [marks, marks]
+
+
+def test_a_balance_that_was_not_found_is_no_answer():
+    balance = solve_exact(MODEL, (1.0, 0.7, 1.0))
+    assert judge_balance(MODEL, balance).state == "settled"
+    assert judge_balance(MODEL, replace(balance, residual=1.0)).state == "diverged"

@@ -1,0 +1,198 @@
+"""The design: what it accepts, and that its text brings back the very same design."""
+
+import json
+from contextlib import suppress
+from dataclasses import FrozenInstanceError, replace
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from core.design import FORMAT, TEMPLATES, WEIGHTS, Design, ScanSource, WornLine, from_json, to_json
+from core.errors import LineError, ProjectError, UserError
+from core.lines import RATIO_LIMITS
+from core.volume import CONTROLS
+
+PLAIN = Design(ScanSource("/scans/body.ply"))
+KNOWN = set(json.loads(to_json(PLAIN)))
+
+words = st.text(max_size=12)
+anything = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | words,
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(words, inner, max_size=3),
+    max_leaves=6,
+)
+sources = st.builds(
+    ScanSource,
+    path=words,
+    member=words,
+    unit=st.none() | st.sampled_from(["mm", "cm", "m", "inch"]),
+    up=st.none() | words,
+    front=st.none() | words,
+)
+designs = st.builds(
+    Design,
+    scan=sources,
+    template=st.sampled_from(TEMPLATES),
+    line_height=st.floats(0.25, 0.75),
+    lines=st.lists(st.builds(WornLine, words, st.floats(*RATIO_LIMITS)), max_size=4).map(tuple),
+    volume=st.sampled_from(CONTROLS),
+    gain=st.none() | st.floats(0.0, 10.0),
+    line_stiffness=st.floats(0.1, 500.0),
+    weights=st.sampled_from(WEIGHTS),
+    unknown=st.dictionaries(words.filter(lambda word: word not in KNOWN), anything, max_size=3),
+)
+
+
+@settings(deadline=None, max_examples=50)
+@given(designs)
+def test_text_brings_back_the_same_design(design):
+    text = to_json(design)
+    assert from_json(text) == design
+    assert to_json(from_json(text)) == text
+    text.encode("utf-8")
+
+
+def test_what_is_written():
+    values = json.loads(to_json(PLAIN.with_line("mid-bust", 0.97)))
+    assert next(iter(values)) == "format"
+    assert values["format"] == FORMAT
+    assert values["length_unit"] == "mm"
+    assert values["lines"] == [{"name": "mid-bust", "ratio": 0.97}]
+    assert values["scan"]["path"] == "/scans/body.ply"
+
+
+def test_what_a_later_version_wrote_survives_an_edit():
+    later = {**json.loads(to_json(PLAIN)), "straps": {"width": [12, 15]}, "note": "胸"}
+    edited = from_json(json.dumps(later)).with_line("mid-bust", 0.95)
+    written = json.loads(to_json(edited))
+    assert written["straps"] == {"width": [12, 15]}
+    assert written["note"] == "胸"
+    assert written["lines"][0]["ratio"] == 0.95
+
+
+def test_settings_that_an_earlier_version_did_not_have_take_their_defaults():
+    early = {"format": 1, "scan": {"path": "a.ply"}, "lines": []}
+    assert from_json(json.dumps(early)) == Design(ScanSource("a.ply"))
+
+
+def test_a_newer_format_is_refused_with_what_to_do():
+    newer = json.dumps({**json.loads(to_json(PLAIN)), "format": FORMAT + 1})
+    with pytest.raises(ProjectError, match=f"format {FORMAT + 1}.*Update Busk"):
+        from_json(newer)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "nonsense",
+        "null",
+        "[]",
+        "[1, 2]",
+        '"format"',
+        "{}",
+        '{"format": 1}',
+        '{"format": "1"}',
+        "[" * 100_000,
+        "9" * 5000,
+        to_json(PLAIN)[:-20],
+        to_json(PLAIN) + "}",
+    ],
+)
+def test_garbage_is_refused_in_a_sentence(text):
+    with pytest.raises(ProjectError, match="cannot be read"):
+        from_json(text)
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("scan", None),
+        ("scan", {"file": "a.ply"}),
+        ("lines", 5),
+        ("lines", [5]),
+        ("lines", [{"name": "mid-bust"}]),
+        ("lines", [{"name": "mid-bust", "ratio": None}]),
+        ("lines", [{"name": "mid-bust", "ratio": 10**400}]),
+        ("gain", "much"),
+        ("gain", 10**400),
+        ("line_height", [0.5]),
+        ("line_stiffness", {}),
+        ("template", "169"),
+        ("template", ["168"]),
+        ("volume", 1),
+        ("weights", None),
+        ("line_contact", "sliding"),
+    ],
+)
+def test_values_of_the_wrong_kind_are_refused_in_a_sentence(key, value):
+    with pytest.raises(UserError) as refused:
+        from_json(json.dumps({**json.loads(to_json(PLAIN)), key: value}))
+    assert refused.value.message.endswith(".")
+    assert refused.value.hint
+
+
+@settings(deadline=None)
+@given(
+    st.text(max_size=60)
+    | anything.map(json.dumps)
+    | st.dictionaries(st.sampled_from(sorted(KNOWN)), anything).map(json.dumps)
+)
+def test_no_text_at_all_does_worse_than_a_refusal(text):
+    # Any other error than a refusal fails this test.
+    with suppress(UserError):
+        assert isinstance(from_json(text), Design)
+
+
+@pytest.mark.parametrize("ratio", [0.49, 1.31, -1.0, float("nan"), float("inf")])
+def test_a_line_out_of_range_is_refused(ratio):
+    with pytest.raises(LineError, match="mid-bust cannot be set"):
+        PLAIN.with_line("mid-bust", ratio)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"line_height": 0.24},
+        {"line_height": 0.76},
+        {"line_stiffness": 0.0},
+        {"line_stiffness": 501.0},
+        {"gain": -0.1},
+        {"gain": 11.0},
+        {"gain": float("nan")},
+        {"template": "200"},
+        {"volume": "magic"},
+    ],
+)
+def test_settings_out_of_range_are_refused(change):
+    with pytest.raises(UserError):
+        replace(PLAIN, **change)
+
+
+def test_lines_are_put_on_changed_and_taken_off():
+    worn = PLAIN.with_line("mid-bust", 0.97).with_line("full-bust", 1.0).with_line("mid-bust", 0.9)
+    assert [line.name for line in worn.lines] == ["full-bust", "mid-bust"]
+    assert worn.ratio("mid-bust") == 0.9
+    assert worn.worn() == {"mid-bust", "full-bust"}
+    bare = worn.with_line("mid-bust", None)
+    assert bare.worn() == {"full-bust"}
+    assert bare.ratio("mid-bust") == 1.0
+    assert PLAIN.lines == ()
+
+
+def test_the_order_of_putting_on_makes_no_difference():
+    one = PLAIN.with_line("a", 0.9).with_line("b", 0.8)
+    two = PLAIN.with_line("b", 0.8).with_line("a", 0.9)
+    assert one == two
+    assert hash(one) == hash(two)
+
+
+def test_a_design_cannot_be_changed():
+    with pytest.raises(FrozenInstanceError):
+        PLAIN.volume = "none"
+
+
+def test_a_scan_is_called_by_its_file_name():
+    assert ScanSource("/scans/body.ply").name == "body.ply"
+    assert ScanSource("/work/project.busk", member="scan/body.ply").name == "body.ply"

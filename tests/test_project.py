@@ -1,0 +1,300 @@
+"""The project file: whole or not at all, wherever it lies, whatever is done to it."""
+
+import errno
+import json
+import os
+import zipfile
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from core.design import Design, ScanSource, to_json
+from core.errors import ProjectError, ScanError, UserError
+from core.project import (
+    ScanFile,
+    is_project,
+    open_project,
+    read_scan_file,
+    save_project,
+    scan_on_disk,
+    whole_file,
+)
+
+SCAN = ScanFile("body.ply", b"ply\nformat ascii 1.0\nend_header\n" + bytes(range(256)))
+DESIGN = Design(ScanSource("/scans/body.ply", unit="cm")).with_line("mid-bust", 0.97)
+PICTURE = b"\x89PNG not really"
+
+
+@pytest.fixture
+def project(tmp_path):
+    path = tmp_path / "anna.busk"
+    save_project(path, DESIGN, SCAN, PICTURE)
+    return path
+
+
+def left_over(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_what_is_saved_is_opened_again(project):
+    design = open_project(project)
+    assert replace(design, scan=DESIGN.scan) == DESIGN
+    assert design.scan.unit == "cm"
+    assert design.scan.path == str(project)
+    scan = read_scan_file(design.scan)
+    assert (scan.name, scan.data) == (SCAN.name, SCAN.data)
+
+
+def test_saving_returns_what_opening_returns(tmp_path):
+    path = tmp_path / "anna.busk"
+    assert save_project(path, DESIGN, SCAN, None) == open_project(path)
+
+
+def test_other_programs_can_look_inside(project):
+    with zipfile.ZipFile(project) as archive:
+        assert archive.namelist() == ["design.json", "scan/body.ply", "preview.png"]
+        assert archive.testzip() is None
+        assert archive.read("preview.png") == PICTURE
+        assert json.loads(archive.read("design.json"))["scan"]["path"] == ""
+
+
+def test_a_moved_project_still_opens(project, tmp_path):
+    other = tmp_path / "elsewhere"
+    other.mkdir()
+    moved = project.rename(other / "renamed.busk")
+    design = open_project(moved)
+    assert read_scan_file(design.scan).data == SCAN.data
+
+
+def test_a_project_opens_by_a_relative_path(project, monkeypatch):
+    monkeypatch.chdir(project.parent)
+    design = open_project("anna.busk")
+    monkeypatch.chdir("/")
+    assert read_scan_file(design.scan).data == SCAN.data
+
+
+def test_a_project_is_saved_over_itself(project):
+    design = open_project(project)
+    scan = read_scan_file(design.scan)
+    for ratio in (0.95, 0.9):
+        design = save_project(project, design.with_line("mid-bust", ratio), scan, None)
+    again = open_project(project)
+    assert again == design
+    assert again.ratio("mid-bust") == 0.9
+    assert read_scan_file(again.scan).data == SCAN.data
+    assert left_over(project.parent) == ["anna.busk"]
+
+
+def fail_to_replace(source, target):
+    raise OSError(errno.EACCES, "Permission denied")
+
+
+def fail_to_sync(handle):
+    raise OSError(errno.ENOSPC, "No space left on device")
+
+
+@pytest.mark.parametrize(("step", "failure"), [("replace", fail_to_replace), ("fsync", fail_to_sync)])
+def test_a_failure_at_the_end_leaves_the_old_file_whole(project, monkeypatch, step, failure):
+    before = project.read_bytes()
+    monkeypatch.setattr(os, step, failure)
+    with pytest.raises(ProjectError, match="cannot be written"):
+        save_project(project, DESIGN.with_line("mid-bust", 0.8), SCAN, PICTURE)
+    assert project.read_bytes() == before
+    assert left_over(project.parent) == ["anna.busk"]
+
+
+@pytest.mark.parametrize("member", ["design.json", "scan/body.ply", "preview.png"])
+def test_a_disk_that_fills_up_leaves_the_old_file_whole(project, monkeypatch, member):
+    before = project.read_bytes()
+    write = zipfile.ZipFile.writestr
+
+    def full(archive, name, data):
+        if name == member:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        write(archive, name, data)
+
+    monkeypatch.setattr(zipfile.ZipFile, "writestr", full)
+    with pytest.raises(ProjectError, match=r"No space left.*make room"):
+        save_project(project, DESIGN, SCAN, PICTURE)
+    assert project.read_bytes() == before
+    assert left_over(project.parent) == ["anna.busk"]
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
+def test_a_really_full_device(tmp_path, monkeypatch):
+    target = tmp_path / "anna.busk"
+    monkeypatch.setattr(Path, "with_name", lambda self, name: Path("/dev/full"))
+    monkeypatch.setattr(Path, "unlink", lambda self, missing_ok: None)
+    with pytest.raises(ProjectError, match="No space left"):
+        save_project(target, DESIGN, SCAN, None)
+    assert not target.exists()
+
+
+def test_an_interruption_leaves_the_old_file_whole(project, monkeypatch):
+    before = project.read_bytes()
+
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(os, "fsync", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        save_project(project, DESIGN.with_line("mid-bust", 0.8), SCAN, None)
+    assert project.read_bytes() == before
+    assert left_over(project.parent) == ["anna.busk"]
+
+
+def test_nobody_sees_a_half_written_file(tmp_path):
+    target = tmp_path / "table.csv"
+    target.write_text("old")
+    with whole_file(target) as partial:
+        partial.write_text("new, not yet whole")
+        assert target.read_text() == "old"
+        assert partial.parent == target.parent
+    assert target.read_text() == "new, not yet whole"
+    assert left_over(tmp_path) == ["table.csv"]
+
+
+@pytest.mark.parametrize("place", ["missing/anna.busk", "file/anna.busk", "folder", "x" * 300 + ".busk"])
+def test_a_place_that_cannot_be_written_to_is_named(tmp_path, place):
+    (tmp_path / "file").write_text("a file, no folder")
+    (tmp_path / "folder").mkdir()
+    with pytest.raises(ProjectError, match=r"cannot be written.*Choose another folder"):
+        save_project(tmp_path / place, DESIGN, SCAN, None)
+    assert left_over(tmp_path) == ["file", "folder"]
+
+
+def test_every_truncation_is_refused_in_a_sentence(project):
+    whole = project.read_bytes()
+    for length in range(0, len(whole), 7):
+        project.write_bytes(whole[:length])
+        with pytest.raises(ProjectError) as refused:
+            read_scan_file(open_project(project).scan)
+        assert refused.value.hint
+
+
+@settings(deadline=None, max_examples=200, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(changes=st.lists(st.tuples(st.integers(0, 10**6), st.integers(0, 255)), min_size=1, max_size=4))
+def test_no_flipped_byte_does_worse_than_a_refusal(tmp_path, changes):
+    path = tmp_path / "anna.busk"
+    save_project(path, DESIGN, SCAN, PICTURE)
+    broken = bytearray(path.read_bytes())
+    for place, value in changes:
+        broken[place % len(broken)] = value
+    path.write_bytes(bytes(broken))
+    # Any other error than a refusal fails this test, and so does a scan that is not the one that was saved.
+    with suppress(UserError):
+        assert read_scan_file(open_project(path).scan).data == SCAN.data
+
+
+def crafted(path, design_text, **members):
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("design.json", design_text)
+        for name, data in members.items():
+            archive.writestr(name, data)
+    return path
+
+
+def test_an_empty_file_and_other_archives_are_no_projects(tmp_path):
+    path = tmp_path / "anna.busk"
+    for content in (b"", b"PK", b"ply\n", os.urandom(1000)):
+        path.write_bytes(content)
+        with pytest.raises(ProjectError, match="not a whole Busk project"):
+            open_project(path)
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("letter.txt", "dear")
+    with pytest.raises(ProjectError, match="no Busk project"):
+        open_project(path)
+
+
+def test_a_project_without_its_scan_is_refused(tmp_path):
+    inside = replace(DESIGN, scan=ScanSource("", member="scan/body.ply"))
+    with pytest.raises(ProjectError, match="holds no scan"):
+        open_project(crafted(tmp_path / "anna.busk", to_json(inside)))
+
+
+def test_a_project_without_a_design_inside_is_refused(tmp_path):
+    with pytest.raises(ProjectError, match="cannot be read"):
+        open_project(crafted(tmp_path / "anna.busk", "[[]]"))
+
+
+def test_a_design_that_claims_to_be_huge_is_not_unpacked(tmp_path):
+    path = crafted(tmp_path / "anna.busk", " " * 5_000_000)
+    assert path.stat().st_size < 50_000
+    with pytest.raises(ProjectError, match="claims to be 5 MB"):
+        open_project(path)
+
+
+@pytest.mark.parametrize(
+    "member", ["../../evil.ply", "scan/..", "/", "..", "/etc/passwd.ply", "a" * 300 + ".ply", "scan/a:b?.ply"]
+)
+def test_a_scan_with_a_hostile_name_stays_in_its_folder(tmp_path, member):
+    design = open_project(
+        crafted(
+            tmp_path / "anna.busk",
+            to_json(replace(DESIGN, scan=ScanSource("", member=member))),
+            **{member: b"ply"},
+        )
+    )
+    with scan_on_disk(design.scan, read_scan_file(design.scan)) as path:
+        assert path.read_bytes() == b"ply"
+        folder = path.parent
+        assert folder.name.startswith("busk-")
+        assert left_over(folder) == [path.name]
+    assert not folder.exists()
+
+
+@pytest.mark.parametrize("name", ["体.ply", "K\udcf6rper.ply", "a:b|c?.ply", "x" * 200 + ".ply", "..."])
+def test_scans_with_odd_names_are_saved_and_come_back(tmp_path, name):
+    path = tmp_path / "anna.busk"
+    save_project(path, DESIGN, ScanFile(name, b"ply"), None)
+    design = open_project(path)
+    with scan_on_disk(design.scan, read_scan_file(design.scan)) as copy:
+        assert copy.read_bytes() == b"ply"
+        assert copy.suffix == Path(name).suffix
+
+
+def test_a_plain_scan_is_read_where_it_lies(tmp_path):
+    path = tmp_path / "body.ply"
+    path.write_bytes(b"ply")
+    scan = read_scan_file(ScanSource(str(path)))
+    assert (scan.name, scan.data) == ("body.ply", b"ply")
+    with scan_on_disk(ScanSource(str(path)), scan) as place:
+        assert place == path
+    assert path.exists()
+
+
+def test_missing_files_are_named(tmp_path):
+    with pytest.raises(ScanError, match=r"no file .*body\.ply"):
+        read_scan_file(ScanSource(str(tmp_path / "body.ply")))
+    with pytest.raises(ProjectError, match=r"no project .*anna\.busk"):
+        open_project(tmp_path / "anna.busk")
+    with pytest.raises(ScanError, match="cannot be read"):
+        read_scan_file(ScanSource(str(tmp_path)))
+    with pytest.raises(ProjectError, match="cannot be read"):
+        open_project(tmp_path)
+
+
+def test_a_temporary_folder_without_room_is_named(project, monkeypatch):
+    design = open_project(project)
+    scan = read_scan_file(design.scan)
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    with (
+        pytest.raises(ProjectError, match="cannot be unpacked: No space left"),
+        scan_on_disk(design.scan, scan),
+    ):
+        pass
+
+
+def test_projects_are_known_by_their_ending():
+    assert is_project("anna.busk")
+    assert is_project(Path("ANNA.BUSK"))
+    assert not is_project("anna.ply")
+    assert not is_project("busk")
