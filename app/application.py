@@ -8,6 +8,8 @@ import os
 import platform
 import sys
 import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 
@@ -48,24 +50,36 @@ def application(language: str | None = None, dark: bool | None = None) -> QAppli
     return existing
 
 
-def keep_log() -> Path:
-    """Write faults to a log file, never the scan or its measures, and return its folder."""
+@contextmanager
+def log_kept() -> Iterator[Path]:
+    """Write faults, never the scan or its measures, to a log while the window is open; gives its folder."""
     folder = Path(platformdirs.user_log_dir("Busk", appauthor=False))
     folder.mkdir(parents=True, exist_ok=True)
-    logging.basicConfig(
-        filename=folder / "busk.log", level=logging.WARNING, format="%(asctime)s %(levelname)s %(message)s"
-    )
-    faulthandler.enable(open(folder / "crash.log", "a", encoding="utf-8"))  # noqa: SIM115 - open as long as we run
+    handler = logging.FileHandler(folder / "busk.log", encoding="utf-8", delay=True)
+    handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
+    logging.getLogger().addHandler(handler)
+    hooks = sys.excepthook, threading.excepthook
     sys.excepthook = _log_fault
-    threading.excepthook = lambda args: _log_fault(
-        args.exc_type, args.exc_value or RuntimeError(), args.exc_traceback
-    )
-    return folder
+    threading.excepthook = _log_thread_fault
+    try:
+        with open(folder / "crash.log", "a", encoding="utf-8") as crashes:
+            faulthandler.enable(crashes)
+            yield folder
+    finally:
+        # With no other file to write to, faults go to the terminal again.
+        faulthandler.disable()
+        sys.excepthook, threading.excepthook = hooks
+        logging.getLogger().removeHandler(handler)
+        handler.close()
 
 
 def _log_fault(kind: type[BaseException], fault: BaseException, trace: TracebackType | None) -> None:
     logging.error("unexpected fault", exc_info=(kind, fault, trace))
     sys.__excepthook__(kind, fault, trace)
+
+
+def _log_thread_fault(args: threading.ExceptHookArgs) -> None:
+    _log_fault(args.exc_type, args.exc_value or RuntimeError(), args.exc_traceback)
 
 
 def chosen_dark(theme: str) -> bool:

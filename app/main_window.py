@@ -36,6 +36,7 @@ class MainWindow(QMainWindow):
         self.setMinimumSize(1180, 700)
         self.resize(1600, 1000)
         self.setAcceptDrops(True)
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.view = ViewArea()
         self.actions_ = Actions(self, session.undo_stack)
         self.menus = self.actions_.menu_bar(self.view.tools.actions_by_name)

@@ -79,15 +79,13 @@ def draw_window(
     window = open_window(design)
     failures: list[Exception] = []
     window.session.failed.connect(failures.append)
-    shaded: list[bool] = []
-    window.view.shaded.connect(lambda: shaded.append(True))
     window.view.viewport.motion = False
     window.resize(*size)
     window.show()
 
     def ready() -> bool:
         frame = window.session.frame
-        return bool(failures) or (frame is not None and not frame.at_work and bool(shaded))
+        return bool(failures) or (frame is not None and not frame.at_work and window.view.is_shaded)
 
     try:
         wait_until(ready, app.processEvents)

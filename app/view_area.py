@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, QObject, Signal
+from PySide6.QtCore import QEvent, QObject
 from PySide6.QtGui import QImage, QResizeEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
@@ -23,9 +23,7 @@ _MARGIN = 14
 
 
 class ViewArea(QWidget):
-    """Shows frames; ``shaded`` says that the soft shadows of a new body have been worked out."""
-
-    shaded = Signal()
+    """Shows frames; ``is_shaded`` says whether the soft shadows of the body have been worked out."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -35,6 +33,7 @@ class ViewArea(QWidget):
         self.hidden_lines: set[str] = set()
         self.selected_line = "mid-bust"
         self.after = True
+        self.is_shaded = False
         self._body: Body | None = None
         self._control: ControlMesh | None = None
         self._landmarks: Landmarks | None = None
@@ -145,7 +144,7 @@ class ViewArea(QWidget):
     def _show_body(self, body: Body) -> None:
         self._body = body
         self.viewport.scene.show_body(body.mesh)
-        self.after = True
+        self.after, self.is_shaded = True, False
         self.compare.set_after(True)
         self._background.run(body, lambda: bake_occlusion(body.mesh))
 
@@ -153,7 +152,7 @@ class ViewArea(QWidget):
         if body is self._body:
             self.viewport.scene.set_occlusion(occlusion)  # type: ignore[arg-type]
             self.viewport.request_draw()
-            self.shaded.emit()
+            self.is_shaded = True
 
     def _show_label(self, frame: Frame, design: Design) -> None:
         name = self.selected_line

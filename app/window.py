@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from app.application import application, keep_log
+from app.application import application, log_kept
 from app.display import has_display
 from app.samples import sample_design
 from app.session import Session
@@ -24,10 +24,10 @@ def run_window(file: str | None = None) -> int:
             "Use 'busk demo --out out' for the same session in pictures, or 'busk --help' for the commands.",
         )
     app = application()
-    keep_log()
-    window = open_window(file if file is not None else sample_design())
-    window.show()
-    return app.exec()
+    with log_kept():
+        window = open_window(file if file is not None else sample_design())
+        window.show()
+        return app.exec()
 
 
 def open_window(what: str | Design) -> MainWindow:

@@ -1,0 +1,90 @@
+"""How tests sit in front of the real window: the real main(), driven from inside its event loop."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Generator
+
+from PySide6.QtCore import QCoreApplication, QTimer
+from PySide6.QtWidgets import QApplication
+from shiboken6 import isValid
+
+from app.cli import main
+from app.main_window import MainWindow
+
+PATIENCE = 90.0
+Script = Generator[Callable[[], bool], None, None]
+
+
+def run_main(arguments: list[str], script: Callable[[MainWindow], Script]) -> int:
+    """Start ``busk`` and play ``script``, which yields what to wait for; at its end the window is closed."""
+    player = _Player(script)
+    QTimer.singleShot(0, player.begin)
+    code = main(arguments)
+    QCoreApplication.sendPostedEvents(None, 0)
+    if player.fault is not None:
+        raise player.fault
+    assert player.ended, "the window was closed before the script was over"
+    return code
+
+
+def settled(window: MainWindow) -> Callable[[], bool]:
+    """The design of the session is solved to the end and has been drawn."""
+
+    def ready() -> bool:
+        frame, session = window.session.frame, window.session
+        return frame is not None and session.design is frame.stages.design and not frame.at_work
+
+    return ready
+
+
+class _Player:
+    def __init__(self, script: Callable[[MainWindow], Script]) -> None:
+        self._script = script
+        self.fault: BaseException | None = None
+        self.ended = False
+        self._deadline = time.monotonic() + PATIENCE
+        self._window: MainWindow | None = None
+        self._waiting: Callable[[], bool] = lambda: True
+        self._timer = QTimer(interval=5)
+        self._timer.timeout.connect(self._look)
+
+    def begin(self) -> None:
+        self._timer.start()
+
+    def _look(self) -> None:
+        try:
+            self._step()
+        except StopIteration:
+            self.ended = True
+            self._finish()
+        except BaseException as fault:
+            self.fault = fault
+            self._finish()
+
+    def _step(self) -> None:
+        if self._window is None:
+            windows = [each for each in QApplication.topLevelWidgets() if isinstance(each, MainWindow)]
+            if not windows:
+                return self._check_patience()
+            self._window = windows[0]
+            self._play = self._script(self._window)
+        if not self._waiting():
+            return self._check_patience()
+        self._deadline = time.monotonic() + PATIENCE
+        self._waiting = next(self._play)
+        return None
+
+    def _check_patience(self) -> None:
+        if time.monotonic() > self._deadline:
+            raise TimeoutError("the window does not get there")
+
+    def _finish(self) -> None:
+        self._timer.stop()
+        if self._window is not None and isValid(self._window):
+            self._window.session.undo_stack.setClean()
+            self._window.close()
+        QApplication.quit()
+
+
+__all__ = ["Script", "run_main", "settled"]
