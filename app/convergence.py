@@ -180,7 +180,7 @@ class Strip(QWidget):
         titles = (tr("Adaptive"), tr("Conventional"), tr("None"), tr("Exact"))
         self._segment = Segment(tuple(zip(CONTROLS, titles, strict=True)), small=True)
         for control, tip in zip(CONTROLS, _control_tips(), strict=True):
-            self._segment.button(control).setToolTip(tip)
+            self._segment.button(control).setToolTip(f"<p>{tip}</p>")  # a paragraph wraps
         self._segment.chosen.connect(self.control_chosen)
         column.addWidget(self._segment)
         return column

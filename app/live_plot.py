@@ -74,7 +74,6 @@ class LivePlot(QWidget):
         self._exact_is_main = False
         self._range = (0.0, 1.0)
         self._levels: list[float] = []
-        self._smooth = True
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Expanding)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
@@ -101,7 +100,6 @@ class LivePlot(QWidget):
     ) -> None:
         """Draw these runs and the exact answer; without ``refit`` the range only grows, as during a drag."""
         self._curves, self._exact, self._exact_is_main = tuple(curves), exact, exact_is_main
-        self._smooth = refit
         self._fit(refit)
         self._set_axes()
 
@@ -126,7 +124,7 @@ class LivePlot(QWidget):
     def paint_curves(self, painter: QPainter, to_pixels: QTransform) -> None:
         """Paint all curves; ``to_pixels`` maps turns and values to pixels."""
         tokens = tokens_of(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing, self._smooth)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         self._paint_grid(painter, to_pixels, tokens)
         for curve in sorted(self._curves, key=lambda each: each.role != "ghost"):
             if len(curve.turns) > 1:
@@ -162,7 +160,8 @@ class LivePlot(QWidget):
         self._plot.setRange(xRange=within, yRange=(low - room, high + room), padding=0)
         self._levels = round_ticks(low, high, 4 if self.height() > 110 else 3)
         digits = next((d for d in (0, 1, 2) if all(abs(v - round(v, d)) < 1e-9 for v in self._levels)), 3)
-        turns = [turn for turn in round_ticks(first, last, 4) if turn < last - 0.14 * (last - first)]
+        room_for_word = last - 0.14 * (last - first)
+        turns = [turn for turn in round_ticks(first, last, 4) if turn < room_for_word and turn.is_integer()]
         left, bottom = self._plot.getAxis("left"), self._plot.getAxis("bottom")
         left.setTicks([[(level, number(level, digits)) for level in self._levels]])
         bottom.setTicks([[*((turn, f"{turn:.0f}") for turn in turns), (last, tr("turn"))]])
@@ -199,7 +198,6 @@ class LivePlot(QWidget):
             painter.setPen(QPen(_fade(color, 0.62 if ghost else 1.0), 1 if ghost else 2))
             painter.drawPath(path)
         if not ghost and np.isfinite(curve.values[-1]):
-            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
             painter.setPen(QPen(QColor(tokens.panel), 1.5))
             painter.setBrush(QColor(color))
             painter.drawEllipse(to_pixels.map(QPointF(curve.turns[-1], curve.values[-1])), 4, 4)

@@ -28,7 +28,7 @@ class Rail(QWidget):
         super().__init__()
         self.setFixedWidth(77)
         self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(8, 8, 9, 8)
+        self._column.setContentsMargins(4, 8, 5, 8)
         self._column.setSpacing(2)
         group = QButtonGroup(self)
         titles = (tr("Scan"), tr("Landmarks"), tr("Lines"), tr("Result"))
@@ -75,7 +75,7 @@ class RailItem(QAbstractButton):
         self.setFixedSize(self.sizeHint())
 
     def sizeHint(self) -> QSize:
-        return QSize(60, 62)
+        return QSize(68, 62)
 
     def state(self) -> str:
         """Return how the step stands, one of ``STATES``."""
@@ -105,7 +105,7 @@ class RailItem(QAbstractButton):
         type_.setWeight(type_.Weight.DemiBold if self.isChecked() else type_.Weight.Normal)
         painter.setFont(type_)
         painter.setPen(QColor(ink))
-        painter.drawText(QRectF(-8, 37, self.width() + 16, 20), Qt.AlignmentFlag.AlignCenter, self.text())
+        painter.drawText(QRectF(0, 37, self.width(), 20), Qt.AlignmentFlag.AlignCenter, self.text())
         self._paint_badge(painter, QPointF(self.width() / 2 + 12, 12))
 
     def _paint_badge(self, painter: QPainter, at: QPointF) -> None:

@@ -103,9 +103,10 @@ class _Table(QWidget):
         tokens = tokens_of(self)
         painter.fillRect(QRectF(4, top, self.width() - 8, 1), QColor(tokens.line))
         before, after, change, bar = self._cells(top + 24, 24)
-        painter.setFont(font("body", tabular=True))
+        painter.setFont(font("body"))
         painter.setPen(QColor(tokens.text))
         painter.drawText(QRectF(4, top + 4, self.width() - 8, 22), _LEFT, row.label)
+        painter.setFont(font("body", tabular=True))
         painter.setPen(QColor(tokens.text_caption))
         painter.drawText(before, _RIGHT, _written(row.before, row.unit))
         if row.after is None:

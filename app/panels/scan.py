@@ -85,9 +85,10 @@ class ScanPanel(QWidget):
         another.clicked.connect(self.open_asked)
         for each in (self._file, self._triangles):
             column.addWidget(each)
-        self._group(column, tr("Unit of the file"), self._units, self._reason)
+        self._group(column, tr("Unit of the file"), self._units)
         self._group(column, tr("Axis of the file that points up"), self._up)
         self._group(column, tr("Axis of the file that the chest faces"), self._front)
+        self._group(column, tr("Why"), self._reason)
         self._group(column, tr("Repairs"), self._repairs)
         column.addSpacing(14)
         column.addWidget(another, alignment=Qt.AlignmentFlag.AlignLeft)
