@@ -28,8 +28,12 @@ is_installed() {
     dpkg-query -W -f='${db:Status-Status}\n' "$1" "$1t64" 2>/dev/null | grep -qx installed
 }
 
+wanted_packages() {
+    echo $WINDOW_LIBRARIES $([ "$level" = test ] && echo "$VIRTUAL_DISPLAY")
+}
+
 missing_packages() {
-    for name in $WINDOW_LIBRARIES $([ "$level" = test ] && echo "$VIRTUAL_DISPLAY"); do
+    for name in $(wanted_packages); do
         is_installed "$name" || printf '%s ' "$name"
     done
     if ! "$python" -c 'import ensurepip, venv' 2>/dev/null; then
@@ -62,7 +66,7 @@ prepare_system() {
         [ -z "$packages" ] || install_packages $packages
     elif [ "$(uname)" = Linux ]; then
         say "This system has no apt-get, so its libraries are not checked. Busk needs what Debian calls:" \
-            "$(echo $WINDOW_LIBRARIES $VIRTUAL_DISPLAY)"
+            "$(wanted_packages)"
     fi
 }
 
