@@ -10,13 +10,13 @@ import pyvista as pv
 
 from app.camera import LENS, View
 from app.scene_bands import Band, Bands
-from app.scene_body import BodyActor
+from app.scene_body import BodyActor, Ghost
 from app.scene_control import ControlActor
 from app.scene_stage import LOOKS, Stage
 from core.mesh import Flags, Floats, Indices, Mesh, Points
 
-PARTS = ("body", "bands", "control", "floor")
-"""What ``Scene.set_visible`` knows."""
+PARTS = ("body", "bands", "control", "floor", "ghost")
+"""What ``Scene.set_visible`` knows; the ghost is the fringe of the body at rest behind the moved one."""
 
 _ABOVE_BUST, _BELOW_BUST = 320.0, 240.0  # what a framed bust shows: from the neck to the waist [mm]
 
@@ -36,9 +36,10 @@ class Scene:
         self._pixel_ratio = pixel_ratio
         self._stage = Stage(plotter)
         self.bands = Bands(plotter)
+        self._ghost: Ghost | None = None
         self._control: ControlActor | None = None
         self._control_points: tuple[Points, Points] | None = None
-        self._visible = dict.fromkeys(PARTS, True) | {"control": False}
+        self._visible = dict.fromkeys(PARTS, True) | {"control": False, "ghost": False}
         self._before = False
         self._view = View()
         self.set_dark(dark)
@@ -53,7 +54,8 @@ class Scene:
         self.body = BodyActor(self.plotter, mesh, LOOKS[self._dark])
         low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
         self._stage.stand(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), low[2])
-        self._before = False
+        self._before, self._ghost = False, None
+        self.plotter.remove_actor("ghost", reset_camera=False, render=False)
         self._apply_visible()
         self.look_from(self._view)
 
@@ -103,6 +105,7 @@ class Scene:
         """Show everything at rest, or as it was moved."""
         self._before = shown
         self._shown_body().before(shown)
+        self._apply_visible()
         self._follow()
         if self._control is not None and self._control_points is not None:
             self._control.move(self._control_points[0 if shown else 1])
@@ -134,6 +137,8 @@ class Scene:
             self.body.set_look(look)
         if self._control is not None:
             self._control.set_look(look)
+        if self._ghost is not None:
+            self._ghost.actor.prop.color = look.ghost
 
     @property
     def view(self) -> View:
@@ -151,6 +156,8 @@ class Scene:
         centre, radius = self._ball()
         depth = float((view.eye - centre) @ view.axes[2])
         camera.clipping_range = (max(depth - radius, 20.0), max(depth + radius, 40.0))
+        if self._ghost is not None:
+            self._ghost.look_from(view)
 
     def set_view(self, name: str) -> None:
         """See the scene from the side called ``name`` in ``app.camera.VIEWS``."""
@@ -229,6 +236,12 @@ class Scene:
         if self.body is not None:
             self.body.actor.SetVisibility(self._visible["body"])
             self._stage.show_floor(self._visible["floor"])
+            if self._visible["ghost"] and self._ghost is None:
+                self._ghost = Ghost(self.plotter, self.body.rest)
+                self._ghost.actor.prop.color = LOOKS[self._dark].ghost
+                self._ghost.look_from(self._view)
+        if self._ghost is not None:
+            self._ghost.actor.SetVisibility(self._visible["ghost"] and not self._before)
         if self._control is not None:
             self._control.set_visible(self._visible["control"])
         self.bands.set_visible(self._visible["bands"])

@@ -13,6 +13,7 @@ from scipy.sparse.csgraph import connected_components
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
+from app.camera import View
 from app.scene_stage import Look, rgb
 from core.mesh import Flags, Floats, Indices, Mesh, Points, area_vectors, incidence, unit
 
@@ -260,3 +261,28 @@ class BodyActor:
         self._data.GetPoints().Modified()
         self._data.GetPointData().GetNormals().Modified()
         self.sight.forget()
+
+
+class Ghost:
+    """The body at rest, seen only where it reaches out beyond the moved one.
+
+    It is drawn opaque and enlarged about the eye, so that its picture is the same but lies behind the body.
+    """
+
+    _LARGER = 1.12
+
+    def __init__(self, plotter: pv.BasePlotter, mesh: Mesh) -> None:
+        data = pv.PolyData.from_regular_faces(mesh.vertices.astype(np.float32), mesh.faces)
+        self.actor = plotter.add_mesh(
+            data, name="ghost", lighting=False, copy_mesh=False, reset_camera=False, render=False
+        )
+
+    def look_from(self, view: View) -> None:
+        """Keep behind the body for this eye."""
+        matrix = np.eye(4)
+        if view.parallel:
+            matrix[:3, 3] = -(self._LARGER - 1.0) * view.distance * view.axes[2]
+        else:
+            matrix[:3, :3] *= self._LARGER
+            matrix[:3, 3] = (1.0 - self._LARGER) * view.eye
+        self.actor.user_matrix = matrix
