@@ -50,12 +50,7 @@ def view(qtbot: QtBot) -> Iterator[Viewport]:
 
 
 def mouse(
-    view: Viewport,
-    kind: QEvent.Type,
-    spot: XY,
-    button: Button = NONE,
-    held: Button = NONE,
-    keys: Keys = PLAIN,
+    view: Viewport, kind: QEvent.Type, at: XY, button: Button = NONE, held: Button = NONE, keys: Keys = PLAIN
 ) -> None:
     place = QPointF(*at)
     canvas = view.overlay.parentWidget()
