@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QWidget
 
 from app.parts import IconLabel, ToolButton, button
 from app.theme import label, tokens_of
-from app.words import tr
+from app.words import say, tr
 
 Action = tuple[str, Callable[[], None]]
 """The word on a button and what it does."""
@@ -122,7 +122,7 @@ class NoticeBar(QWidget):
             return
         notice = self._shown = self._waiting.popleft()
         self._icon.show_icon(TONE_ICONS[notice.tone], notice.tone)
-        said, hint = escape(notice.sentence), escape(notice.hint)
+        said, hint = escape(say(notice.sentence)), escape(say(notice.hint))
         self._words.setText(f'<span style="font-weight:600">{said}</span>&nbsp; {hint}')
         self._set_buttons(notice.actions)
         self._show_waiting()

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+import re
 from importlib import resources
 
 LANGUAGES = {"en": "English", "ja": "日本語"}
 """The languages that can be chosen, by code, each in its own words."""
 
 _table: dict[str, str] = {}
+_messages: list[tuple[re.Pattern[str], str]] = []
+_SENTENCE_END = re.compile(r"(?<=[.?!]) (?=[A-Z'])")
 
 
 def use_language(code: str) -> None:
@@ -17,13 +20,18 @@ def use_language(code: str) -> None:
     Call it once, before the first widget is built: a widget keeps the words it was built with.
     """
     _table.clear()
+    _messages.clear()
     if code in LANGUAGES and code != "en":
         _table.update(read_words(code))
+        messages = read_words(f"{code}_messages")
+        # The more words a pattern holds, the surer its match: the longest is tried first.
+        for english in sorted(messages, key=lambda text: -len(re.sub(r"\{\w*\}", "", text))):
+            _messages.append((_pattern(english), messages[english]))
 
 
-def read_words(code: str) -> dict[str, str]:
-    """Return the table of one language, English to translated."""
-    text = (resources.files("resources") / "words" / f"{code}.json").read_text(encoding="utf-8")
+def read_words(name: str) -> dict[str, str]:
+    """Return one table of ``resources/words``, English to translated."""
+    text = (resources.files("resources") / "words" / f"{name}.json").read_text(encoding="utf-8")
     table: dict[str, str] = json.loads(text)
     return table
 
@@ -31,6 +39,23 @@ def read_words(code: str) -> dict[str, str]:
 def tr(english: str) -> str:
     """Return ``english`` in the language of the window, or as it is where no translation is known."""
     return _table.get(english, english)
+
+
+def say(english: str) -> str:
+    """Return what the core says, one or more sentences with names and numbers filled in, in the language
+    of the window; a sentence that no pattern fits stays as it is.
+    """
+    for pattern, translated in _messages:
+        match = pattern.fullmatch(english)
+        if match:
+            return translated.format(**{name: say(value) for name, value in match.groupdict().items()})
+    sentences = _SENTENCE_END.split(english) if _messages else [english]
+    return english if len(sentences) == 1 else "".join(say(each) for each in sentences)
+
+
+def _pattern(english: str) -> re.Pattern[str]:
+    """Return what a message looks like with its places filled."""
+    return re.compile(re.sub(r"\\\{(\w+)\\\}", r"(?P<\1>.+)", re.escape(english)), re.DOTALL)
 
 
 def number(value: float, digits: int = 1, signed: bool = False) -> str:

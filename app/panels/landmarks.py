@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QAbstractButton, QButtonGroup, QVBoxLayout, QWidge
 
 from app.parts import EmptyState, hairline, sentence
 from app.theme import font, label, tokens_of
-from app.words import tr
+from app.words import say, tr
 
 SURE, WEAK = 0.5, 0.3
 """Confidence from which a landmark is green, and below which it is red; between them it is amber."""
@@ -92,7 +92,7 @@ class LandmarksPanel(QWidget):
         self._rule_box.setVisible(name is not None)
         if name is not None:
             self._rule_title.setText(self.rows[name].view.title)
-            self._rule.setText(self.rows[name].view.rule)
+            self._rule.setText(say(self.rows[name].view.rule))
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         step = {Qt.Key.Key_Up: -1, Qt.Key.Key_Down: 1}.get(Qt.Key(event.key()))
@@ -140,7 +140,7 @@ class LandmarkRow(QAbstractButton):
         """Show new values of the same landmark."""
         self.view = view
         self.setText(view.title)
-        self.setToolTip(view.rule)
+        self.setToolTip(say(view.rule))
         self.setAccessibleName(f"{view.title} {view.confidence:.0%}")
         self.update()
 

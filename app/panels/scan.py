@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QFrame, QLabel, QScrollArea, QVBoxLayout, QWidget
 
 from app.parts import EmptyState, Segment, button, hairline, sentence
 from app.theme import label, set_tag
-from app.words import number, tr
+from app.words import number, say, tr
 
 UNITS = ("mm", "cm", "m", "inch")
 """Units that a scan can be in."""
@@ -63,11 +63,11 @@ class ScanPanel(QWidget):
         self._file.setText(view.file)
         self._triangles.setText(tr("{count} triangles").format(count=number(view.triangles, 0)))
         self._units.set_choice(view.unit)
-        self._reason.setText(view.reason)
+        self._reason.setText(say(view.reason))
         set_tag(self._reason, "tone", "" if view.sure else "warn")
         self._up.setText(view.up.replace("-", "\N{MINUS SIGN}"))
         self._front.setText(view.front.replace("-", "\N{MINUS SIGN}"))
-        self._repairs.setText("\n".join(view.repairs) or tr("Nothing had to be repaired."))
+        self._repairs.setText("\n".join(map(say, view.repairs)) or tr("Nothing had to be repaired."))
 
     def _facts(self) -> QScrollArea:
         inside = QWidget()
