@@ -273,20 +273,17 @@ def iterate(
             return
 
 
-def gain_limit(model: ConstrainedModel, turns: int = 120) -> float:
+def gain_limit(model: ConstrainedModel) -> float:
     """Return the conventional gain above which small volume errors flip and grow (ours; probe units [1]).
 
-    The sweep is linear for small moves; driven by a volume force that alternates each turn it settles to a
-    response, and the loop is on the brink where the response answers with the full error.
+    A turn is linear for small moves. On the brink the displacement d flips from turn to turn, so that old is
+    -d and new is d, and its volume calls forth the very force that made it.
     """
-    first, second = model.sweep
     a = model.volume.gradient(model.tensegric.rest)
     u = model.rest_spans / model.rest_segments[:, None]
-    moved = np.zeros_like(a)
-    for step in range(turns):
-        span = model.signs @ moved
-        # A line member resists only along itself; across, its target turns with it.
-        aim = span - u * np.einsum("ij,ij->i", u, span)[:, None]
-        forces = (-1.0) ** step * a + model.signs.T @ (model.line_stiffness[:, None] * aim)
-        moved = first @ moved + second @ forces
-    return model.probe / abs(float(np.sum(a * moved)))
+    # A line member resists only along itself; across, its target turns with it.
+    across = np.eye(3) - u[:, :, None] * u[:, None, :]
+    turning = model.line_scatter @ (model.line_stiffness[:, None, None] * across).ravel()
+    flipped = np.kron(np.tril(model.stiffness) - np.triu(model.stiffness, 1), np.eye(3))
+    d = np.linalg.solve(flipped + turning.reshape(flipped.shape), a.ravel())
+    return model.probe / abs(float(a.ravel() @ d))

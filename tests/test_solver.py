@@ -5,7 +5,7 @@ from itertools import islice
 
 import numpy as np
 import pytest
-from shapes import fitted, sphere, tent_model, torso
+from shapes import central_difference, fitted, sphere, tent_model, torso
 
 from core.control_mesh import ControlMesh
 from core.lines import line_on
@@ -215,6 +215,23 @@ def test_the_limit_is_sharp_where_moves_are_small():
     for factor, grows in ((0.99, False), (1.01, True)):
         swing = flips(TORSO, factor * limit, ratio=0.999, turns=160)
         assert (swing[-1] > swing[-41]) == grows
+
+
+def test_the_limit_is_where_the_loop_of_one_turn_flips():
+    """Turns differentiated numerically: the answer to a push that flips from turn to turn."""
+    still = (1.0, 1.0, 1.0)
+    shape = (len(TORSO.tensegric.free), 3)
+
+    def after(moved, pressure):
+        state = State(moved.reshape(shape), Pressure(value=pressure))
+        return turn(TORSO, Targets(still, "conventional"), state)[0].moved.ravel()
+
+    zero = np.zeros(np.prod(shape))
+    follow = central_difference(lambda d: after(d, 0.0), zero, 1e-4)
+    push = central_difference(lambda p: after(zero, p[0]), np.zeros(1), 1e-6)[:, 0]
+    flipping = np.linalg.solve(np.eye(len(zero)) + follow, push)
+    per_unit = flipping @ TORSO.volume.gradient(TORSO.tensegric.rest).ravel() / TORSO.volume.rest_volume
+    assert gain_limit(TORSO) == pytest.approx(1.0 / per_unit, rel=1e-5)
 
 
 @pytest.mark.parametrize("ratio", [0.6, 0.8, 0.97, 1.1])
