@@ -81,7 +81,7 @@ class Energy:
 
 
 def solve_exact(
-    model: ConstrainedModel, ratios: tuple[float, ...], start: State | None = None, limit: int = 60
+    model: ConstrainedModel, ratios: tuple[float, ...], start: State | None = None, limit: int = 200
 ) -> Balance:
     """Return the exact balance for line ``ratios``, one per line; ``start`` may be a neighbouring answer."""
     *_, last = newton(model, ratios, start, limit)
@@ -89,7 +89,7 @@ def solve_exact(
 
 
 def newton(
-    model: ConstrainedModel, ratios: tuple[float, ...], start: State | None = None, limit: int = 60
+    model: ConstrainedModel, ratios: tuple[float, ...], start: State | None = None, limit: int = 200
 ) -> Iterator[Balance]:
     """Yield each Newton iterate, the start included, until exact or ``limit`` steps are made."""
     energy = Energy(model, ratios)

@@ -256,6 +256,17 @@ def test_a_model_of_one_breast_only():
     assert balance.pressures[0] > 0.0
 
 
+@pytest.mark.parametrize("worn", [["mid-bust"], ["mid-bust", "full-bust"]])
+def test_stiff_lines_that_push_are_found_too(worn):
+    """Lengthened stiff lines buckle: there full Newton steps would raise the energy."""
+    model = constrained_model(torso(skew=0.3), worn=worn, line_stiffness=500.0)
+    energy = Energy(model, (1.0, 1.3, 1.3))
+    *balances, last = newton(model, (1.0, 1.3, 1.3))
+    assert last.found
+    energies = [energy.value(balance.state.moved) for balance in [*balances, last]]
+    assert (np.diff(energies) <= 1e-11 * energies[0]).all()
+
+
 @pytest.mark.parametrize("ratio", [0.5, 0.6, 1.2, 1.3])
 def test_even_at_the_ends_of_the_range_an_answer_is_found(ratio):
     balance = solve_exact(SKEW, (1.0, ratio, ratio))
