@@ -58,10 +58,9 @@ class Comparison:
         ``model`` may differ in the lines that are worn, not in its control points. ``fresh`` begins new
         records at turn 0.
         """
-        new_model = model is not self.model
         self.model, self.targets = model, targets
-        answer = solve_exact(model, targets.ratios, None if new_model else self.exact.state)
-        self.exact = answer if answer.found else solve_exact(model, targets.ratios)
+        # From rest, so that the answer depends on the design alone and not on the way there.
+        self.exact = solve_exact(model, targets.ratios)
         self._set_runs(fresh)
 
     @property

@@ -92,6 +92,14 @@ def test_new_lengths_go_on_warm_and_lose_no_record():
     )
 
 
+def test_the_exact_answer_does_not_depend_on_the_way_there():
+    comparison = Comparison(MODEL, targets(0.9))
+    for ratio in (0.6, 1.25, 0.88):
+        comparison.retarget(MODEL, targets(ratio))
+    straight = Comparison(MODEL, targets(0.88))
+    np.testing.assert_array_equal(comparison.exact.state.moved, straight.exact.state.moved)
+
+
 def test_the_verdict_counts_only_what_came_after_the_change():
     comparison = Comparison(MODEL, targets(0.97))
     finish(comparison)
