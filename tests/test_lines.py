@@ -126,6 +126,11 @@ def test_every_way_of_writing_a_length_means_the_same(ratio):
         assert [length_ratio(text, BAND) for text in texts] == pytest.approx([ratio] * 5, abs=1e-9)
 
 
+def test_where_both_readings_make_sense_it_is_the_front_part():
+    short_back = line_on("strap", (0, 1, 2), POINTS, free=np.array([1]), back_length=40.0)
+    assert length_ratio("42cm", short_back) == pytest.approx(1.05)
+
+
 def test_without_a_back_an_absolute_length_is_that_of_the_line():
     open_line = line_on("strap", (0, 1, 2), POINTS, free=np.array([1]))
     assert length_ratio("38cm", open_line) == pytest.approx(0.95)

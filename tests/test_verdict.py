@@ -93,6 +93,11 @@ def test_nothing_is_called_vibration_before_two_windows_are_seen():
     assert set(states[25:]) == {"vibrating"}
 
 
+def test_a_drift_that_quickens_is_no_vibration():
+    verdict = judge(course(-4e-4 * np.arange(30) ** 2))
+    assert (verdict.state, verdict.amplitude, verdict.period) == ("settling", 0.0, 0.0)
+
+
 def test_a_new_vibration_after_a_calm_time_grows():
     errors = np.where(TURNS < 45, 0.0, 0.003 * FLIP)
     verdict = judge(course(errors))
