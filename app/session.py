@@ -216,8 +216,11 @@ class Session(QObject):
             # The edit cannot be carried out: it leaves the history as if it had not been made.
             edit = self.undo_stack.command(self.undo_stack.index() - 1)
             if isinstance(edit, _Edit):
+                before = edit.before
                 edit.setObsolete(True)
+                # Qt drops an obsolete command without undoing it.
                 self.undo_stack.undo()
+                self.take(before)
         self.failed.emit(failure.error)
 
 
@@ -229,7 +232,7 @@ class _Edit(QUndoCommand):
     def __init__(self, session: Session, before: Design, after: Design, text: str, shown: bool) -> None:
         super().__init__(text)
         self._session = session
-        self._before = before
+        self.before = before
         self._after = after
         self._shown = shown
 
@@ -241,4 +244,4 @@ class _Edit(QUndoCommand):
             self._session.take(self._after)
 
     def undo(self) -> None:
-        self._session.take(self._before)
+        self._session.take(self.before)
