@@ -193,6 +193,9 @@ class Overlay(QWidget):
 
     def _leader(self, painter: QPainter, at: QPointF, end: QPointF, hidden: bool, selected: bool) -> None:
         tokens = tokens_of(self)
+        away = end - at
+        length = float(np.hypot(away.x(), away.y()))
+        at = at + away * min(7.0 / max(length, 1.0), 1.0)  # from its rim: a hollow pin stays hollow
         under = QColor("#000000" if tokens.dark else "#FFFFFF")
         under.setAlpha(150)
         painter.setPen(QPen(under, 3.0))
@@ -215,12 +218,12 @@ class Overlay(QWidget):
             painter.setBrush(halo)
             painter.drawEllipse(at, 15.0, 15.0)
         ring = QColor("#16171A" if tokens.dark else "#FFFFFF")
-        painter.setPen(QPen(ring, 2.0))
         painter.setBrush(Qt.BrushStyle.NoBrush if hidden else colour)
+        painter.setPen(QPen(ring, 4.5 if hidden else 2.0))
         painter.drawEllipse(at, radius, radius)
         if hidden:
             painter.setPen(QPen(colour, 2.0))
-            painter.drawEllipse(at, radius - 1.5, radius - 1.5)
+            painter.drawEllipse(at, radius, radius)
 
     def _pill(self, painter: QPainter, pill: QRectF, selected: bool) -> None:
         tokens = tokens_of(self)

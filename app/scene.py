@@ -9,7 +9,7 @@ import numpy as np
 import pyvista as pv
 
 from app.camera import LENS, View
-from app.scene_bands import Band, Bands
+from app.scene_bands import Band, Bands, Surface
 from app.scene_body import BodyActor, Ghost
 from app.scene_control import ControlActor
 from app.scene_stage import LOOKS, Stage
@@ -36,6 +36,7 @@ class Scene:
         self._pixel_ratio = pixel_ratio
         self._stage = Stage(plotter)
         self.bands = Bands(plotter)
+        self._surface: Surface | None = None
         self._ghost: Ghost | None = None
         self._control: ControlActor | None = None
         self._control_points: tuple[Points, Points] | None = None
@@ -52,6 +53,7 @@ class Scene:
         self.bands.clear()
         self._drop_control()
         self.body = BodyActor(self.plotter, mesh, LOOKS[self._dark])
+        self._surface = Surface(mesh)
         low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
         self._stage.stand(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), low[2])
         self._before, self._ghost = False, None
@@ -66,14 +68,14 @@ class Scene:
     def show_control_mesh(self, control: Mesh, fixed: Flags) -> None:
         """Show the control mesh on the body; ``fixed`` control points, shape (n,), are small and dark."""
         self._drop_control()
-        self._control = ControlActor(self.plotter, control, fixed, self._shown_body().rest, self._pixel_ratio)
+        self._control = ControlActor(self.plotter, control, fixed, self._laying_ground(), self._pixel_ratio)
         self._control.set_look(LOOKS[self._dark])
         self._control_points = (control.vertices, control.vertices)
         self._apply_visible()
 
     def show_bands(self, bands: Iterable[Band]) -> None:
         """Show these lines on the body in place of the former ones."""
-        self.bands.show(bands, self._shown_body().rest)
+        self.bands.show(bands, self._laying_ground())
         self._follow()
 
     def mark_bands(self, selected: str = "", hovered: str = "") -> None:
@@ -222,6 +224,11 @@ class Scene:
         if self.body is None:
             raise RuntimeError("show_body comes first")
         return self.body
+
+    def _laying_ground(self) -> Surface:
+        if self._surface is None:
+            raise RuntimeError("show_body comes first")
+        return self._surface
 
     def _follow(self) -> None:
         body = self._shown_body()

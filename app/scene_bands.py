@@ -58,7 +58,7 @@ class Surface:
     """Smooth local planes of a body, on which paths are laid."""
 
     def __init__(self, mesh: Mesh) -> None:
-        self._mesh = mesh
+        self.mesh = mesh
         self._tree = cKDTree(mesh.vertices)
 
     def near(self, points: Points, count: int = 5) -> tuple[Indices, Floats]:
@@ -71,8 +71,8 @@ class Surface:
         """Return ``points`` moved onto the skin and the normals there, both (k, 3)."""
         for _ in range(2):
             index, weight = self.near(points)
-            centre = np.einsum("kc,kcx->kx", weight, self._mesh.vertices[index])
-            normal = unit(np.einsum("kc,kcx->kx", weight, self._mesh.vertex_normals[index]))
+            centre = np.einsum("kc,kcx->kx", weight, self.mesh.vertices[index])
+            normal = unit(np.einsum("kc,kcx->kx", weight, self.mesh.vertex_normals[index]))
             points = points - np.einsum("kx,kx->k", points - centre, normal)[:, None] * normal
         return points, normal
 
@@ -81,7 +81,7 @@ class Surface:
         index, weight = self.near(points)
         start = np.arange(0, index.size + 1, index.shape[1])
         return sparse.csr_array(
-            (weight.ravel(), index.ravel(), start), shape=(len(points), len(self._mesh.vertices))
+            (weight.ravel(), index.ravel(), start), shape=(len(points), len(self.mesh.vertices))
         )
 
 
@@ -202,11 +202,11 @@ class Bands:
         self.selected = ""
         self.hovered = ""
 
-    def show(self, bands: Iterable[Band], rest: Mesh) -> None:
+    def show(self, bands: Iterable[Band], surface: Surface) -> None:
         """Replace all ribbons by ``bands``, laid on the body at rest; the old selection stays if it can."""
         self.clear()
-        self._surface = Surface(rest)
-        self._displacement = np.zeros_like(rest.vertices)
+        self._surface = surface
+        self._displacement = np.zeros_like(surface.mesh.vertices)
         self._bands = {band.name: band for band in bands}
         for name, band in self._bands.items():
             ribbon = build_ribbon(band.path, self._surface, band.width)

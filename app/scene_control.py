@@ -22,11 +22,10 @@ class ControlActor:
     """The control mesh on one plotter: shown once, then moved in place."""
 
     def __init__(
-        self, plotter: pv.BasePlotter, control: Mesh, fixed: Flags, rest: Mesh, ratio: float
+        self, plotter: pv.BasePlotter, control: Mesh, fixed: Flags, surface: Surface, ratio: float
     ) -> None:
         self._plotter = plotter
         self._edges = control.edges
-        surface = Surface(rest)
         samples = self._straight(control.vertices).reshape(-1, 3)
         laid, up = surface.lay(samples)
         self._lift = laid + LIFT * up - samples
@@ -39,14 +38,12 @@ class ControlActor:
         ball = pv.Icosphere(radius=1.0, nsub=1)
         for kind, radius in _RADIUS.items():
             nodes = np.flatnonzero(fixed == kind)
-            shape = radius * np.asarray(ball.points)
-            faces = ball.regular_faces[None] + len(shape) * np.arange(len(nodes))[:, None, None]
-            points = np.zeros((len(nodes) * len(shape), 3), dtype=np.float32)
-            data = (
-                pv.PolyData.from_regular_faces(points, faces.reshape(-1, 3)) if len(nodes) else pv.PolyData()
-            )
-            name = f"control points {'fixed' if kind else 'free'}"
             if len(nodes):
+                shape = radius * np.asarray(ball.points)
+                faces = ball.regular_faces[None] + len(shape) * np.arange(len(nodes))[:, None, None]
+                points = np.zeros((len(nodes) * len(shape), 3), dtype=np.float32)
+                data = pv.PolyData.from_regular_faces(points, faces.reshape(-1, 3))
+                name = f"control points {'fixed' if kind else 'free'}"
                 self._dots[kind] = (nodes, shape, data, plotter.add_mesh(data, name=name, **options))
         self._node_lift = LIFT * surface.lay(control.vertices)[1]
         self.move(control.vertices)

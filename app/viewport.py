@@ -37,7 +37,7 @@ class Viewport(QWidget):
     pin_released = Signal(str)
     view_changed = Signal()
 
-    def __init__(self, parent: QWidget | None = None, dark: bool = False) -> None:
+    def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.motion = True
@@ -45,7 +45,7 @@ class Viewport(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self._canvas)
-        self.scene = Scene(self._plotter, dark, self.devicePixelRatioF())
+        self.scene = Scene(self._plotter, tokens_of(self).dark, self.devicePixelRatioF())
         self.overlay = Overlay(self._canvas)
         self._pointer = Pointer(self._canvas, self.scene, self.overlay)
         self._smoothing = ""
