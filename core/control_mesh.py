@@ -11,7 +11,7 @@ from core.body import Body
 from core.errors import FitError
 from core.fit_check import faulty_faces
 from core.landmarks import Landmarks
-from core.laying import Crease, Ground, bridged, find_creases, lay_outline, lay_rest, survey_ground
+from core.laying import Ground, bridged, find_creases, lay_outline, lay_rest, survey_ground
 from core.mesh import Flags, Floats, Indices, Mesh, Points
 from core.template import Template
 from core.torso import cropped
@@ -57,8 +57,8 @@ def fit_control_mesh(
         raise FitError(f"The line height {line_height:g} is out of range.", f"Choose {low:g} to {high:g}.")
     ground = survey_ground(template, body.mesh, landmarks)
     outline, holes = bridged(lay_outline(ground, landmarks))
-    creases = find_creases(ground, outline, landmarks)
-    warnings = _early_warnings(ground, creases)
+    creases, lacking = find_creases(ground, outline, landmarks)
+    warnings = [_without_fold(template, number) for number in lacking] + _arm_warning(ground)
     while True:
         points, more_holes = bridged(lay_rest(ground, outline, creases, line_height))
         _refuse_holes(points)
@@ -92,14 +92,10 @@ def _hole_warning(count: int) -> list[str]:
     return [f"The scan has holes at {count} control points: they lie straight between their neighbours."]
 
 
-def _early_warnings(ground: Ground, creases: Mapping[int, Crease]) -> list[str]:
-    bust = ground.template.bust_column
-    warnings = [_without_fold(ground.template, n) for n in (bust, -bust) if n not in creases]
-    if ground.torso.armpit < max(ground.torso.left.bust, ground.torso.right.bust):
-        warnings.append(
-            "The arms touch the body below the bust points: the sides of the mesh may lie on an arm."
-        )
-    return warnings
+def _arm_warning(ground: Ground) -> list[str]:
+    if ground.torso.armpit >= max(ground.torso.left.bust, ground.torso.right.bust):
+        return []
+    return ["The arms touch the body below the bust points: the sides of the mesh may lie on an arm."]
 
 
 def _without_fold(template: Template, number: int) -> str:
@@ -134,10 +130,12 @@ def back_length(body_mesh: Mesh, control: ControlMesh, path_name: str) -> float:
     path = control.paths[path_name]
     right, left = control.mesh.vertices[path[0]], control.mesh.vertices[path[-1]]
     z = 0.5 * (right[2] + left[2])
-    level = trunk_levels(calmed(cropped(body_mesh, np.abs(body_mesh.vertices[:, 2] - z) < AROUND)), [z])[0]
-    if len(level.segments) == 0:
+    band = cropped(body_mesh, np.abs(body_mesh.vertices[:, 2] - z) < AROUND)
+    level = trunk_levels(calmed(band), [z])[0] if len(band.faces) else None
+    if level is None or len(level.segments) == 0:
         raise FitError(
-            f"The scan has no back at the height of the {path_name} line.", "Open a whole upper body."
+            f"The scan has no back at the height of the {path_name} line.",
+            "Open a scan of a whole upper body.",
         )
     axis = 0.5 * (level.points.min(axis=0) + level.points.max(axis=0))[:2]
     ends = np.array([right[:2], left[:2]]) - axis

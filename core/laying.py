@@ -89,7 +89,7 @@ def _upper_levels(torso: Torso, mesh: Mesh, rise: float, collar: float) -> tuple
     scale = torso.scale
     edge = 0.5 * (torso.left.fold + torso.right.fold) + rise
     edge = max(edge, torso.armpit + 25.0 * scale)
-    above = min(edge + collar, float(mesh.vertices[:, 2].max()) - 10.0 * scale)
+    above = min(edge + collar, float(mesh.vertices[mesh.faces, 2].max()) - 10.0 * scale)
     edge = min(edge, above - 25.0 * scale)
     if edge < max(torso.left.bust, torso.right.bust) + 45.0 * scale:
         raise FitError(
@@ -182,13 +182,18 @@ class Crease:
     depth: float
 
 
-def find_creases(ground: Ground, outline: Points, landmarks: Landmarks) -> dict[int, Crease]:
-    """Return the folds by column number, found on the profiles of the body; columns without one are missing.
+def find_creases(
+    ground: Ground, outline: Points, landmarks: Landmarks
+) -> tuple[dict[int, Crease], list[int]]:
+    """Return the folds by column number, found on the profiles of the body, and the columns that lack one.
 
-    On a symmetric body the folds of mirrored columns are made alike. Source: ours.
+    A column lacks its fold if a hole ends its profile, or if the bust point has none below it; in the others
+    the breast may pass into the trunk without a fold. On a symmetric body the folds of mirrored columns are
+    made alike. Source: ours.
     """
     start = outline[ground.template.row_of("bust point")]
-    creases = {}
+    creases: dict[int, Crease] = {}
+    lacking = []
     for place, number in enumerate(ground.column.tolist()):
         column = ground.template.columns[abs(number)]
         if column.fold == "none" or np.isnan(start[place]).any():
@@ -198,11 +203,13 @@ def find_creases(ground: Ground, outline: Points, landmarks: Landmarks) -> dict[
         crease = None if down is None else _crease(ground, place, down)
         if crease is not None:
             creases[number] = crease
+        elif down is None or abs(number) == ground.template.bust_column:
+            lacking.append(number)
     if _symmetric(ground.axis, landmarks):
         pairs = [number for number in creases if -number in creases]
         mean = {number: 0.5 * (creases[number].arc + creases[-number].arc) for number in pairs}
         creases |= {number: replace(creases[number], arc=arc) for number, arc in mean.items()}
-    return creases
+    return creases, lacking
 
 
 def _crease(ground: Ground, place: int, down: Profile) -> Crease | None:

@@ -196,8 +196,9 @@ def _check_columns(template: Template) -> None:
         raise _refusal("the column of the bust points does not run through them")
     if any(column.fold not in FOLDS for column in columns):
         raise _refusal(f"a column's fold is none of {', '.join(FOLDS)}")
-    if np.any(np.diff([column.upper_edge for column in columns]) <= 0.0):
-        raise _refusal("the columns cross at the upper edge")
+    azimuths = [45.0 * column.bust_point + 80.0 * column.outer_root + column.degrees for column in columns]
+    if np.any(np.diff(azimuths) <= 0.0) or np.any(np.diff([column.upper_edge for column in columns]) <= 0.0):
+        raise _refusal("the columns cross")
     if any(column.free for column in columns[-2:]):
         raise _refusal("the two outermost columns must be fixed")
 

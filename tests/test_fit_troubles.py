@@ -1,0 +1,94 @@
+"""What the user is told when a control mesh cannot be fitted, or only with a makeshift."""
+
+import numpy as np
+import pytest
+from fit_bodies import analytic_body, analytic_landmarks, body_of, landmarks_at, sample_of
+
+from core.control_mesh import fit_control_mesh
+from core.errors import FitError
+from core.fit_check import corner_angles
+from core.mesh import Mesh
+from core.template import TEMPLATES, read_template
+
+
+@pytest.fixture(scope="module", params=TEMPLATES)
+def template(request):
+    return read_template(request.param)
+
+
+def without(mesh, place, radius):
+    """The mesh with a round hole."""
+    middle = mesh.vertices[mesh.faces].mean(axis=1)
+    return Mesh(mesh.vertices, mesh.faces[np.linalg.norm(middle - place, axis=1) > radius])
+
+
+def test_small_hole_is_bridged_and_said(template):
+    body, places = sample_of("mannequin")
+    whole = fit_control_mesh(template, body, landmarks_at(places))
+    point = template.point(0, template.half - 1)
+    holed = body_of(without(body.mesh, whole.mesh.vertices[point], 9.0))
+    control = fit_control_mesh(template, holed, landmarks_at(places))
+    assert any("holes at 1 control points" in warning for warning in control.warnings)
+    neighbours = control.mesh.vertices[[point - 1, point + 1]]
+    np.testing.assert_allclose(control.mesh.vertices[point], neighbours.mean(axis=0))
+    others = np.arange(len(template.row)) != point
+    np.testing.assert_allclose(control.mesh.vertices[others], whole.mesh.vertices[others], atol=1e-6)
+
+
+def test_hole_in_a_fold_is_said(template):
+    body, places = sample_of("mannequin")
+    whole = fit_control_mesh(template, body, landmarks_at(places))
+    below_fold = whole.mesh.vertices[template.point(1, template.bust_column)] - (0.0, 0.0, 20.0)
+    holed = body_of(without(body.mesh, below_fold, 12.0))
+    control = fit_control_mesh(template, holed, landmarks_at(places))
+    assert [w for w in control.warnings if "left breast" in w and "'bust point'" in w]
+    assert not any("right breast" in warning for warning in control.warnings)
+
+
+def test_large_hole_is_refused(template):
+    body, places = sample_of("mannequin")
+    holed = body_of(without(body.mesh, places["bust_point_left"], 110.0))
+    with pytest.raises(FitError, match=r"no skin where \d+ of the"):
+        fit_control_mesh(template, holed, landmarks_at(places))
+
+
+def cut_off(mesh, low, high):
+    z = mesh.vertices[mesh.faces][:, :, 2]
+    return body_of(Mesh(mesh.vertices, mesh.faces[(z.min(axis=1) > low) & (z.max(axis=1) < high)]))
+
+
+def test_low_neck_lowers_the_upper_rows(template):
+    body, places = sample_of("mannequin")
+    top = places["bust_point_left"][2] + 110.0
+    control = fit_control_mesh(template, cut_off(body.mesh, 0.0, top), landmarks_at(places))
+    assert control.mesh.vertices[:, 2].max() < top
+    assert corner_angles(control.mesh).min() > 8.0
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "why"), [(290.0, 999.0, "ends at the breasts"), (0.0, 400.0, "ends too close above")]
+)
+def test_scan_that_shows_too_little_is_refused(template, low, high, why):
+    body, places = sample_of("mannequin")
+    with pytest.raises(FitError, match=why):
+        fit_control_mesh(template, cut_off(body.mesh, low, high), landmarks_at(places))
+
+
+def test_bust_point_on_the_wrong_side_is_refused(template):
+    body, places = sample_of("mannequin")
+    wrong = places | {"bust_point_left": places["bust_point_right"]}
+    with pytest.raises(FitError, match="left bust point"):
+        fit_control_mesh(template, body, landmarks_at(wrong))
+
+
+@pytest.mark.parametrize("part", [0.2, 0.8, float("nan")])
+def test_line_height_out_of_range_is_refused(template, part):
+    body, places = sample_of("mannequin")
+    with pytest.raises(FitError, match="line height"):
+        fit_control_mesh(template, body, landmarks_at(places), part)
+
+
+def test_body_without_folds_says_so(template):
+    control = fit_control_mesh(template, body_of(analytic_body(bump=0.0)), analytic_landmarks())
+    assert len(control.warnings) == 2
+    assert all("No fold under the" in warning for warning in control.warnings)
