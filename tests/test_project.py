@@ -190,6 +190,20 @@ def test_no_flipped_byte_does_worse_than_a_refusal(tmp_path, changes):
         assert read_scan_file(open_project(path).scan).data == SCAN.data
 
 
+def test_no_flipped_bit_in_the_table_of_contents_does_worse_than_a_refusal(project):
+    """There stand the bits for encryption and for kinds of compression that nobody can unpack."""
+    whole = project.read_bytes()
+    refused = set()
+    for place in range(whole.index(b"PK\x01\x02"), len(whole)):
+        for bit in (0, 5, 6):
+            project.write_bytes(whole[:place] + bytes([whole[place] ^ 1 << bit]) + whole[place + 1 :])
+            try:
+                read_scan_file(open_project(project).scan)
+            except ProjectError as problem:
+                refused.add(type(problem.__cause__))
+    assert {RuntimeError, NotImplementedError, zipfile.BadZipFile} <= refused
+
+
 def crafted(path, design_text, **members):
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("design.json", design_text)
