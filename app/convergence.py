@@ -71,6 +71,9 @@ class Strip(QWidget):
         self.chip, self._small_chip = VerdictChip(), VerdictChip(small=True)
         self.error_plot = LivePlot(tr("Volume error"), "%", 0.4, TOLERANCE_PERCENT)
         self.apex_plot = LivePlot(tr("Bust point height"), "mm", 2.0)
+        for plot in (self.error_plot, self.apex_plot):
+            self.error_plot.pointed.connect(plot.point_at)
+            self.apex_plot.pointed.connect(plot.point_at)
         self._legend = _Legend()
         self.apex_plot.head.addWidget(self._legend)
         self._body, self._line = QWidget(), QWidget()

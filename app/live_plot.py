@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 import pyqtgraph as pg
 from numpy.typing import NDArray
-from PySide6.QtCore import QEvent, QLineF, QPointF, QRectF, Qt
+from PySide6.QtCore import QEvent, QLineF, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen, QResizeEvent, QTransform
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
@@ -64,7 +64,12 @@ def round_ticks(low: float, high: float, count: int = 4) -> list[float]:
 
 
 class LivePlot(QWidget):
-    """A titled plot: the main curve strong, others faint, the exact answer dashed, a tolerance as a band."""
+    """A titled plot: the main curve strong, others faint, the exact answer dashed, a tolerance as a band.
+
+    ``pointed`` carries the turn under the mouse, or None.
+    """
+
+    pointed = Signal(object)
 
     def __init__(self, title: str, unit: str, least_span: float, tolerance: float = 0.0) -> None:
         super().__init__()
@@ -74,6 +79,7 @@ class LivePlot(QWidget):
         self._exact_is_main = False
         self._range = (0.0, 1.0)
         self._levels: list[float] = []
+        self._pointed: float | None = None
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Expanding)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
@@ -83,10 +89,13 @@ class LivePlot(QWidget):
         self.head.setSpacing(6)
         self.head.addWidget(label(title, "title"))
         self.head.addWidget(label(unit, "caption"))
+        self._readout = label("", "caption", tabular=True)
+        self.head.addWidget(self._readout)
         self.head.addStretch(1)
         column.addLayout(self.head)
         self._plot, self._drawing = _bare_plot(), _Drawing(self)
         self._plot.addItem(self._drawing, ignoreBounds=True)
+        self._plot.scene().sigMouseMoved.connect(self._follow)
         self._plot.setAccessibleName(f"{title} {unit}")
         column.addWidget(self._plot, 1)
 
@@ -121,6 +130,24 @@ class LivePlot(QWidget):
         super().resizeEvent(event)
         self._set_axes()
 
+    def leaveEvent(self, event: QEvent) -> None:
+        self.pointed.emit(None)
+
+    def point_at(self, turn: float | None) -> None:
+        """Read out the strong curve at the nearest turn, or stop to."""
+        strong = next((curve for curve in self._curves if curve.role != "ghost" and len(curve.turns)), None)
+        self._pointed = None
+        self._readout.setText("")
+        if turn is not None and strong is not None:
+            nearest = int(np.abs(strong.turns - turn).argmin())
+            self._pointed = float(strong.turns[nearest])
+            value = number(strong.values[nearest], 2)
+            self._readout.setText(tr("turn {turn}: {value}").format(turn=f"{self._pointed:.0f}", value=value))
+        self._drawing.update()
+
+    def _follow(self, scene_at: QPointF) -> None:
+        self.pointed.emit(self._drawing.mapFromScene(scene_at).x())
+
     def paint_curves(self, painter: QPainter, to_pixels: QTransform) -> None:
         """Paint all curves; ``to_pixels`` maps turns and values to pixels."""
         tokens = tokens_of(self)
@@ -129,6 +156,10 @@ class LivePlot(QWidget):
         for curve in sorted(self._curves, key=lambda each: each.role != "ghost"):
             if len(curve.turns) > 1:
                 self._paint_curve(painter, to_pixels, curve, tokens)
+        if self._pointed is not None:
+            painter.setPen(QPen(QColor(tokens.control), 1))
+            x, edges = to_pixels.map(QPointF(self._pointed, 0.0)).x(), painter.clipBoundingRect()
+            painter.drawLine(QPointF(x, edges.top()), QPointF(x, edges.bottom()))
         if self._exact is not None:
             color = tokens.accent if self._exact_is_main else tokens.exact_curve
             pen = QPen(QColor(color), 2.0 if self._exact_is_main else 1.3)
@@ -238,17 +269,14 @@ def _level(painter: QPainter, to_pixels: QTransform, value: float) -> QLineF:
 
 def _path(to_pixels: QTransform, turns: Numbers, values: Numbers) -> QPainterPath:
     """Return the curve [px]; it is broken where a value is not finite."""
-    x = to_pixels.m11() * turns + to_pixels.dx()
-    y = to_pixels.m22() * values + to_pixels.dy()
-    path: QPainterPath = pg.arrayToQPath(x, y, connect="finite")
-    return path
+    x, y = to_pixels.m11() * turns + to_pixels.dx(), to_pixels.m22() * values + to_pixels.dy()
+    return QPainterPath(pg.arrayToQPath(x, y, connect="finite"))
 
 
 def _between(lower: QPainterPath, upper: QPainterPath) -> QPainterPath:
     """Return the area between two curves."""
     area = QPainterPath(lower)
     area.connectPath(upper.toReversed())
-    area.closeSubpath()
     return area
 
 

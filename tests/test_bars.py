@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import pytest
+from pyqtgraph import PlotWidget
+from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLabel, QPushButton
 from pytestqt.qtbot import QtBot
 
@@ -249,3 +251,18 @@ def test_the_method_is_asked_for(strip: Strip, qtbot: QtBot) -> None:
     with qtbot.waitSignal(strip.control_chosen) as said:
         next(each for each in strip.findChildren(QPushButton) if each.text() == "Exact").click()
     assert said.args == ["exact"]
+
+
+def test_pointing_at_a_turn_reads_both_plots(strip: Strip, qtbot: QtBot) -> None:
+    turns = np.arange(0.0, 50.0)
+    strip.set_run({"adaptive": Track(turns, turns / 100, turns, turns * 2)}, "adaptive", None)
+    plot = strip.error_plot.findChild(PlotWidget).viewport()
+    with qtbot.waitSignal(strip.error_plot.pointed) as pointed:
+        QTest.mouseMove(plot, plot.rect().center())
+    assert 15.0 < pointed.args[0] < 30.0
+    strip.error_plot.pointed.emit(20.3)
+    said = [label.text() for label in strip.findChildren(QLabel) if label.isVisible()]
+    assert {"turn 20: 0.20", "turn 20: 40.00"} <= set(said)
+    strip.apex_plot.pointed.emit(None)
+    said = [label.text() for label in strip.findChildren(QLabel) if label.isVisible()]
+    assert not any("turn 20" in text for text in said)
