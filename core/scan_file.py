@@ -5,9 +5,9 @@ from __future__ import annotations
 import warnings
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-import trimesh
 
 from core.errors import ScanError
 from core.mesh import Faces, Points
@@ -36,23 +36,30 @@ def read_triangles(path: Path) -> tuple[Points, Faces]:
             f"{path.name} is not a PLY, OBJ or STL file.", "Export the scan in one of these formats."
         )
     data = _bytes_of(path)
+    import trimesh  # noqa: PLC0415 - half a second that only the opening of a file needs
+
     if kind == "ply":
         _check_ply_counts(data, path.name)
     elif kind == "stl":
         _check_stl_length(data, path.name)
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("error")
+            warnings.simplefilter("ignore")
+            warnings.filterwarnings("error", "string or file could not be read")
             scene = trimesh.load_scene(
                 BytesIO(data),
                 kind,
                 process=False,
                 maintain_order=True,
+                group_material=False,
                 skip_materials=True,
                 fix_texture=False,
             )
     except Exception as problem:  # a malformed file makes the reader fail in any way
-        raise ScanError(f"{path.name} cannot be read: it is damaged or cut short.", AGAIN) from problem
+        raise ScanError(
+            f"{path.name} cannot be read: it is damaged or cut short.",
+            "Export the scan again, as triangles only.",
+        ) from problem
     return _put_together(list(scene.geometry.values()), path.name)
 
 
@@ -70,7 +77,7 @@ def _bytes_of(path: Path) -> bytes:
     return data
 
 
-def _put_together(parts: list[trimesh.Trimesh], name: str) -> tuple[Points, Faces]:
+def _put_together(parts: list[Any], name: str) -> tuple[Points, Faces]:
     vertices, faces, start = [np.empty((0, 3))], [np.empty((0, 3), dtype=np.int64)], 0
     for part in parts:
         vertices.append(np.asarray(part.vertices, dtype=np.float64))
@@ -99,6 +106,8 @@ def _check_ply_counts(data: bytes, name: str) -> None:
     text = ["format", "ascii"] in [line[:2] for line in lines]
     need, element, count = 0, "", 0
     try:
+        if any(int(line[2]) < 0 for line in lines if line[:1] == ["element"]):
+            raise ValueError("a count below zero")
         for line in lines:
             if line[:1] == ["element"]:
                 element, count = line[1], int(line[2])

@@ -15,6 +15,9 @@ from core.symmetry import Cloud, MirrorPlane
 TYPICAL_GIRTH = 860.0
 """A trunk girth [mm] that makes file units into mm well enough to tell up from down."""
 
+SHORTEST = 250.0
+"""A scan of the upper body is taller than this [mm by a typical girth]; one that lies on its back is not."""
+
 STEP = 1.2
 """Distance of the levels, and side of the cells of the front reach [grains]."""
 
@@ -45,22 +48,23 @@ class Trunk:
         return self._reference(self.girth)
 
     @cached_property
-    def depth(self) -> float:
-        """Middle depth of the levels of the trunk proper."""
-        return float(np.median((self.high - self.low)[self.proper]))
+    def stoutness(self) -> float:
+        """Width of the trunk proper over its depth [1]."""
+        width, depth = self.width[self.proper], (self.high - self.low)[self.proper]
+        return float(2.0 * np.median(width) / max(float(np.median(depth)), 1e-9 * self.half_width))
 
     @cached_property
     def proper(self) -> Flags:
         """Levels that are trunk: not neck, not head, not merged with arms."""
         share = self.width / self.half_width
-        return (share > 0.7) & (share < 1.3) & (self.girth > 0.7 * self.main_girth)
+        return (share > 0.6) & (share < 1.3) & (self.girth > 0.7 * self.main_girth)
 
     def _reference(self, value: Floats) -> float:
         width = self.width[np.isfinite(self.width)]
         if len(width) == 0:
             return float("nan")
         upper = np.median(width[width >= np.median(width)])
-        return float(np.percentile(value[self.width < 1.25 * upper], 70))
+        return float(np.percentile(value[self.width <= 1.25 * upper], 70))
 
     def turned(self, up: int, back: int) -> Trunk:
         """Return the same trunk with z and depth taken along these signs (+1 or -1)."""
@@ -88,9 +92,8 @@ class Stance:
     @property
     def is_body(self) -> bool:
         """Whether this can be an upper body at all."""
-        stout = 2.0 * self.trunk.half_width / self.trunk.depth
         flat = -90.0 <= self.middle <= 0.5 * self.kink
-        return self.kink >= 8.0 and self.residual <= 0.3 and flat and 1.0 <= stout <= 2.3
+        return self.kink >= 8.0 and self.residual <= 0.3 and flat and 1.0 <= self.trunk.stoutness <= 2.3
 
 
 def stances(cloud: Cloud, plane: MirrorPlane) -> list[Stance]:
@@ -119,7 +122,7 @@ def _trunk(points: Points, grain: float) -> Trunk:
     z = np.arange(points[0, 2], points[-1, 2], STEP * grain)
     first, last = np.searchsorted(points[:, 2], [z - grain, z + grain])
     rows = [_level(points[a:b], 3.0 * grain) for a, b in zip(first, last, strict=True)]
-    width, girth, low, high, arms = np.array(rows).T
+    width, girth, low, high, arms = np.array(rows).reshape(-1, 5).T
     return Trunk(z, width, girth, low, high, arms > 0.0)
 
 
@@ -162,6 +165,7 @@ def _rate(points: Points, trunk: Trunk, grain: float) -> tuple[float, float, flo
     score -= 0.8 * float(np.clip(between / max(strength, 5.0), 0.0, 1.0))
     score -= 4.0 * max(0.0, 0.25 - height[fold] / height[-1])
     score -= 1.5 * (between < -90.0)
+    score -= 3.0 * float(np.clip((SHORTEST - height[-1]) / 60.0, 0.0, 1.0))
     return score + _build(trunk), strength, between
 
 
@@ -175,7 +179,7 @@ def _build(trunk: Trunk) -> float:
     free = trunk.arms & trunk.proper
     if merged.any() and free.any():
         score += 0.5 * float(np.sign(trunk.z[merged].mean() - trunk.z[free].mean()))
-    return score + (0.5 if 1.05 < 2.0 * trunk.half_width / trunk.depth < 2.3 else -2.5)
+    return score + (0.5 if 1.05 < trunk.stoutness < 2.3 else -2.5)
 
 
 def _front_reach(points: Points, trunk: Trunk, cell: float) -> Floats:
