@@ -139,7 +139,7 @@ class Pointer(QObject):
     def _drag_pin(self, place: QPointF) -> None:
         skin = self._skin_at(place)
         if skin is not None:
-            self.pin_moved.emit(self._pin, skin)
+            self.pin_moved.emit(self._pin, self._scene.at_rest(skin[None])[0])
 
     def _band_at(self, place: QPointF) -> str:
         return self._scene.band_at(place.x(), place.y(), self._canvas.width(), self._canvas.height())

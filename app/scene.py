@@ -202,6 +202,17 @@ class Scene:
         nearer = point - clearance * sight / np.linalg.norm(sight)
         return self.hit_body(self._view.eye, nearer) is not None
 
+    def carried(self, points: Points) -> Points:
+        """Return where places on the body at rest, shape (k, 3) [mm], are on the shown one."""
+        return points + self._laying_ground().follow(points) @ self._displacement()
+
+    def at_rest(self, points: Points) -> Points:
+        """Return where places on the shown body, shape (k, 3) [mm], are on the body at rest."""
+        rest = points
+        for _ in range(4):  # each round leaves a small part of the last one's error
+            rest = rest + points - self.carried(rest)
+        return rest
+
     def band_at(self, x: float, y: float, width: float, height: float) -> str:
         """Return the line seen at the pixel (x, y), counted from the top left, or an empty string."""
         start, sight = self._view.ray(x, y, width, height)
@@ -231,8 +242,11 @@ class Scene:
         return self._surface
 
     def _follow(self) -> None:
+        self.bands.move(self._displacement())
+
+    def _displacement(self) -> Points:
         body = self._shown_body()
-        self.bands.move(body.shown_points - body.rest.vertices)
+        return np.asarray(body.shown_points - body.rest.vertices)
 
     def _drop_control(self) -> None:
         if self._control is not None:

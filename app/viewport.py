@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 
+import numpy as np
 from PySide6.QtCore import QEasingCurve, QEvent, Qt, QTimer, QVariantAnimation, Signal
 from PySide6.QtGui import QImage, QResizeEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
@@ -26,8 +28,8 @@ class Viewport(QWidget):
     """The 3D view with its scene and the overlay of pins and labels.
 
     ``band_clicked`` and ``band_hovered`` name a line (hovering off all lines: an empty name).
-    ``pin_pressed``, ``pin_moved`` (name, position (3,) [mm] on the skin) and ``pin_released`` follow a
-    dragged pin. ``view_changed`` says that the camera has moved. Belongs to the thread of the window.
+    ``pin_pressed``, ``pin_moved`` (name, place (3,) [mm] on the body at rest) and ``pin_released`` follow
+    a dragged pin. ``view_changed`` says that the camera has moved. Belongs to the thread of the window.
     """
 
     band_clicked = Signal(str)
@@ -58,6 +60,8 @@ class Viewport(QWidget):
         self._glide_ends = (self.scene.view, self.scene.view)
         self._fit: Callable[[float], View] | None = None
         self._label = ("", "", "")
+        self._pins: tuple[Pin, ...] = ()
+        self._selected_pin = ""
         self._open = True
         self._listen()
 
@@ -78,8 +82,7 @@ class Viewport(QWidget):
             return
         self._smooth("")
         self._rest.start()
-        hidden = [pin.name for pin in self.overlay.pins if self.scene.hidden(pin.position)]
-        self.overlay.follow(self.scene.view, hidden)
+        self._place_pins()
         self._place_label()
         draw(self._canvas)
 
@@ -142,9 +145,18 @@ class Viewport(QWidget):
         self.overlay.set_band(label)
 
     def set_pins(self, pins: Iterable[Pin], selected: str = "") -> None:
-        """Show landmarks as pins with labels, one of them selected."""
-        self.overlay.set_pins(pins, selected)
+        """Show landmarks, at their places on the body at rest, as pins with labels, one of them selected."""
+        self._pins, self._selected_pin = tuple(pins), selected
         self.request_draw()
+
+    def _place_pins(self) -> None:
+        """Let the pins ride on the skin, and tell those behind the body."""
+        pins = self._pins
+        if pins:
+            places = self.scene.carried(np.array([pin.position for pin in pins]))
+            pins = tuple(replace(pin, position=place) for pin, place in zip(pins, places, strict=True))
+        self.overlay.set_pins(pins, self._selected_pin)
+        self.overlay.follow(self.scene.view, [pin.name for pin in pins if self.scene.hidden(pin.position)])
 
     def set_dark(self, dark: bool) -> None:
         """Repaint for the light or the dark theme."""

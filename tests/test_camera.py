@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import pyvista as pv
 
 from app.camera import STEEPEST, VIEWS, View
+from app.scene import Scene
 
 WIDTH, HEIGHT = 450, 300
 
@@ -62,3 +64,18 @@ def test_a_move_between_views_ends_there_the_short_way() -> None:
     last = start.towards(end, 1.0)
     assert last.orbit(0.0, 0.0).azimuth == pytest.approx(end.azimuth)
     assert last.distance == pytest.approx(end.distance)
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+def test_the_picture_plane_agrees_with_vtk(parallel: bool) -> None:
+    plotter = pv.Plotter(off_screen=True, window_size=(WIDTH, HEIGHT), lighting="none")
+    scene = Scene(plotter)
+    scene.look_from(View((10.0, -20.0, 300.0), 1800.0, 34.0, 8.0, parallel))
+    plotter.render()
+    points = np.random.default_rng(3).uniform(-150.0, 150.0, (8, 3)) + scene.view.focus
+    ours = scene.view.to_picture(points, WIDTH, HEIGHT)
+    for point, (x, y, _) in zip(points, ours, strict=True):
+        plotter.renderer.SetWorldPoint(*point, 1.0)
+        plotter.renderer.WorldToDisplay()
+        assert (x, HEIGHT - y) == pytest.approx(plotter.renderer.GetDisplayPoint()[:2], abs=0.05)
+    plotter.close()
