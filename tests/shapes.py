@@ -13,7 +13,7 @@ from core.control_mesh import ControlMesh, fit_control_mesh
 from core.landmarks import find_landmarks
 from core.lines import line_on
 from core.mesh import Mesh, frozen
-from core.solver import ConstrainedModel, assemble
+from core.solver import ConstrainedModel, Record, State, Targets, assemble, iterate
 from core.template import read_template
 from core.tensegric import TensegricModel, tensegric_model
 from core.volume import volume_measure
@@ -146,3 +146,23 @@ def central_difference(function: Callable[[np.ndarray], object], at: np.ndarray,
         nudge[index] = step
         columns.append((np.asarray(function(at + nudge)) - np.asarray(function(at - nudge))) / (2.0 * step))
     return np.stack(columns, axis=-1)
+
+
+def mid_bust(model: ConstrainedModel, ratio: float) -> tuple[float, ...]:
+    """Ratios that ask for the mid-bust line alone."""
+    return tuple(ratio if line.name == "mid-bust" else 1.0 for line in model.lines)
+
+
+def run(
+    model: ConstrainedModel, targets: Targets, turns: int, state: State | None = None
+) -> tuple[State, tuple[Record, ...]]:
+    """The last state and all records of a run."""
+    states, records = zip(*iterate(model, lambda: targets, state, turns=turns), strict=True)
+    return states[-1], records
+
+
+def errors_of(
+    model: ConstrainedModel, targets: Targets, turns: int, state: State | None = None
+) -> np.ndarray:
+    """The volume error after each turn of a run."""
+    return np.array([measured.error for measured in run(model, targets, turns, state)[1]])

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize
-from shapes import central_difference, fitted, mirrored, tent, torso
+from shapes import central_difference, fitted, mid_bust, mirrored, tent, torso
 
 from core.exact import Energy, newton, solve_exact
 from core.lines import line_on
@@ -18,10 +18,6 @@ TORSO = constrained_model(torso(), worn=["mid-bust"])
 SKEW = constrained_model(torso(skew=0.3))
 RATIOS = (0.7, 0.8, 0.9, 0.97, 1.03, 1.1)
 RNG = np.random.default_rng(11)
-
-
-def mid_bust(model, ratio):
-    return tuple(ratio if line.name == "mid-bust" else 1.0 for line in model.lines)
 
 
 def assert_exact(model, balance):
