@@ -192,6 +192,24 @@ def test_rows_stay_while_values_change(lines: LinesPanel) -> None:
     assert any("680.0 of 700.0 mm (97.1 %)" in text for text in said)
 
 
+def test_arrows_go_from_line_to_line_and_enter_into_the_number(lines: LinesPanel, qtbot: QtBot) -> None:
+    waist = lines.rows["waist"]
+    waist.slider.setFocus()
+    lines.select("waist")
+    with qtbot.waitSignal(lines.selected) as said:
+        QTest.keyClick(waist.slider, Qt.Key.Key_Down)
+    assert said.args == ["under-bust"]
+    lines.select("waist")
+    waist.slider.setFocus()
+    QTest.keyClick(waist.slider, Qt.Key.Key_Return)
+    assert waist.percent.hasFocus()
+    assert waist.percent.selectedText() == "100.0"
+    QTest.keyClicks(waist.percent, "97")
+    QTest.keyClick(waist.percent, Qt.Key.Key_Return)
+    assert waist.slider.hasFocus()
+    assert waist.slider.ratio() == pytest.approx(0.97)
+
+
 def test_a_measured_line_has_no_slider(lines: LinesPanel) -> None:
     row = lines.rows["under-bust"]
     assert row.slider.isHidden()

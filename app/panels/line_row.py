@@ -172,6 +172,7 @@ class LineRow(QFrame):
         for field in (self.percent, self.millimetres):
             field.entered.connect(self._take)
             field.opened.connect(self.pressed)
+            field.left.connect(self.slider.setFocus)
         self._eye.clicked.connect(lambda: self.visibility_changed.emit(not self.view.visible))
 
     def _take(self, ratio: float) -> None:

@@ -17,6 +17,13 @@ from app.words import tr
 __all__ = ["LineView", "LinesPanel"]
 
 
+class _Area(QScrollArea):
+    """An area that leaves the keys to the list: arrows go from line to line."""
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        event.ignore()
+
+
 class LinesPanel(QWidget):
     """All lines, one row each; lengths in the signals are shares of the rest length [1]."""
 
@@ -94,7 +101,7 @@ class LinesPanel(QWidget):
         self._list.setContentsMargins(8, 0, 8, 12)
         self._list.setSpacing(2)
         self._list.addStretch(1)
-        self._scroll = QScrollArea()
+        self._scroll = _Area()
         self._scroll.setWidgetResizable(True)
         self._scroll.setFrameShape(QFrame.Shape.NoFrame)
         self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)

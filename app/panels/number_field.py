@@ -52,10 +52,15 @@ def _can_be_set(ratio: float) -> bool:
 
 
 class NumberField(QLineEdit):
-    """A number with its unit; ``opened`` when typing may begin, ``entered`` (share of rest) after it."""
+    """A number with its unit.
+
+    ``opened`` when typing may begin, ``entered`` (share of the rest length) when another length was typed,
+    ``left`` at Enter or Esc.
+    """
 
     entered = Signal(float)
     opened = Signal()
+    left = Signal()
 
     def __init__(self, unit: str) -> None:
         super().__init__()
@@ -66,7 +71,6 @@ class NumberField(QLineEdit):
         self.setTextMargins(0, 0, self._unit_width(), 0)
         self.setFixedSize(self.sizeHint())
         self.setToolTip(tr("Type 94, −6%, −20mm, 692mm or 69.2cm; from 80 to 112 % of the length at rest."))
-        self.returnPressed.connect(self._enter)
         self.textEdited.connect(lambda _: set_tag(self, "wrong", False))
 
     def sizeHint(self) -> QSize:
@@ -91,9 +95,13 @@ class NumberField(QLineEdit):
         self._show_number()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        if event.key() == Qt.Key.Key_Escape:
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self._enter()
+            if not self.isModified():
+                self.left.emit()
+        elif event.key() == Qt.Key.Key_Escape:
             self._show_number()
-            self.clearFocus()
+            self.left.emit()
         else:
             super().keyPressEvent(event)
 
