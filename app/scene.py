@@ -204,7 +204,7 @@ class Scene:
 
     def carried(self, points: Points) -> Points:
         """Return where places on the body at rest, shape (k, 3) [mm], are on the shown one."""
-        return points + self._laying_ground().follow(points) @ self._displacement()
+        return np.asarray(points + self._laying_ground().follow(points) @ self._displacement())
 
     def at_rest(self, points: Points) -> Points:
         """Return where places on the shown body, shape (k, 3) [mm], are on the body at rest."""
