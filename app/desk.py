@@ -80,6 +80,8 @@ class Desk(QObject):
         for step in ("lines", "result"):
             window.rail.set_state(step, "available")
         window.status.set_facts(facts(frame))
+        self.select_line(window.view.selected_line)
+        window.view.viewport.setFocus()
         for sentence in frame.stages.control.warnings:
             window.notices.show_notice("warn", sentence, lasting=True)
 
@@ -133,21 +135,18 @@ class Desk(QObject):
     # -- the user asks
 
     def go_to(self, step: str) -> None:
-        """Show one of the steps."""
+        """Show a step: scan and landmarks on the body at rest, lines and result on the reshaped one."""
         self._window.rail.set_current(step)
         self._window.inspector.setCurrentIndex(STEPS.index(step))
-        view = self._window.view
-        if step == "landmarks":
-            view.set_layer("landmarks", True)
-        elif view.tools.actions_by_name["landmarks"].isChecked():
-            view.set_layer("landmarks", False)
+        view, worn = self._window.view, step in ("lines", "result")
+        view.set_after(worn)
+        view.set_layer("bands", worn)
+        view.set_layer("landmarks", step == "landmarks")
 
     def select_line(self, name: str) -> None:
         """Select a line in the list and on the body."""
         self._window.lines.select(name)
         self._window.view.select_line(name)
-        if self._frame is not None:
-            self._window.view.show_frame(self._frame, self._frame.stages.design)
 
     def select_landmark(self, name: str) -> None:
         """Select a landmark in the list and on the body."""

@@ -124,6 +124,11 @@ class MainWindow(QMainWindow):
             for name, action in group.items():
                 action.triggered.connect(lambda _=False, ask=ask, name=name: ask(name))
 
+    def is_settled(self) -> bool:
+        """Tell whether the session's design is solved to the end and shown."""
+        frame, design = self.session.frame, self.session.design
+        return frame is not None and frame.stages.design is design and not frame.at_work
+
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
         """Give the view more room in a narrow window."""
         super().resizeEvent(event)

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from app.display import off_screen
 from core.design import Design
 from core.errors import UserError
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
 
 _PATIENCE = 120.0
 
@@ -70,12 +75,20 @@ def draw_window(
     size: tuple[int, int] = (1600, 1000),
 ) -> None:
     """Write a PNG of the whole window on a settled design. Raises UserError."""
+    with settled_window(design, dark=dark, language=language, size=size) as window:
+        save_window(window, out)
+
+
+@contextmanager
+def settled_window(
+    design: Design, *, dark: bool = False, language: str = "en", size: tuple[int, int] = (1600, 1000)
+) -> Iterator[MainWindow]:
+    """Give a window on a design that is solved to the end and fully drawn; it is closed afterwards."""
     off_screen()
     from app.application import application
     from app.window import open_window
 
     app = application(language=language, dark=dark)
-
     window = open_window(design)
     failures: list[Exception] = []
     window.session.failed.connect(failures.append)
@@ -84,21 +97,27 @@ def draw_window(
     window.show()
 
     def ready() -> bool:
-        frame = window.session.frame
-        return bool(failures) or (frame is not None and not frame.at_work and window.view.is_shaded)
+        return bool(failures) or (window.is_settled() and window.view.is_shaded)
 
     try:
         wait_until(ready, app.processEvents)
         if failures:
             raise failures[0]
-        window.desk.plot_now()
-        for _ in range(5):
-            app.processEvents()
-        if not window.grab().save(str(out)):
-            raise UserError(f"{out} cannot be written.", "Choose a name that ends in .png.")
+        yield window
     finally:
         window.session.undo_stack.setClean()
         window.close()
+
+
+def save_window(window: MainWindow, out: Path) -> None:
+    """Write a PNG of a window as it stands. Raises UserError."""
+    from PySide6.QtWidgets import QApplication
+
+    window.desk.plot_now()
+    for _ in range(5):
+        QApplication.processEvents()
+    if not window.grab().save(str(out)):
+        raise UserError(f"{out} cannot be written.", "Choose a name that ends in .png.")
 
 
 def wait_until(ready: Callable[[], bool], turn: Callable[[], None]) -> None:

@@ -38,6 +38,7 @@ class ViewArea(QWidget):
         self._control: ControlMesh | None = None
         self._landmarks: Landmarks | None = None
         self._landmark = ""
+        self._labels: dict[str, tuple[str, str]] = {}
         self._background = Background(self)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
@@ -64,7 +65,8 @@ class ViewArea(QWidget):
             self._show_pins()
         scene.move_body(stages.moving.vertices, frame.points, frame.normals)
         scene.move_control_mesh(frame.control_points)
-        self._show_label(frame, design)
+        self._labels = {name: band_label(design, frame, name) for name in stages.control.paths}
+        self._show_label()
         self.viewport.request_draw()
 
     def show_bands(self) -> None:
@@ -83,6 +85,7 @@ class ViewArea(QWidget):
         """Put a casing round one line."""
         self.selected_line = name
         self.viewport.select_band(name if name not in self.hidden_lines else None)
+        self._show_label()
 
     def select_landmark(self, name: str) -> None:
         """Mark one landmark's pin."""
@@ -100,6 +103,7 @@ class ViewArea(QWidget):
         self.compare.set_after(after)
         if self._body is not None:
             self.viewport.scene.before(not after)
+            self._show_label()
             self.viewport.request_draw()
 
     def set_layer(self, layer: str, shown: bool) -> None:
@@ -111,6 +115,7 @@ class ViewArea(QWidget):
             self._show_pins()
         else:
             self.viewport.scene.set_visible({"control-mesh": "control", "bands": "bands"}[layer], shown)
+        self._show_label()
         self.viewport.request_draw()
 
     def picture(self) -> QImage:
@@ -154,12 +159,14 @@ class ViewArea(QWidget):
             self.viewport.request_draw()
             self.is_shaded = True
 
-    def _show_label(self, frame: Frame, design: Design) -> None:
+    def _show_label(self) -> None:
+        """Write beside the selected line, if it can be seen."""
         name = self.selected_line
-        if not self.after or name in self.hidden_lines or not self.viewport.scene.is_visible("bands"):
+        seen = self.after and name not in self.hidden_lines and self.viewport.scene.is_visible("bands")
+        if seen and name in self._labels:
+            self.viewport.label_band(name, *self._labels[name])
+        else:
             self.viewport.label_band(None)
-            return
-        self.viewport.label_band(name, *band_label(design, frame, name))
 
     def _show_pins(self) -> None:
         shown = self.tools.actions_by_name["landmarks"].isChecked()

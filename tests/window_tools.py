@@ -31,11 +31,7 @@ def run_main(arguments: list[str], script: Callable[[MainWindow], Script]) -> in
 def settled(window: MainWindow) -> Callable[[], bool]:
     """The design of the session is solved to the end and has been drawn."""
 
-    def ready() -> bool:
-        frame, session = window.session.frame, window.session
-        return frame is not None and session.design is frame.stages.design and not frame.at_work
-
-    return ready
+    return window.is_settled
 
 
 class _Player:

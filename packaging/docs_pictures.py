@@ -1,0 +1,79 @@
+"""Renders the pictures of README and guide with the program itself: ``make docs-pictures``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from PySide6.QtGui import QImage
+
+from app.display import off_screen
+
+off_screen()
+
+from PySide6.QtWidgets import QApplication  # noqa: E402
+
+from app.main_window import MainWindow  # noqa: E402
+from app.picture import save_window, settled_window, wait_until  # noqa: E402
+from app.samples import sample_design  # noqa: E402
+from core.design import Design  # noqa: E402
+
+PICTURES = Path(__file__).parent.parent / "docs" / "pictures"
+
+
+def step(name: str) -> Callable[[MainWindow], None]:
+    """Go to one of the steps."""
+    return lambda window: window.desk.go_to(name)
+
+
+def with_control_mesh(window: MainWindow) -> None:
+    window.view.set_layer("control-mesh", True)
+
+
+def from_the_side(window: MainWindow) -> None:
+    window.view.viewport.set_view("left")
+    window.desk.go_to("result")
+
+
+def nothing(window: MainWindow) -> None:
+    pass
+
+
+def vibrating() -> Design:
+    return replace(sample_design().with_line("mid-bust", 0.62), volume="conventional")
+
+
+SHOTS: tuple[tuple[str, Design, dict[str, object], Callable[[MainWindow], None]], ...] = (
+    ("window", sample_design(), {"size": (1600, 1000)}, nothing),
+    (
+        "window-dark-ja",
+        sample_design("person"),
+        {"dark": True, "language": "ja", "size": (1280, 800)},
+        nothing,
+    ),
+    ("vibrating", vibrating(), {"dark": True, "size": (1280, 800)}, with_control_mesh),
+    ("scan", sample_design("person"), {"size": (1280, 800)}, step("scan")),
+    ("landmarks", sample_design("person"), {"size": (1280, 800)}, step("landmarks")),
+    ("result", sample_design(), {"size": (1280, 800)}, from_the_side),
+)
+
+
+def shrink(path: Path) -> None:
+    """Keep 256 colours: the pictures travel with every clone."""
+    image = QImage(str(path))
+    image.convertToFormat(QImage.Format.Format_Indexed8).save(str(path), quality=0)
+
+
+def main() -> None:
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    for name, design, options, prepare in SHOTS:
+        with settled_window(design, **options) as window:  # type: ignore[arg-type]
+            prepare(window)
+            wait_until(window.is_settled, QApplication.processEvents)
+            save_window(window, PICTURES / f"{name}.png")
+        print(f"docs/pictures/{name}.png: {(PICTURES / f'{name}.png').stat().st_size // 1024} kB")
+
+
+if __name__ == "__main__":
+    main()
