@@ -114,8 +114,9 @@ def save_window(window: MainWindow, out: Path) -> None:
     from PySide6.QtWidgets import QApplication
 
     window.desk.plot_now()
-    for _ in range(5):
-        QApplication.processEvents()
+    # The view smooths its outlines once it has been still for a while.
+    still = time.monotonic() + 0.6
+    wait_until(lambda: time.monotonic() > still, QApplication.processEvents)
     if not window.grab().save(str(out)):
         raise UserError(f"{out} cannot be written.", "Choose a name that ends in .png.")
 

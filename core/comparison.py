@@ -110,7 +110,7 @@ class Comparison:
 def judge_balance(model: ConstrainedModel, balance: Balance, watch: Watch | None = None) -> Verdict:
     """Return the verdict of an exact answer: settled if the balance was found."""
     error = record(model, balance.state, 0.0, watch).error
-    return Verdict("settled" if balance.found else "diverged", balance.steps, error)
+    return Verdict("settled" if balance.found else "settling", balance.steps, error)
 
 
 def _sane(run: Run) -> bool:

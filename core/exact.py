@@ -1,8 +1,8 @@
-"""The exact answer that the turns aim at: least energy at constant volume, by Newton steps (ours, beyond the
-paper).
+"""The exact answer: least energy at constant volume, by Newton steps (ours, beyond the paper).
 
-Unknowns are the free displacements and one pressure for each breast, so that one cannot feed the other. Every
-iterate has the exact volumes, and the energy falls strictly.
+Unknowns are the free displacements and one pressure for each breast, so that one cannot feed the other. Turns
+hold only the sum of both volumes: on a symmetric body they end at this answer, on an asymmetric one close to
+it. Every iterate has the exact volumes, and the energy falls strictly.
 """
 
 from __future__ import annotations
@@ -19,12 +19,13 @@ from core.solver import ConstrainedModel, State, at_rest
 RESIDUAL_LIMIT = 1e-10
 """Largest unbalanced force over the mean stiffness [mm] at which the balance counts as exact."""
 
+NEWTON_LIMIT = 200
+"""Newton steps after which the search is given up; half a dozen are the rule."""
+
 
 @dataclass(frozen=True, eq=False)
 class Balance:
-    """An iterate of the exact solve: its state, its residual [mm], left and right pressure, and Newton steps
-    taken.
-    """
+    """An iterate of the exact solve: state, residual [mm], left and right pressure, Newton steps taken."""
 
     state: State
     residual: float
@@ -38,9 +39,7 @@ class Balance:
 
 
 class Energy:
-    """Elastic energy of cables and lines over the free displacements (f, 3) [mm], and its first and second
-    derivative.
-    """
+    """Elastic energy of cables and lines over the free displacements (f, 3) [mm], with two derivatives."""
 
     def __init__(self, model: ConstrainedModel, ratios: tuple[float, ...]) -> None:
         self.model = model
@@ -81,7 +80,7 @@ class Energy:
 
 
 def solve_exact(
-    model: ConstrainedModel, ratios: tuple[float, ...], start: State | None = None, limit: int = 200
+    model: ConstrainedModel, ratios: tuple[float, ...], start: State | None = None, limit: int = NEWTON_LIMIT
 ) -> Balance:
     """Return the exact balance for line ``ratios``, one per line; ``start`` may be a neighbouring answer."""
     *_, last = newton(model, ratios, start, limit)
@@ -89,7 +88,7 @@ def solve_exact(
 
 
 def newton(
-    model: ConstrainedModel, ratios: tuple[float, ...], start: State | None = None, limit: int = 200
+    model: ConstrainedModel, ratios: tuple[float, ...], start: State | None = None, limit: int = NEWTON_LIMIT
 ) -> Iterator[Balance]:
     """Yield each Newton iterate, the start included, until exact or ``limit`` steps are made."""
     energy = Energy(model, ratios)

@@ -13,7 +13,7 @@ from typing import Any
 
 from core import __version__
 from core.design import to_json
-from core.exact import newton
+from core.exact import NEWTON_LIMIT, newton
 from core.lines import Line
 from core.pipeline import Stages, targets_of
 from core.project import whole_file
@@ -71,7 +71,7 @@ def _run_exact(stages: Stages, rest: Record, turns: int | None) -> Solution:
     ratios = targets_of(stages.design, stages).ratios
     records: list[Record] = []
     before = at_rest(stages.model)
-    for balance in newton(stages.model, ratios, limit=60 if turns is None else turns):
+    for balance in newton(stages.model, ratios, limit=NEWTON_LIMIT if turns is None else turns):
         if balance.steps:
             step = float(((balance.state.moved - before.moved) ** 2).sum(axis=1).max() ** 0.5)
             records.append(record(stages.model, balance.state, step, stages.watch))

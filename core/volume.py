@@ -126,6 +126,12 @@ def _curvature(faces: Faces, place: Indices, count: int) -> sparse.csr_array:
     return sparse.csr_array(entries, shape=shape)
 
 
+ADAPTIVE_STEP = 0.8
+ADAPTIVE_DAMPING = 0.8
+_FLIP = 0.3
+_QUIET = 1e-7
+
+
 @dataclass(frozen=True)
 class Pressure:
     """The volume force of the coming turn, and what its law remembers.
@@ -137,13 +143,7 @@ class Pressure:
 
     value: float = 0.0
     error: float = 0.0
-    step: float = 0.8
-
-
-ADAPTIVE_STEP = 0.8
-ADAPTIVE_DAMPING = 0.8
-_FLIP = 0.3
-_QUIET = 1e-7
+    step: float = ADAPTIVE_STEP
 
 
 def next_pressure(control: str, pressure: Pressure, error: float, gain: float) -> Pressure:
