@@ -25,6 +25,9 @@ OVERHANG = 90.0
 BEHIND = 120.0
 """Rays to the upper breast start so far behind the place where the skin is expected [mm, reference size]."""
 
+CLEAR = 15.0
+"""Beside the bust points their row stays so far above the folds, however low they hang [mm, ref. size]."""
+
 SHALLOW = 2.0
 """A hollow less deep than this is no fold [mm]."""
 
@@ -73,6 +76,9 @@ def survey_ground(template: Template, mesh: Mesh, landmarks: Landmarks) -> Groun
     near = (y < torso.axis[1] + margin) & (z > below.min() - margin) & (z < above + margin)
     front = cropped(mesh, near)
     bust = torso.height("bust", azimuth)
+    beside = np.abs(column) != template.bust_column
+    least = torso.height("fold", azimuth) + CLEAR * torso.scale
+    bust = np.where(beside, np.maximum(bust, least), bust)
     return Ground(template, torso, front, column, azimuth, below, bust, edge, above)
 
 
@@ -218,12 +224,12 @@ def _crease(ground: Ground, place: int, down: Profile) -> Crease | None:
     fold = find_fold(down, column.fold == "crease")
     torso, azimuth, bust = ground.torso, ground.azimuth[[place]], ground.bust[place]
     usual, lowest = torso.height("fold", azimuth)[0], torso.height("lowest", azimuth)[0]
-    highest = usual + 0.35 * (bust - usual)
+    highest = usual + 0.35 * max(bust - usual, 0.0)
     if fold is None or fold.depth < SHALLOW or fold.z < min(usual, lowest) - 25.0 * torso.scale - 5.0:
         return None
     if fold.z > highest + 6.0 * torso.scale:
         return None
-    arc = fold.arc if fold.z <= highest else down.first_below(highest)
+    arc = fold.arc if fold.z <= highest else down.next_below(fold.arc, highest)
     return Crease(down, max(arc, column.room * (bust - ground.below[place])), fold.depth)
 
 

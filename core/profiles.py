@@ -13,6 +13,9 @@ from core.sections import Section, arc_length, chains, cut, resample
 STEP = 2.0
 """Distance of the points on which a profile is judged [mm]."""
 
+ABOVE = 90.0
+"""A profile may rise so far above its start on the way to a fold behind a hanging breast [mm]."""
+
 BEND = 5
 """The turning of a profile is taken between chords of so many steps on both sides."""
 
@@ -71,9 +74,9 @@ class Profile:
         """Return the place ``arc`` [mm] down the profile, shape (3,) [mm]."""
         return np.array([np.interp(arc, self.arc, self.points[:, k]) for k in range(3)])
 
-    def first_below(self, z: float) -> float:
-        """Return the way to the first place lower than ``z`` [mm]; to the end if there is none [mm]."""
-        below = self.points[:, 2] < z
+    def next_below(self, arc: float, z: float) -> float:
+        """Return the way to the first place beyond ``arc`` lower than ``z``, to the end if none is [mm]."""
+        below = (self.points[:, 2] < z) & (self.arc >= arc)
         return float(self.arc[np.argmax(below)] if below.any() else self.arc[-1])
 
 
@@ -85,7 +88,9 @@ def profile(front: Mesh, axis: Points, start: Points, bottom: float) -> Profile 
     along = unit((start - axis) * (1.0, 1.0, 0.0))
     section = cut(front, axis, np.cross(along, (0.0, 0.0, 1.0)))
     middle = section.segments.mean(axis=1)
-    near = ((middle - axis) @ along > 0.0) & (middle[:, 2] > bottom - 20.0) & (middle[:, 2] < start[2] + 40.0)
+    near = (
+        ((middle - axis) @ along > 0.0) & (middle[:, 2] > bottom - 20.0) & (middle[:, 2] < start[2] + ABOVE)
+    )
     pieces = chains(Section(section.segments[near], section.edge_ids[near]))
     if not pieces:
         return None

@@ -69,3 +69,20 @@ def analytic_landmarks() -> Landmarks:
             r = skin(sign * AZIMUTH, np.array(z))
             places[f"{name}_{side}"] = np.array([sign * r * np.sin(AZIMUTH), -r * np.cos(AZIMUTH), z])
     return landmarks_at(places)
+
+
+def hanging(sag):
+    """The analytic body with breasts pulled down by ``sag`` per mm that they stand out, and its landmarks."""
+
+    def pulled(place):
+        x, y, z = np.moveaxis(np.asarray(place, dtype=float), -1, 0)
+        return np.stack([x, y, z - sag * (np.hypot(x, y) - RADIUS)], axis=-1)
+
+    places = {name: pulled(mark.position) for name, mark in analytic_landmarks().points.items()}
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        z = np.linspace(FOLD, BUST, 400)
+        r = skin(sign * AZIMUTH, z)
+        below = pulled(np.column_stack([sign * r * np.sin(AZIMUTH), -r * np.cos(AZIMUTH), z]))
+        places[f"lowest_{side}"] = below[below[:, 2].argmin()]
+    mesh = analytic_body()
+    return body_of(mesh.moved(pulled(mesh.vertices))), landmarks_at(places)

@@ -28,6 +28,13 @@ def test_back_of_a_round_trunk_is_the_rest_of_the_circle(degrees):
     assert length == pytest.approx(RADIUS * 2.0 * np.radians(180.0 - degrees), rel=1e-3)
 
 
+def test_noise_of_the_scanner_does_not_lengthen_the_back():
+    mesh = analytic_body()
+    noise = np.random.default_rng(3).normal(scale=1.0, size=mesh.vertices.shape)
+    length = back_length(mesh.moved(mesh.vertices + noise), tube_ends(80.0, 200.0), "band")
+    assert length == pytest.approx(RADIUS * np.radians(200.0), rel=0.01)
+
+
 def test_hole_in_the_back_is_bridged_straight():
     mesh = analytic_body()
     a = np.degrees(np.arctan2(mesh.vertices[:, 0], mesh.vertices[:, 1]))

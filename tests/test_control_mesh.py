@@ -12,6 +12,7 @@ from fit_bodies import (
     analytic_body,
     analytic_landmarks,
     body_of,
+    hanging,
     landmarks_at,
     sample_of,
     skin,
@@ -67,6 +68,20 @@ def test_rows_and_columns_of_the_analytic_body(template):
     folds = (control.row == 1) & breast & (np.abs(np.abs(expected) - AZIMUTH) < 0.3)
     np.testing.assert_allclose(z[folds], FOLD, atol=4.0)
     np.testing.assert_allclose(np.hypot(points[:, 0], points[:, 1]), skin(azimuth, z), atol=1.5)
+
+
+def test_rows_follow_a_breast_that_hangs_below_its_fold(template):
+    body, landmarks = hanging(sag=1.0)
+    control = fit_control_mesh(template, body, landmarks)
+    points = control.mesh.vertices
+    for point, side, sign in zip(control.bust_points, ("left", "right"), (1, -1), strict=True):
+        fold = points[template.point(1, sign * template.bust_column)]
+        line = points[template.point(2, sign * template.bust_column)]
+        assert points[point][2] < landmarks.position(f"fold_{side}")[2]
+        # The mesh resolves the crease to 3 mm, the profile to 2 mm.
+        assert np.hypot(np.hypot(*fold[:2]) - RADIUS, fold[2] - FOLD) < 5.0
+        assert line[2] < fold[2] - 10.0
+    assert agreement(control.mesh, body.mesh).min() > 0.3
 
 
 def test_control_mesh_is_sound(fit, sample):

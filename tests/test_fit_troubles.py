@@ -1,12 +1,14 @@
 """What the user is told when a control mesh cannot be fitted, or only with a makeshift."""
 
+from contextlib import suppress
+
 import numpy as np
 import pytest
-from fit_bodies import analytic_body, analytic_landmarks, body_of, landmarks_at, sample_of
+from fit_bodies import analytic_body, analytic_landmarks, body_of, hanging, landmarks_at, sample_of
 
 from core.control_mesh import fit_control_mesh
 from core.errors import FitError
-from core.fit_check import corner_angles
+from core.fit_check import agreement, corner_angles
 from core.mesh import Mesh
 from core.template import TEMPLATES, read_template
 
@@ -86,6 +88,29 @@ def test_line_height_out_of_range_is_refused(template, part):
     body, places = sample_of("mannequin")
     with pytest.raises(FitError, match="line height"):
         fit_control_mesh(template, body, landmarks_at(places), part)
+
+
+@pytest.mark.parametrize("sag", [1.3, 1.5, 1.7, 2.0])
+def test_breast_that_hangs_too_low_is_never_folded_over(template, sag):
+    body, landmarks = hanging(sag)
+    with suppress(FitError):
+        control = fit_control_mesh(template, body, landmarks)
+        assert control.warnings
+        assert agreement(control.mesh, body.mesh).min() > 0.3
+        assert corner_angles(control.mesh).min() > 8.0
+
+
+def test_breast_that_cannot_be_followed_is_refused(template):
+    with pytest.raises(FitError, match="flat or folded"):
+        fit_control_mesh(template, *hanging(1.5))
+
+
+def test_column_that_spoils_the_mesh_gives_up_its_fold_and_says_so(template):
+    body, landmarks = hanging(sag=1.2)
+    control = fit_control_mesh(template, body, landmarks)
+    assert any("'outer middle'" in warning for warning in control.warnings)
+    assert agreement(control.mesh, body.mesh).min() > 0.3
+    assert corner_angles(control.mesh).min() > 8.0
 
 
 def test_body_without_folds_says_so(template):

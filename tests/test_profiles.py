@@ -66,7 +66,9 @@ def test_profile_runs_down_the_front_of_a_box_to_the_bottom_asked_for():
     np.testing.assert_allclose(down.reach, np.hypot(3.0, 10.0))
     assert down.points[-1, 2] < -60.0
     np.testing.assert_allclose(down.at(30.0), (3.0, -10.0, 20.0))
-    assert down.points[int(np.argmax(down.arc >= down.first_below(0.0))), 2] < 0.0
+    assert down.at(down.next_below(0.0, 0.0))[2] < 0.0
+    assert down.next_below(70.0, 0.0) >= 70.0
+    assert down.next_below(0.0, -500.0) == down.arc[-1]
 
 
 def test_profile_ended_by_a_hole_is_none():
