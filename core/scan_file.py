@@ -78,23 +78,24 @@ def _bytes_of(path: Path) -> bytes:
 
 
 def _put_together(parts: list[Any], name: str) -> tuple[Points, Faces]:
-    vertices, faces, start = [np.empty((0, 3))], [np.empty((0, 3), dtype=np.int64)], 0
+    vertices, faces = np.empty((0, 3)), np.empty((0, 3), dtype=np.int64)
     for part in parts:
-        vertices.append(np.asarray(part.vertices, dtype=np.float64))
+        corners = np.asarray(part.vertices, dtype=np.float64)
         triangles = np.asarray(getattr(part, "faces", ()), dtype=np.int64).reshape(-1, 3)
-        within = ((triangles >= 0) & (triangles < len(vertices[-1]))).all(axis=1)
-        if not within.all():
+        if not np.all((triangles >= 0) & (triangles < len(corners))):
             raise ScanError(f"{name} has triangles with corners that do not exist.", AGAIN)
-        faces.append(triangles + start)
-        start += len(vertices[-1])
-    if sum(map(len, faces)) == 0:
+        if not np.array_equal(
+            corners, vertices, equal_nan=True
+        ):  # the groups of an OBJ file share all vertices
+            triangles = triangles + len(vertices)
+            vertices = np.concatenate([vertices, corners])
+        faces = np.concatenate([faces, triangles])
+    if len(faces) == 0:
+        points = f"; it is a cloud of {len(vertices):,} points" if len(vertices) else ""
         raise ScanError(
-            f"{name} has no triangles; it is a cloud of {start:,} points."
-            if start
-            else f"{name} has no triangles.",
-            "Mesh the points first, in the program of the scanner.",
+            f"{name} has no triangles{points}.", "Mesh the points first, in the program of the scanner."
         )
-    return np.concatenate(vertices), np.concatenate(faces)
+    return vertices, faces
 
 
 def _check_ply_counts(data: bytes, name: str) -> None:
@@ -115,17 +116,19 @@ def _check_ply_counts(data: bytes, name: str) -> None:
                 need += count * _least_bytes(line, text, 3 if element == "face" else 0)
     except (IndexError, KeyError, ValueError) as problem:
         raise ScanError(f"{name} has a header that makes no sense.", AGAIN) from problem
-    if need > len(data) - end:
+    if need > len(data) - end - len("end_header\n"):
         raise ScanError(f"{name} is cut short: its header promises more than the file holds.", AGAIN)
 
 
 def _least_bytes(line: list[str], text: bool, list_items: int) -> int:
     """Return the least that one value of a PLY property takes [bytes]; a list has ``list_items`` at least."""
-    if line[1] != "list":
-        return 2 if text else _PLY_BYTES[line[1]]
-    if "vert" not in line[4]:
-        list_items = 0
-    return 2 * (1 + list_items) if text else _PLY_BYTES[line[2]] + list_items * _PLY_BYTES[line[3]]
+    count_size, item_size = 0, _PLY_BYTES[line[1 if line[1] != "list" else 3]]
+    if line[1] == "list":
+        count_size = _PLY_BYTES[line[2]]
+        items = list_items if "vert" in line[4] else 0
+    else:
+        items = 1
+    return 2 * (items + (count_size > 0)) if text else count_size + items * item_size
 
 
 def _check_stl_length(data: bytes, name: str) -> None:

@@ -28,6 +28,9 @@ TOLD_GIRTHS = (300.0, 2500.0)
 SNAP = 1.5
 """A side axis nearer than this to an axis of the file [degrees] is taken for it: then no digit changes."""
 
+NEAR = 0.69
+"""Cosine of the angle, a little over 45 degrees, within which a direction has the name of an axis."""
+
 SURE_MARGIN, SURE_SCORE = 0.6, 1.5
 
 
@@ -125,7 +128,8 @@ def _fitting(cloud: Cloud, planes: list[MirrorPlane], up: str | None, front: str
         stance
         for plane in planes
         for stance in stances(cloud, plane)
-        if (up is None or stance.up @ AXES[up] > 0.5) and (front is None or -stance.back @ AXES[front] > 0.5)
+        if (up is None or stance.up @ AXES[up] > NEAR)
+        and (front is None or -stance.back @ AXES[front] > NEAR)
     ]
 
 
