@@ -192,6 +192,18 @@ def test_rows_stay_while_values_change(lines: LinesPanel) -> None:
     assert any("680.0 of 700.0 mm (97.1 %)" in text for text in said)
 
 
+@pytest.mark.parametrize(("ratio", "tone"), [(1.0, ""), (0.984, "warn"), (0.96, "bad"), (0.992, "")])
+def test_a_gap_is_toned_by_its_size_unless_the_line_is_off(
+    lines: LinesPanel, ratio: float, tone: str
+) -> None:
+    lines.set_lines([LineView("waist", "Waist", "#7A1F2E", ratio, 400.0, 398.0, True, True, 700.0), RIBS])
+    lines.select("waist")
+    shown = [each for each in lines.rows["waist"].findChildren(QLabel) if each.isVisible()]
+    gap = next(each for each in shown if each.text().startswith(("+", "−")))
+    assert (gap.property("tone") or "") == tone
+    assert any("does not pull" in each.text() for each in shown) == (ratio == 1.0)
+
+
 def test_arrows_go_from_line_to_line_and_enter_into_the_number(lines: LinesPanel, qtbot: QtBot) -> None:
     waist = lines.rows["waist"]
     waist.slider.setFocus()

@@ -15,6 +15,7 @@ from app.parts import ToolButton, hairline, sentence
 from app.theme import label, set_tag, tokens_of
 from app.words import number, tr
 
+_OFF = 5e-6  # a set length nearer to the rest length than this means that the line is not worn
 _GAP_SEEN, _GAP_LARGE = 0.005, 0.02  # shares of the set length above which a gap is amber, red
 
 
@@ -226,28 +227,28 @@ class _Details(QWidget):
     def show_lengths(self, view: LineView, ratio: float) -> None:
         """Show a set length, as a share of the rest length, and what ``view`` reached."""
         set_mm = ratio * view.rest_mm
-        self._values[0].setText(_figure(number(set_mm), "mm"))
         whole_mm = view.whole_mm - view.rest_mm + set_mm
-        self._part.setText(
-            tr("{percent} % of the front part, side to side").format(percent=number(ratio * 100))
-        )
-        self._whole.setText(
-            tr("Whole band: {set} of {rest} mm ({percent} %)").format(
-                set=number(whole_mm),
-                rest=number(view.whole_mm),
-                percent=number(whole_mm / view.whole_mm * 100),
-            )
-        )
-        if view.reached_mm is None:
-            self._values[1].setText("–")
-            self._values[2].setText("–")
-            set_tag(self._values[2], "tone", "")
-            return
-        gap = view.reached_mm - set_mm
-        off = abs(gap) / set_mm
-        self._values[1].setText(_figure(number(view.reached_mm), "mm"))
-        self._values[2].setText(_figure(number(gap, signed=True), f"mm&nbsp; {number(off * 100)} %"))
-        set_tag(self._values[2], "tone", "bad" if off > _GAP_LARGE else "warn" if off > _GAP_SEEN else "")
+        worn = abs(ratio - 1.0) > _OFF
+        self._values[0].setText(_figure(number(set_mm), "mm"))
+        part = tr("{percent} % of the front part, side to side").format(percent=number(ratio * 100))
+        self._part.setText(part if worn else tr("At 100 % the line is off: it measures and does not pull."))
+        whole = tr("Whole band: {set} of {rest} mm ({percent} %)")
+        percent = number(whole_mm / view.whole_mm * 100)
+        self._whole.setText(whole.format(set=number(whole_mm), rest=number(view.whole_mm), percent=percent))
+        self._show_reached(view.reached_mm, set_mm, worn)
+
+    def _show_reached(self, reached_mm: float | None, set_mm: float, worn: bool) -> None:
+        reached, gap, tone = "–", "–", ""
+        if reached_mm is not None:
+            off = reached_mm - set_mm
+            share = abs(off) / set_mm
+            reached = _figure(number(reached_mm), "mm")
+            gap = _figure(number(off, signed=True), f"mm&nbsp; {number(share * 100)} %")
+            if worn and share > _GAP_SEEN:
+                tone = "bad" if share > _GAP_LARGE else "warn"
+        self._values[1].setText(reached)
+        self._values[2].setText(gap)
+        set_tag(self._values[2], "tone", tone)
 
 
 def _figure(value: str, unit: str) -> str:
