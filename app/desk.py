@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QApplication
 
 from app.application import chosen_dark
 from app.dialogs import about_busk, ask_about_changes, ask_open, ask_save
+from app.panels.landmarks import tone_of
 from app.present import (
     exact_answer,
     facts,
@@ -52,9 +53,9 @@ class Desk(QObject):
         self._session = window.session
         self._frame: Frame | None = None
         self._plotted: Frame | None = None
-        self._plot_clock = QTimer(self, interval=PLOT_INTERVAL)
+        self._plot_due = 0.0
+        self._plot_clock = QTimer(self, interval=PLOT_INTERVAL, singleShot=True)
         self._plot_clock.timeout.connect(self.plot_now)
-        self._plot_clock.start()
         settings = QSettings()
         window.actions_.themes[str(settings.value("theme", "system"))].setChecked(True)
         window.actions_.languages[str(settings.value("language", "en"))].setChecked(True)
@@ -74,7 +75,7 @@ class Desk(QObject):
         window.landmarks.set_landmarks(landmark_views(landmarks))
         if design is not None:
             window.scan.set_scan(scan_view(design, frame.stages))
-        weak = sum(mark.confidence < 0.3 for mark in landmarks.points.values())
+        weak = sum(tone_of(mark.confidence) != "ok" for mark in landmarks.points.values())
         window.rail.set_state("scan", "done" if frame.stages.body.pose.sure else "look", 1)
         window.rail.set_state("landmarks", "look" if weak else "done", weak)
         for step in ("lines", "result"):
@@ -93,6 +94,11 @@ class Desk(QObject):
         self._window.lines.set_lines(line_views(design, frame, self._window.view.hidden_lines))
         percent = 1e5 * frame.error_ml / frame.stages.model.volume.rest_volume
         self._window.status.set_volume(percent, frame.error_ml)
+        # Drawn together with the body while frames come, else a moment after the last one.
+        if time.monotonic() >= self._plot_due:
+            self.plot_now()
+        elif not self._plot_clock.isActive():
+            self._plot_clock.start()
 
     def show_design(self, design: Design) -> None:
         """Show what was decided."""
@@ -243,6 +249,7 @@ class Desk(QObject):
         if frame is None or frame is self._plotted:
             return
         self._plotted = frame
+        self._plot_due = time.monotonic() + PLOT_INTERVAL / 1000.0
         main = frame.stages.design.volume
         strip = self._window.strip
         strip.set_verdict(strip_verdict(frame))

@@ -17,6 +17,7 @@ from app.panels.result import ResultPanel
 from app.panels.scan import ScanPanel
 from app.panels.status import StatusBar
 from app.panels.top_bar import TopBar
+from app.parts import hairline
 from app.recent import fill_recent_menu
 from app.session import Session
 from app.view_area import ViewArea
@@ -60,6 +61,7 @@ class MainWindow(QMainWindow):
         across.setSpacing(0)
         across.addWidget(self.rail)
         across.addLayout(middle, 1)
+        across.addWidget(hairline(vertical=True))
         across.addWidget(self.inspector)
         central = QWidget()
         down = QVBoxLayout(central)

@@ -204,6 +204,8 @@ class BodyActor:
             specular_power=14,
         )
         self.actor.prop.interpolation = "Gouraud"
+        # Of a closed body no inside is seen; not to fill it halves the time of a frame on software GL.
+        self.actor.prop.culling = "none" if mesh.boundary_loops else "back"
         # Coloured points overrule VTK's own property for back faces, hence these lines of shader.
         self.actor.GetShaderProperty().AddFragmentShaderReplacement(
             "//VTK::Color::Impl", True, _DIM_INSIDE, False

@@ -195,7 +195,8 @@ class Session(QObject):
                     return
                 self._adopt(answer)
             self.frame = answer
-            self.frame_ready.emit(answer)
+            with self._solver.held():
+                self.frame_ready.emit(answer)
 
     def _adopt(self, frame: Frame) -> None:
         if self._opening is None:

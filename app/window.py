@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -32,6 +33,8 @@ def run_window(file: str | None = None) -> int:
 
 def open_window(what: str | Design) -> MainWindow:
     """Return a window that is opening a file or a design."""
+    # While the solver is at work, the window gets the interpreter lock sooner than after Python's usual 5 ms.
+    sys.setswitchinterval(0.001)
     # The solver's thread reads the body while this one imports the 3D libraries.
     session = Session()
     if isinstance(what, Design):

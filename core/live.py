@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 from threadpoolctl import threadpool_limits
@@ -85,6 +86,7 @@ class LiveSolver:
         self._stages: Stages | None = None
         self._comparison: Comparison | None = None
         self._seconds = 0.0
+        self._held = False
         self._thread = threading.Thread(target=self._work, name="busk-solver", daemon=True)
         self._thread.start()
 
@@ -108,6 +110,15 @@ class LiveSolver:
                 return failure
             frame, self._frame = self._frame, None
             return frame
+
+    @contextmanager
+    def held(self) -> Iterator[None]:
+        """Let no turns be made meanwhile: who shows a frame would only wait for the interpreter lock."""
+        self._held = True
+        try:
+            yield
+        finally:
+            self._held = False
 
     def stop(self) -> None:
         """Ask the thread to end and wait until it has."""
@@ -166,7 +177,10 @@ class LiveSolver:
             return
         start = time.perf_counter()
         while not comparison.resting and time.perf_counter() < start + _SLICE:
-            comparison.advance()
+            if self._held:
+                time.sleep(_NAP)
+            else:
+                comparison.advance()
         self._seconds += time.perf_counter() - start
 
     def _publish(self, frame: Frame) -> None:
