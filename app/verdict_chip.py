@@ -24,7 +24,7 @@ TONES = {
 SHORTEST_SHOW_MS = 250
 """A state stays at least so long, so that the chip does not flicker."""
 
-_TURN_MS, _STEP_MS = 1200, 50
+_TURN_MS, _STEP_MS = 1200, 150
 
 
 def state_title(state: str) -> str:
