@@ -8,7 +8,7 @@ from pathlib import Path
 from core.errors import ScanError
 from core.mesh import Mesh
 from core.repair import repair
-from core.scan_file import read_triangles
+from core.scan_file import read_triangles, scan_bytes
 from core.upright import Pose, find_pose
 
 
@@ -25,16 +25,22 @@ class Body:
 def read_scan(
     path: str | Path, *, unit: str | None = None, up: str | None = None, front: str | None = None
 ) -> Body:
-    """Read a PLY, OBJ or STL scan, clean it and bring it upright, facing -y, in mm.
-
-    ``unit`` ("mm", "cm", "m", "inch"), ``up`` and ``front`` ("+x" .. "-z", axes of the file) overrule what
-    the shape tells. Raises ScanError.
-    """
+    """Read a PLY, OBJ or STL scan from its file; see ``body_of``. Raises ScanError."""
     path = Path(path)
-    vertices, faces = read_triangles(path)
-    vertices, faces, repairs = repair(vertices, faces)
+    return body_of(path.name, scan_bytes(path), unit=unit, up=up, front=front)
+
+
+def body_of(
+    name: str, data: bytes, *, unit: str | None = None, up: str | None = None, front: str | None = None
+) -> Body:
+    """Take a PLY, OBJ or STL scan, clean it and bring it upright, facing -y, in mm.
+
+    ``name`` is that of the file and ``data`` what it holds; ``unit`` ("mm", "cm", "m", "inch"), ``up`` and
+    ``front`` ("+x" .. "-z", axes of the file) overrule what the shape tells. Raises ScanError.
+    """
+    vertices, faces, repairs = repair(*read_triangles(name, data))
     if len(faces) == 0:
-        raise ScanError(f"{path.name} has no sound triangles.", "Export the scan again.")
+        raise ScanError(f"{name} has no sound triangles.", "Export the scan again.")
     pose = find_pose(vertices, faces, unit=unit, up=up, front=front)
     turn = pose.file_to_mm[:3, :3]
-    return Body(Mesh(vertices @ turn.T, faces), pose, repairs, path.stem)
+    return Body(Mesh(vertices @ turn.T, faces), pose, repairs, Path(name).stem)

@@ -1,6 +1,4 @@
-"""From a design to everything that precedes solving, stage by stage; a stage whose inputs are equal is
-reused.
-"""
+"""From a design to everything that precedes solving; a stage whose inputs are equal is reused."""
 
 from __future__ import annotations
 
@@ -12,7 +10,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from core.body import Body, read_scan
+from core.body import Body, body_of
 from core.control_mesh import ControlMesh, back_length, fit_control_mesh
 from core.design import Design, ScanSource
 from core.errors import LineError
@@ -20,7 +18,7 @@ from core.landmarks import Landmarks, find_landmarks
 from core.mesh import Points
 from core.moving import MovingFaces, moving_faces
 from core.patch import patch_fade
-from core.project import ScanFile, read_scan_file, scan_on_disk
+from core.project import ScanFile, read_scan_file
 from core.solver import ConstrainedModel, Marks, Targets, constrained_model, gain_limit
 from core.template import read_template
 from core.tffd import Binding, bind, deform
@@ -142,8 +140,7 @@ def targets_of(design: Design, stages: Stages) -> Targets:
 def read_body(source: ScanSource) -> tuple[ScanFile, Body]:
     """Return a scan as it came and the body read from it. Raises ScanError or ProjectError."""
     scan = read_scan_file(source)
-    with scan_on_disk(source, scan) as path:
-        return scan, read_scan(path, unit=source.unit, up=source.up, front=source.front)
+    return scan, body_of(scan.name, scan.data, unit=source.unit, up=source.up, front=source.front)
 
 
 def _back_lengths(body: Body, control: ControlMesh) -> dict[str, float]:

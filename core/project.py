@@ -1,12 +1,9 @@
-"""The project file ``*.busk``: one zip with the design, the untouched scan and a picture. Results are never
-stored.
-"""
+"""The project file ``*.busk``: one zip with the design, the untouched scan and a picture, never a result."""
 
 from __future__ import annotations
 
 import os
 import re
-import tempfile
 import zipfile
 import zlib
 from collections.abc import Iterator
@@ -15,7 +12,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from core.design import Design, ScanSource, from_json, to_json
-from core.errors import ProjectError, ScanError
+from core.errors import ProjectError
+from core.scan_file import scan_bytes
 
 SUFFIX = ".busk"
 _LARGEST_SCAN = 2_000_000_000
@@ -74,33 +72,7 @@ def read_scan_file(source: ScanSource) -> ScanFile:
     if source.member:
         with _archive(Path(source.path)) as archive:
             return ScanFile(source.name, _member(archive, source.member, _LARGEST_SCAN))
-    try:
-        return ScanFile(source.name, Path(source.path).read_bytes())
-    except FileNotFoundError:
-        raise ScanError(
-            f"There is no file {source.path}.", "Check the name, or choose another scan."
-        ) from None
-    except OSError as problem:
-        raise ScanError(
-            f"{source.name} cannot be read: {problem.strerror}.", "Choose another scan."
-        ) from problem
-
-
-@contextmanager
-def scan_on_disk(source: ScanSource, scan: ScanFile) -> Iterator[Path]:
-    """Give a path that holds the scan: its own file, or a passing copy of what lies inside a project."""
-    if not source.member:
-        yield Path(source.path)
-        return
-    with tempfile.TemporaryDirectory(prefix="busk-", ignore_cleanup_errors=True) as folder:
-        copy = Path(folder) / _safe_name(scan.name)
-        try:
-            copy.write_bytes(scan.data)
-        except OSError as problem:
-            raise ProjectError(
-                f"{scan.name} cannot be unpacked: {problem.strerror}.", "Make room for temporary files."
-            ) from problem
-        yield copy
+    return ScanFile(source.name, scan_bytes(Path(source.path)))
 
 
 def _safe_name(name: str) -> str:

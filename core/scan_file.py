@@ -24,24 +24,35 @@ _PLY_BYTES = {
 }
 
 
-def read_triangles(path: Path) -> tuple[Points, Faces]:
-    """Return the vertices, shape (n, 3) [file units], and triangles, shape (m, 3), of a scan file.
-
-    All objects and groups of the file are put together; larger polygons are cut into triangles.
-    Raises ScanError.
-    """
-    kind = path.suffix.lower().removeprefix(".")
-    if kind not in FORMATS:
+def scan_bytes(path: Path) -> bytes:
+    """Return what a scan file holds. Raises ScanError."""
+    try:
+        return path.read_bytes()
+    except FileNotFoundError:
+        raise ScanError(f"There is no file {path}.", "Check the name, or choose another scan.") from None
+    except OSError as problem:
         raise ScanError(
-            f"{path.name} is not a PLY, OBJ or STL file.", "Export the scan in one of these formats."
-        )
-    data = _bytes_of(path)
+            f"{path.name} cannot be read: {problem.strerror}.", "Choose another scan."
+        ) from problem
+
+
+def read_triangles(name: str, data: bytes) -> tuple[Points, Faces]:
+    """Return the vertices, shape (n, 3) [file units], and triangles, shape (m, 3), of a scan file's bytes.
+
+    The ending of ``name`` tells the format. All objects and groups of the file are put together; larger
+    polygons are cut into triangles. Raises ScanError.
+    """
+    kind = Path(name).suffix.lower().removeprefix(".")
+    if kind not in FORMATS:
+        raise ScanError(f"{name} is not a PLY, OBJ or STL file.", "Export the scan in one of these formats.")
+    if not data:
+        raise ScanError(f"{name} is empty.", AGAIN)
     import trimesh  # noqa: PLC0415 - half a second that only the opening of a file needs
 
     if kind == "ply":
-        _check_ply_counts(data, path.name)
+        _check_ply_counts(data, name)
     elif kind == "stl":
-        _check_stl_length(data, path.name)
+        _check_stl_length(data, name)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -57,24 +68,10 @@ def read_triangles(path: Path) -> tuple[Points, Faces]:
             )
     except Exception as problem:  # a malformed file makes the reader fail in any way
         raise ScanError(
-            f"{path.name} cannot be read: it is damaged or cut short.",
+            f"{name} cannot be read: it is damaged or cut short.",
             "Export the scan again, as triangles only.",
         ) from problem
-    return _put_together(list(scene.geometry.values()), path.name)
-
-
-def _bytes_of(path: Path) -> bytes:
-    if not path.is_file():
-        raise ScanError(f"There is no file {path}.", "Choose a scan that exists.")
-    try:
-        data = path.read_bytes()
-    except OSError as problem:
-        raise ScanError(
-            f"{path.name} cannot be opened: {problem.strerror}.", "Look at its permissions."
-        ) from problem
-    if not data:
-        raise ScanError(f"{path.name} is empty.", AGAIN)
-    return data
+    return _put_together(list(scene.geometry.values()), name)
 
 
 def _put_together(parts: list[Any], name: str) -> tuple[Points, Faces]:

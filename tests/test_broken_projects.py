@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from core.design import Design, ScanSource, to_json
 from core.errors import ProjectError, UserError
-from core.project import ScanFile, open_project, read_scan_file, save_project, scan_on_disk
+from core.project import ScanFile, open_project, read_scan_file, save_project
 
 SCAN = ScanFile("body.ply", b"ply\nformat ascii 1.0\nend_header\n" + bytes(range(256)))
 DESIGN = Design(ScanSource("/scans/body.ply", unit="cm")).with_line("mid-bust", 0.97)
@@ -103,7 +103,7 @@ def test_a_design_that_claims_to_be_huge_is_not_unpacked(tmp_path):
 @pytest.mark.parametrize(
     "member", ["../../evil.ply", "scan/..", "/", "..", "/etc/passwd.ply", "a" * 300 + ".ply", "scan/a:b?.ply"]
 )
-def test_a_scan_with_a_hostile_name_stays_in_its_folder(tmp_path, member):
+def test_a_scan_with_a_hostile_name_gets_a_harmless_one(tmp_path, member):
     design = open_project(
         crafted(
             tmp_path / "anna.busk",
@@ -111,9 +111,12 @@ def test_a_scan_with_a_hostile_name_stays_in_its_folder(tmp_path, member):
             **{member: b"ply"},
         )
     )
-    with scan_on_disk(design.scan, read_scan_file(design.scan)) as path:
-        assert path.read_bytes() == b"ply"
-        folder = path.parent
-        assert folder.name.startswith("busk-")
-        assert list(folder.iterdir()) == [path]
-    assert not folder.exists()
+    scan = read_scan_file(design.scan)
+    assert scan.data == b"ply"
+    save_project(tmp_path / "again.busk", design, scan, None)
+    with zipfile.ZipFile(tmp_path / "again.busk") as archive:
+        _, kept = archive.namelist()
+    assert kept.startswith("scan/")
+    assert len(kept.split("/")) == 2
+    assert ".." not in kept
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["again.busk", "anna.busk"]

@@ -17,7 +17,6 @@ from core.project import (
     open_project,
     read_scan_file,
     save_project,
-    scan_on_disk,
     whole_file,
 )
 
@@ -169,9 +168,9 @@ def test_scans_with_odd_names_are_saved_and_come_back(tmp_path, name):
     path = tmp_path / "anna.busk"
     save_project(path, DESIGN, ScanFile(name, b"ply"), None)
     design = open_project(path)
-    with scan_on_disk(design.scan, read_scan_file(design.scan)) as copy:
-        assert copy.read_bytes() == b"ply"
-        assert copy.suffix == Path(name).suffix
+    scan = read_scan_file(design.scan)
+    assert scan.data == b"ply"
+    assert Path(scan.name).suffix == Path(name).suffix
 
 
 def test_a_plain_scan_is_read_where_it_lies(tmp_path):
@@ -179,9 +178,6 @@ def test_a_plain_scan_is_read_where_it_lies(tmp_path):
     path.write_bytes(b"ply")
     scan = read_scan_file(ScanSource(str(path)))
     assert (scan.name, scan.data) == ("body.ply", b"ply")
-    with scan_on_disk(ScanSource(str(path)), scan) as place:
-        assert place == path
-    assert path.exists()
 
 
 def test_missing_files_are_named(tmp_path):
@@ -193,21 +189,6 @@ def test_missing_files_are_named(tmp_path):
         read_scan_file(ScanSource(str(tmp_path)))
     with pytest.raises(ProjectError, match="cannot be read"):
         open_project(tmp_path)
-
-
-def test_a_temporary_folder_without_room_is_named(project, monkeypatch):
-    design = open_project(project)
-    scan = read_scan_file(design.scan)
-
-    def full(*_):
-        raise OSError(errno.ENOSPC, "No space left on device")
-
-    monkeypatch.setattr(Path, "write_bytes", full)
-    with (
-        pytest.raises(ProjectError, match="cannot be unpacked: No space left"),
-        scan_on_disk(design.scan, scan),
-    ):
-        pass
 
 
 def test_projects_are_known_by_their_ending():

@@ -19,7 +19,8 @@ CANONICAL = np.eye(4)
 
 @pytest.fixture(scope="module")
 def mannequin():
-    return read_triangles(SAMPLES / "mannequin.ply")
+    path = SAMPLES / "mannequin.ply"
+    return read_triangles(path.name, path.read_bytes())
 
 
 def torso(bust_at=(-1.0,), height=600.0):
