@@ -91,8 +91,9 @@ class LiveSolver:
         self._thread.start()
 
     def submit(self, design: Design, fresh: bool = False) -> int:
-        """Ask for a design, dropping what was asked before; ``fresh`` begins new records. Returns the
-        revision.
+        """Ask for a design, dropping what was asked before, and return the revision of the request.
+
+        ``fresh`` begins new records.
         """
         with self._wake:
             self._revision += 1
@@ -130,7 +131,7 @@ class LiveSolver:
     def _work(self) -> None:
         # Two BLAS threads make these small products many times slower.
         with threadpool_limits(1):
-            revision = 0
+            asked = taken = 0
             while True:
                 with self._wake:
                     self._wake.wait_for(self._something_to_do)
@@ -139,17 +140,19 @@ class LiveSolver:
                     request, self._request = self._request, None
                 try:
                     if request is not None:
-                        revision = request.revision
+                        asked = request.revision
                         self._take(request)
+                        # Only now: the frames after a failure are still those of the design before it.
+                        taken = asked
                     self._advance()
                     if self._stages is not None and self._comparison is not None:
-                        self._publish(make_frame(revision, self._stages, self._comparison, self._seconds))
+                        self._publish(make_frame(taken, self._stages, self._comparison, self._seconds))
                 except UserError as error:
-                    self._fail(Failure(revision, error))
+                    self._fail(Failure(asked, error))
                 except Exception as error:
                     # A fault of ours: do not run into it again with every turn; the window shows it.
                     self._comparison = None
-                    self._fail(Failure(revision, error))
+                    self._fail(Failure(asked, error))
                 time.sleep(_NAP)
 
     def _something_to_do(self) -> bool:
@@ -175,13 +178,13 @@ class LiveSolver:
         comparison = self._comparison
         if comparison is None:
             return
-        start = time.perf_counter()
-        while not comparison.resting and time.perf_counter() < start + _SLICE:
+        end = time.perf_counter() + _SLICE
+        while not comparison.resting and (start := time.perf_counter()) < end:
             if self._held:
                 time.sleep(_NAP)
             else:
                 comparison.advance()
-        self._seconds += time.perf_counter() - start
+                self._seconds += time.perf_counter() - start
 
     def _publish(self, frame: Frame) -> None:
         with self._wake:

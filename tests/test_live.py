@@ -101,6 +101,30 @@ def test_a_failure_is_told_and_the_solver_goes_on(solver: LiveSolver, built: Bui
     assert settled(solver, solver.submit(design)).verdict.state == "settled"
 
 
+def test_frames_after_a_failure_belong_to_the_design_before_it(solver: LiveSolver, built: Built) -> None:
+    # Vibrating, so that turns are still made when the failure comes.
+    design = replace(built("mannequin").design.with_line("mid-bust", 0.6), volume="conventional")
+    good = solver.submit(design)
+    answer(solver, lambda frame: frame.revision == good)
+    bad = solver.submit(Design(ScanSource("no-such-scan.ply")))
+    with pytest.raises(UserError):
+        answer(solver, lambda frame: frame.revision == bad)
+    assert answer(solver, lambda _: True).revision == good
+
+
+def test_no_turn_is_made_while_a_frame_is_shown(solver: LiveSolver, built: Built) -> None:
+    design = replace(built("mannequin").design.with_line("mid-bust", 0.6), volume="conventional")
+    revision = solver.submit(design)
+    answer(solver, lambda frame: frame.revision == revision)
+    with solver.held():
+        time.sleep(0.1)
+        first = answer(solver, lambda _: True)
+        time.sleep(0.1)
+        second = answer(solver, lambda _: True)
+    assert len(second.tracks["adaptive"]) == len(first.tracks["adaptive"])
+    assert second.seconds == first.seconds, "what is not worked is not counted"
+
+
 def test_the_stages_at_work_are_named(built: Built) -> None:
     told: list[str] = []
     solver = LiveSolver(told.append)
