@@ -80,7 +80,6 @@ class Desk(QObject):
         window.rail.set_state("landmarks", "look" if weak else "done", weak)
         for step in ("lines", "result"):
             window.rail.set_state(step, "available")
-        window.status.set_facts(facts(frame))
         self.select_line(window.view.selected_line)
         window.view.viewport.setFocus()
         for sentence in frame.stages.control.warnings:
@@ -94,6 +93,7 @@ class Desk(QObject):
         self._window.lines.set_lines(line_views(design, frame, self._window.view.hidden_lines))
         percent = 1e5 * frame.error_ml / frame.stages.model.volume.rest_volume
         self._window.status.set_volume(percent, frame.error_ml)
+        self._window.status.set_facts(facts(frame))
         # Drawn together with the body while frames come, else a moment after the last one.
         if time.monotonic() >= self._plot_due:
             self.plot_now()

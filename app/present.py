@@ -12,6 +12,7 @@ from app.panels.landmarks import LandmarkView
 from app.panels.line_row import LineView
 from app.panels.result import MeasureView
 from app.panels.scan import ScanView
+from app.verdict_chip import state_title
 from app.words import number, tr
 from core.control_mesh import ControlMesh
 from core.design import Design
@@ -189,6 +190,7 @@ def facts(frame: Frame) -> list[str]:
         "mm",
         tr("{count} triangles").format(count=number(len(frame.stages.body.mesh.faces), 0)),
         tr("{count} control mesh").format(count=len(frame.stages.control.mesh.faces)),
+        state_title(frame.verdict.state),
     ]
 
 

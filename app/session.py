@@ -5,6 +5,7 @@ signals.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from PySide6.QtCore import QObject, QTimer, Signal
@@ -70,7 +71,8 @@ class Session(QObject):
             else:
                 self._begin(Design(ScanSource(str(Path(path).absolute()))), None)
         except UserError as error:
-            self.failed.emit(error)
+            # At start nobody listens yet: the window hears it once the event loop runs.
+            QTimer.singleShot(0, self, partial(self.failed.emit, error))
 
     def open_design(self, design: Design) -> None:
         """Open a design that has no file of its own yet, such as the sample."""

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import tempfile
+import threading
 from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 
 import pytest
+from PySide6.QtCore import QSettings
+from PySide6.QtWidgets import QApplication
 
 from core.design import Design, ScanSource, WornLine
 from core.pipeline import Stages, build
@@ -51,3 +55,13 @@ def built() -> Callable[[str], Stages]:
         return build(Design(ScanSource(str(SAMPLES / f"{sample}.ply")), lines=(WornLine("mid-bust", 0.97),)))
 
     return stages
+
+
+@pytest.fixture
+def empty_house(qapp: QApplication) -> Iterator[None]:
+    """Nothing of a window lives on after a test: no thread of ours, no window; its settings are fresh."""
+    QSettings().clear()
+    yield
+    gc.collect()
+    assert not [thread for thread in threading.enumerate() if thread.name.startswith("busk")]
+    assert not [widget for widget in QApplication.topLevelWidgets() if type(widget).__name__ == "MainWindow"]

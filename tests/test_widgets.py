@@ -206,6 +206,8 @@ def test_a_gap_is_toned_by_its_size_unless_the_line_is_off(
 
 def test_arrows_go_from_line_to_line_and_enter_into_the_number(lines: LinesPanel, qtbot: QtBot) -> None:
     waist = lines.rows["waist"]
+    lines.activateWindow()
+    qtbot.waitUntil(lines.isActiveWindow)
     waist.slider.setFocus()
     lines.select("waist")
     with qtbot.waitSignal(lines.selected) as said:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Generator
 
-from PySide6.QtCore import QCoreApplication, QTimer
+import numpy as np
+from PySide6.QtCore import QCoreApplication, QPoint, Qt, QTimer
+from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from shiboken6 import isValid
 
@@ -32,6 +34,24 @@ def settled(window: MainWindow) -> Callable[[], bool]:
     """The design of the session is solved to the end and has been drawn."""
 
     return window.is_settled
+
+
+def drag(window: MainWindow, name: str, pixels: int, release: bool = True) -> None:
+    """Drag the handle of a line's slider, as a hand does."""
+    slider = window.lines.rows[name].slider
+    start = QPoint(round(slider._x_of(slider.ratio())), slider.height() // 2)
+    QTest.mousePress(slider, Qt.MouseButton.LeftButton, pos=start)
+    for step in range(1, 6):
+        QTest.mouseMove(slider, start + QPoint(pixels * step // 5, 0))
+    if release:
+        QTest.mouseRelease(slider, Qt.MouseButton.LeftButton, pos=start + QPoint(pixels, 0))
+
+
+def points(window: MainWindow) -> np.ndarray:
+    """Where the moving part of the shown body is."""
+    frame = window.session.frame
+    assert frame is not None
+    return frame.points
 
 
 class _Player:
@@ -81,6 +101,3 @@ class _Player:
             self._window.session.undo_stack.setClean()
             self._window.close()
         QApplication.quit()
-
-
-__all__ = ["Script", "run_main", "settled"]

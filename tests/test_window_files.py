@@ -1,0 +1,127 @@
+"""What the window promises about files: saved, reopened, exported, and nothing lost when one is bad."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from PySide6.QtGui import QImage
+from PySide6.QtWidgets import QApplication, QMessageBox
+from window_tools import Script, drag, points, run_main, settled
+
+import app.desk
+from app.main_window import MainWindow
+from core.project import open_project
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+def test_a_project_is_saved_and_reopened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "customer 0412.busk"
+    monkeypatch.setattr(app.desk, "ask_save", lambda *_: str(path))
+    seen = []
+
+    def first(window: MainWindow) -> Script:
+        yield settled(window)
+        drag(window, "mid-bust", -20)
+        drag(window, "full-bust", -10)
+        yield settled(window)
+        assert "*" in window.windowTitle()
+        window.actions_.save.trigger()
+        assert "*" not in window.windowTitle()
+        seen.append((window.session.design, points(window).copy()))
+
+    def again(window: MainWindow) -> Script:
+        yield settled(window)
+        assert window.session.name == "customer 0412"
+        assert window.session.design is not None
+        assert window.session.design.lines == seen[0][0].lines
+        assert np.abs(points(window) - seen[0][1]).max() < 0.3
+
+    run_main([], first)
+    with zipfile.ZipFile(path) as archive:
+        assert set(archive.namelist()) == {"design.json", "scan/mannequin.ply", "preview.png"}
+        assert json.loads(archive.read("design.json"))["format"] == 1
+        assert QImage.fromData(archive.read("preview.png")).width() == 480
+    run_main([str(path)], again)
+
+
+def test_the_shown_body_is_exported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        for ending in ("ply", "obj", "stl"):
+            path = tmp_path / f"body.{ending}"
+            monkeypatch.setattr(app.desk, "ask_save", lambda *_, path=path: str(path))
+            window.actions_.export.trigger()
+            body = trimesh.load(path, process=False)
+            assert len(body.faces) == 65742
+            frame = window.session.frame
+            assert frame is not None
+            if ending != "stl":
+                moved = np.asarray(body.vertices)[frame.stages.moving.vertices]
+                assert np.abs(moved - frame.points).max() < 1e-3
+
+    run_main([], script)
+
+
+def test_a_bad_scan_leaves_everything_as_it_was(tmp_path: Path) -> None:
+    broken = tmp_path / "broken.ply"
+    broken.write_bytes(b"ply\nformat ascii 1.0\nelement vertex 3\n")
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        design, at_start = window.session.design, points(window).copy()
+        window.desk.open_file(str(broken))
+        yield lambda: window.notices.notice() is not None
+        notice = window.notices.notice()
+        assert notice is not None
+        assert notice.tone == "bad"
+        assert notice.hint
+        yield settled(window)
+        assert window.session.design is design
+        assert np.abs(points(window) - at_start).max() < 0.2
+
+    run_main([], script)
+
+
+@pytest.mark.parametrize("answer", ["discard", "stay", "save"])
+def test_closing_asks_about_changes(answer: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "kept.busk"
+    monkeypatch.setattr(app.desk, "ask_about_changes", lambda *_: answer)
+    monkeypatch.setattr(app.desk, "ask_save", lambda *_: str(path))
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        drag(window, "mid-bust", -20)
+        yield settled(window)
+        closed = window.close()
+        assert closed == (answer != "stay")
+        assert path.exists() == (answer == "save")
+
+    run_main([], script)
+    if answer == "save":
+        assert open_project(path).ratio("mid-bust") < 0.95
+
+
+def test_the_question_offers_three_ways(qapp: QApplication, monkeypatch: pytest.MonkeyPatch) -> None:
+    given = []
+    monkeypatch.setattr(
+        QMessageBox, "exec", lambda box: given.append(box.text()) or QMessageBox.StandardButton.Cancel.value
+    )
+    assert app.desk.ask_about_changes(None, "Customer 0412") == "stay"
+    assert "Customer 0412" in given[0]
+
+
+def test_a_project_that_cannot_be_opened_at_start_is_told(tmp_path: Path) -> None:
+    (tmp_path / "broken.busk").write_bytes(b"no zip at all")
+
+    def script(window: MainWindow) -> Script:
+        yield lambda: window.notices.notice() is not None
+        assert window.session.frame is None
+        assert not window.actions_.save.isEnabled()
+
+    run_main([str(tmp_path / "broken.busk")], script)
