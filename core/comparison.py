@@ -59,7 +59,6 @@ class Comparison:
         records at turn 0.
         """
         self.model, self.targets = model, targets
-        # From rest, so that the answer depends on the design alone and not on the way there.
         self.exact = solve_exact(model, targets.ratios)
         self._set_runs(fresh)
 

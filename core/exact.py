@@ -63,8 +63,9 @@ class Energy:
         return np.asarray(self.cables @ moved + self.model.signs.T @ (tension[:, None] * spans))
 
     def hessian(self, moved: Points, clip: bool) -> Floats:
-        """Return the second derivative, shape (3 f, 3 f); ``clip`` leaves out what compressed lines take from
-        it.
+        """Return the second derivative, shape (3 f, 3 f).
+
+        ``clip`` leaves out what compressed lines take from it.
         """
         spans, length = self._spans(moved)
         u = spans / length[:, None]
@@ -79,21 +80,22 @@ class Energy:
         return np.asarray(self.model.cable_hessian + lines)
 
 
-def solve_exact(
-    model: ConstrainedModel, ratios: tuple[float, ...], start: State | None = None, limit: int = NEWTON_LIMIT
-) -> Balance:
-    """Return the exact balance for line ``ratios``, one per line; ``start`` may be a neighbouring answer."""
-    *_, last = newton(model, ratios, start, limit)
+def solve_exact(model: ConstrainedModel, ratios: tuple[float, ...], limit: int = NEWTON_LIMIT) -> Balance:
+    """Return the exact balance for line ``ratios``, one per line."""
+    *_, last = newton(model, ratios, limit)
     return last
 
 
 def newton(
-    model: ConstrainedModel, ratios: tuple[float, ...], start: State | None = None, limit: int = NEWTON_LIMIT
+    model: ConstrainedModel, ratios: tuple[float, ...], limit: int = NEWTON_LIMIT
 ) -> Iterator[Balance]:
-    """Yield each Newton iterate, the start included, until exact or ``limit`` steps are made."""
+    """Yield each Newton iterate from rest, rest included, until exact or ``limit`` steps are made.
+
+    It always starts at rest, so that the answer depends on the design alone and not on the way there.
+    """
     energy = Energy(model, ratios)
     wanted = model.volume.side_volumes(model.tensegric.rest)
-    moved = (at_rest(model) if start is None else start).moved
+    moved = at_rest(model).moved
     pressures, residual = np.zeros(2), np.inf
     for step in range(limit + 1):
         gradient = energy.gradient(moved).ravel()
@@ -140,9 +142,7 @@ def _line_search(
     wanted: Floats,
     slope: float,
 ) -> Points | None:
-    """Return the longest of the halved steps that lowers the energy after retraction to the volumes, if any
-    does.
-    """
+    """Return where the longest halved step that lowers the energy leads, brought to the volumes, or None."""
     here = energy.value(moved)
     length = 1.0
     while length > 1e-6:
@@ -157,9 +157,7 @@ def _line_search(
 
 
 def _retract(model: ConstrainedModel, moved: Points, push: Floats, wanted: Floats) -> Points | None:
-    """Return ``moved`` shifted along ``push`` (3 f, 2) until both breast volumes are exactly the ``wanted``
-    ones.
-    """
+    """Return ``moved`` shifted along ``push`` (3 f, 2) until both breasts have their ``wanted`` volumes."""
     tolerance = 1e-13 * abs(model.volume.rest_volume)
     for _ in range(12):
         points = model.tensegric.expand(moved)

@@ -32,15 +32,6 @@ class Section:
 def cut(mesh: Mesh, origin: npt.ArrayLike, normal: npt.ArrayLike) -> Section:
     """Cut ``mesh`` with the plane through ``origin`` [mm] with ``normal`` [1]."""
     side = (mesh.vertices - np.asarray(origin, dtype=np.float64)) @ np.asarray(normal, dtype=np.float64)
-    return _cut_by_side(mesh, side)
-
-
-def cut_level(mesh: Mesh, z: float) -> Section:
-    """Cut ``mesh`` with the horizontal plane at height ``z`` [mm]."""
-    return _cut_by_side(mesh, mesh.vertices[:, 2] - z)
-
-
-def _cut_by_side(mesh: Mesh, side: Floats) -> Section:
     above = side >= 0.0
     count = above[mesh.faces].sum(axis=1)
     faces = mesh.faces[(count == 1) | (count == 2)]

@@ -10,7 +10,7 @@ from shapes import central_difference, fitted, mid_bust, mirrored, tent, torso
 
 from core.exact import Energy, newton, solve_exact
 from core.lines import line_on
-from core.solver import State, Targets, assemble, at_rest, constrained_model, iterate
+from core.solver import Targets, assemble, constrained_model, iterate
 from core.tensegric import tensegric_model
 from core.volume import volume_measure
 
@@ -222,21 +222,6 @@ def test_a_body_twice_as_large_moves_twice_as_far():
     )
 
 
-def test_a_neighbouring_answer_is_a_good_start():
-    near = solve_exact(TORSO, mid_bust(TORSO, 0.9))
-    warm = solve_exact(TORSO, mid_bust(TORSO, 0.89), near.state)
-    cold = solve_exact(TORSO, mid_bust(TORSO, 0.89))
-    np.testing.assert_allclose(warm.state.moved, cold.state.moved, atol=1e-9)
-    assert warm.steps < cold.steps
-
-
-def test_an_answer_that_was_found_before_stays():
-    found = solve_exact(SKEW, (1.0, 0.8, 0.9))
-    again = solve_exact(SKEW, (1.0, 0.8, 0.9), found.state)
-    assert again.found
-    np.testing.assert_allclose(again.state.moved, found.state.moved, atol=1e-10)
-
-
 def test_a_solve_that_may_not_take_its_steps_says_so():
     balance = solve_exact(TORSO, mid_bust(TORSO, 0.7), limit=2)
     assert not balance.found
@@ -279,10 +264,3 @@ def test_real_bodies_with_one_line_and_with_all(sample):
         for ratio in RATIOS:
             ratios = tuple(ratio if line.name in worn else 1.0 for line in model.lines)
             assert_exact(model, solve_exact(model, ratios))
-
-
-def test_the_start_is_not_written_to():
-    start = at_rest(TORSO)
-    solve_exact(TORSO, mid_bust(TORSO, 0.8), start)
-    np.testing.assert_array_equal(start.moved, 0.0)
-    assert isinstance(start, State)

@@ -7,9 +7,13 @@ from hypothesis import strategies as st
 from shapes import octahedron, sphere, torso
 
 from core.mesh import Mesh
-from core.sections import arc_length, chains, cut, cut_level, hull_perimeter, resample
+from core.sections import arc_length, chains, cut, hull_perimeter, resample
 
 BALL = sphere(rings=31, spokes=64)
+
+
+def cut_level(mesh, z):
+    return cut(mesh, (0.0, 0.0, z), (0.0, 0.0, 1.0))
 
 
 def length_of(section):
