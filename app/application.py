@@ -30,10 +30,10 @@ os.environ.setdefault("PYQTGRAPH_QT_LIB", "PySide6")
 
 
 def application(language: str | None = None, dark: bool | None = None) -> QApplication:
-    """Return the application, made if there is none; language and theme fall back to what the user chose
-    last.
+    """Return the application, made if there is none.
 
-    Raises UserError for a pair of Python and Qt that is known to crash.
+    Language and theme fall back to what the user chose last. Raises UserError for a pair of
+    Python and Qt that is known to crash.
     """
     _refuse_bad_pair()
     existing = QApplication.instance()

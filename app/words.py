@@ -42,8 +42,9 @@ def tr(english: str) -> str:
 
 
 def say(english: str) -> str:
-    """Return what the core says, one or more sentences with names and numbers filled in, in the language
-    of the window; a sentence that no pattern fits stays as it is.
+    """Return what the core says in the language of the window.
+
+    ``english`` is one or more sentences with names and numbers filled in; one that no pattern fits stays.
     """
     for pattern, translated in _messages:
         match = pattern.fullmatch(english)

@@ -21,8 +21,9 @@ TEMPLATES = ("168", "120")
 
 @dataclass(frozen=True)
 class ScanSource:
-    """Where the scan lies: a file, or ``member`` of the project file ``path``; unit and axes if they were set
-    by hand.
+    """Where the scan lies: the file ``path``, or ``member`` of the project ``path``.
+
+    ``unit``, ``up`` and ``front`` are None unless they were set by hand.
     """
 
     path: str

@@ -1,6 +1,4 @@
-"""What is found on a scan, as plain values for other programs: landmarks in the file's own frame and in mm,
-levels, girths.
-"""
+"""What is found on a scan, as plain values for other programs: landmarks, levels, girths, pose."""
 
 from __future__ import annotations
 
@@ -14,7 +12,10 @@ from core.measure import girths
 
 
 def detection(body: Body) -> dict[str, Any]:
-    """Return landmarks, levels [mm], girths [mm] and pose of a body, ready for JSON. Raises LandmarkError."""
+    """Return landmarks, levels [mm], girths [mm] and pose of a body, ready for JSON.
+
+    A landmark stands there in the file's own frame and in mm. Raises LandmarkError.
+    """
     landmarks = find_landmarks(body)
     to_file = np.linalg.inv(body.pose.file_to_mm)
     marks = {

@@ -15,8 +15,9 @@ FORMATS = ("ply", "obj", "stl")
 
 
 def write_mesh(path: str | os.PathLike[str], mesh: Mesh) -> None:
-    """Write ``mesh`` [mm] as PLY, OBJ or STL by the name's ending; raises UserError for another ending or
-    place.
+    """Write ``mesh`` [mm] as PLY, OBJ or STL by the name's ending.
+
+    Raises UserError for another ending, or a place that cannot be written to.
     """
     target = Path(path).absolute()
     kind = target.suffix.lower().lstrip(".")

@@ -58,9 +58,7 @@ def segment_lengths(points: Points, path: Indices) -> Floats:
 
 
 def line_on(name: str, path: npt.ArrayLike, points: Points, free: Indices, back_length: float = 0.0) -> Line:
-    """Lay a line over the control points of a model at rest; its natural length is read there (paper section
-    3).
-    """
+    """Lay a line over control points at rest; its natural length is read there (paper section 3)."""
     nodes = np.asarray(path, dtype=np.int64)
     nodes.setflags(write=False)
     constrains = bool(np.isin(nodes, free).any())

@@ -16,7 +16,7 @@ class MovingFaces:
     """The faces of a body that move with some of its vertices; made by ``moving_faces``.
 
     ``faces`` are these faces, shape (a, 3), and ``vertices`` all their corners, shape (r,), ascending: the
-    vertices whose normals change.  ``sides`` are two operators, shape (a, N), that give the sides of each
+    vertices whose normals change. ``sides`` are two operators, shape (a, N), that give the sides of each
     face from its first corner; ``gather``, shape (r, a), sums face values at ``vertices``; ``still`` is twice
     the area vectors of the other faces there, shape (r, 3) [mm^2].
     """

@@ -31,7 +31,7 @@ COVERED = 0.9
 class Patch:
     """How far each vertex of the body follows the control mesh.
 
-    ``fade`` has shape (N,): 0 outside the patch .. 1 well inside.  ``rule`` is "flood" when the border could
+    ``fade`` has shape (N,): 0 outside the patch .. 1 well inside. ``rule`` is "flood" when the border could
     be drawn on the surface; "distance" when a hole or a loose piece prevented that, and ``reason`` says what.
     """
 
@@ -48,7 +48,7 @@ def patch_fade(body: Mesh, control: ControlMesh, fade: float = 25.0) -> Patch:
     """Find the patch of ``body`` under ``control``, with a soft border ``fade`` wide [mm] (ours).
 
     Shortest edge paths between the border control points fence it in, a flood from the bust points fills it,
-    and the fade is a smooth step of the distance along the surface to that fence.  Where the fence has a gap
+    and the fade is a smooth step of the distance along the surface to that fence. Where the fence has a gap
     or the flood escapes, the fade follows from the nearest place on the control mesh instead.
     """
     try:

@@ -64,8 +64,9 @@ class Stages:
         return self.watch(self.control.mesh.vertices)
 
     def shape(self, control_points: Points) -> tuple[Points, Points]:
-        """Return places [mm] and normals [1], shapes (r, 3), of ``moving.vertices`` for control points (n, 3)
-        [mm].
+        """Return places [mm] and normals [1] of ``moving.vertices``, each of shape (r, 3).
+
+        ``control_points`` have shape (n, 3) [mm].
         """
         positions = deform(self.binding, control_points)
         return positions[self.moving.vertices], self.moving.normals(positions)

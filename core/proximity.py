@@ -17,7 +17,7 @@ _FLAT = 1e-10
 class Pairs:
     """Point-triangle pairs, ordered by point, each with the point's place in the triangle's frame.
 
-    ``point`` and ``triangle`` are the indices, shape (p,).  With corner v0, sides e1, e2 and unit normal n
+    ``point`` and ``triangle`` are the indices, shape (p,). With corner v0, sides e1, e2 and unit normal n
     the point is v0 + u e1 + v e2 + h n; ``u``, ``v`` [1] and ``h`` [mm] have shape (p,).
     """
 

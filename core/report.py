@@ -25,8 +25,9 @@ MOST_TURNS = 300
 
 
 class Solution:
-    """A design solved to the end in one go: its records, last state and verdict; ``rest`` is the record
-    before the first turn.
+    """A design solved to the end in one go: its records, last state and verdict.
+
+    ``rest`` is the record before the first turn.
     """
 
     def __init__(
@@ -104,9 +105,7 @@ def write_turns(path: str | os.PathLike[str], records: Sequence[Record], lines: 
 
 
 def report(solution: Solution) -> dict[str, Any]:
-    """Return the final figures of a solution, with definitions, versions and seconds per stage, ready for
-    JSON.
-    """
+    """Return the final figures of a solution, with definitions, versions and seconds, ready for JSON."""
     stages, last, verdict = solution.stages, solution.last, solution.verdict
     volume = stages.model.volume.rest_volume
     return {
@@ -130,15 +129,7 @@ def report(solution: Solution) -> dict[str, Any]:
             for line, reached in zip(stages.model.lines, last.lengths, strict=True)
         },
         "marks": {"rest": _marks(solution.rest), "final": _marks(last)},
-        "settings": {
-            "template": stages.design.template,
-            "line_height": stages.design.line_height,
-            "line_stiffness": stages.design.line_stiffness,
-            "line_contact": stages.design.line_contact,
-            "weights": stages.design.weights,
-            "gain": stages.gain,
-            "gain_limit_at_rest": stages.gain_limit,
-        },
+        "settings": _settings(stages),
         "notes": notes(stages),
         "seconds": {name: round(seconds, 4) for name, seconds in stages.seconds.items()},
         "versions": {
@@ -147,6 +138,18 @@ def report(solution: Solution) -> dict[str, Any]:
             **{name: version(name) for name in _LIBRARIES},
         },
         "design": json.loads(to_json(stages.design)),
+    }
+
+
+def _settings(stages: Stages) -> dict[str, Any]:
+    return {
+        "template": stages.design.template,
+        "line_height": stages.design.line_height,
+        "line_stiffness": stages.design.line_stiffness,
+        "line_contact": stages.design.line_contact,
+        "weights": stages.design.weights,
+        "gain": stages.gain,
+        "gain_limit_at_rest": stages.gain_limit,
     }
 
 

@@ -62,8 +62,9 @@ class ConstrainedModel:
 
     @cached_property
     def line_scatter(self) -> sparse.csr_array:
-        """The linear map from the segments' 3 x 3 blocks (9 s,) to a matrix over the free coordinates (9
-        f^2,).
+        """The linear map from the segments' 3 x 3 blocks to a matrix over the free coordinates.
+
+        Both lie there as rows: shapes (9 s,) and (9 f^2,).
         """
         segment, i, j = (at.ravel() for at in np.indices((len(self.pairs), *2 * (self.signs.shape[1],))))
         value = self.signs[segment, i] * self.signs[segment, j]
@@ -99,8 +100,9 @@ class ConstrainedModel:
         return self.volume.rest_volume / self.probe
 
     def natural_lengths(self, ratios: tuple[float, ...]) -> Floats:
-        """Return the natural lengths of the worn segments for a ratio per line, shape (s,) [mm] (paper
-        section 3).
+        """Return the natural lengths of the worn segments for a ratio per line, shape (s,) [mm].
+
+        Source: paper section 3.
         """
         return np.asarray(np.asarray(ratios)[self.owner] * self.rest_segments)
 
@@ -145,8 +147,9 @@ def assemble(
     worn: Collection[str],
     line_stiffness: float = DEFAULT_LINE_STIFFNESS,
 ) -> ConstrainedModel:
-    """Join the parts of a model; a line that is not worn, or lies on fixed points alone, is measured but does
-    not pull.
+    """Join the parts of a model.
+
+    A line that is not worn, or lies on fixed points alone, is measured but does not pull.
     """
     unit = line_stiffness * tensegric.mean_stiffness
     pulling = [(index, line) for index, line in enumerate(lines) if line.constrains and line.name in worn]
@@ -167,9 +170,7 @@ def assemble(
 
 @dataclass(frozen=True)
 class Targets:
-    """All that can change while a run goes on: a ratio per line [1], the volume control, and its gain (probe
-    units).
-    """
+    """All that can change while a run goes on: a ratio per line [1], volume control, gain [probe units]."""
 
     ratios: tuple[float, ...]
     control: str = "adaptive"
@@ -207,8 +208,9 @@ class Record:
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """Where a run stands: displacements of the free points, shape (f, 3) [mm], and the pressure of the coming
-    turn.
+    """Where a run stands: displacements of the free points, shape (f, 3) [mm], and the turns made.
+
+    ``pressure`` is that of the coming turn.
     """
 
     moved: Points
@@ -238,8 +240,9 @@ def record(model: ConstrainedModel, state: State, step: float, watch: Watch | No
 def turn(
     model: ConstrainedModel, targets: Targets, state: State, watch: Watch | None = None
 ) -> tuple[State, Record]:
-    """Make one turn (paper section 5): every point to its local balance, then measure, then refresh the
-    forces.
+    """Make one turn: every point to its local balance, then measure, then refresh the forces.
+
+    Source: paper section 5.
     """
     first, second = model.sweep
     points = model.tensegric.expand(state.moved)

@@ -48,9 +48,7 @@ class TensegricModel:
         return float(np.mean(np.diag(self.stiffness)))
 
     def expand(self, moved: Points) -> Points:
-        """Return all control points, shape (n, 3) [mm], with the free ones displaced by ``moved``, shape (f,
-        3).
-        """
+        """Return all control points, shape (n, 3) [mm], the free ones displaced by ``moved`` (f, 3)."""
         points = self.rest.copy()
         points[self.free] += moved
         return points
@@ -66,8 +64,9 @@ def tensegric_model(mesh: Mesh, fixed: Flags) -> TensegricModel:
 
 
 def incidence_of(place: Indices, pairs: Indices) -> Floats:
-    """Return the signed incidence of ``pairs`` (s, 2) on the free points, shape (s, f): +1 first, -1 second
-    end.
+    """Return the signed incidence of ``pairs`` (s, 2) on the free points, shape (s, f).
+
+    It is +1 at the first end and -1 at the second.
     """
     signs = np.zeros((len(pairs), int(place.max(initial=-1)) + 1))
     rows = np.arange(len(pairs))

@@ -28,7 +28,7 @@ NEGLIGIBLE = 1e-3
 class Binding:
     """How the vertices of a body follow its control mesh: a linear operator on what the control mesh changes.
 
-    ``moving`` are the vertices that can move, shape (k,), ascending.  ``operator`` has shape (k, n + m): its
+    ``moving`` are the vertices that can move, shape (k,), ascending. ``operator`` has shape (k, n + m): its
     columns are the n control points and the m normals of the control triangles.
     """
 
@@ -68,7 +68,7 @@ def bind(
     """Bind the vertices of ``body`` to the triangles of ``control``.
 
     ``fade`` scales the motion of each vertex, shape (N,), 0 still .. 1 full; vertices without fade or without
-    weight keep their place.  Weights "paper" are the hat in the distance to the centroid of the 2003 paper,
+    weight keep their place. Weights "paper" are the hat in the distance to the centroid of the 2003 paper,
     "smooth" is a Gauss curve in the distance to the triangle (ours).
     """
     candidates = np.flatnonzero(fade > 0.0)

@@ -1,5 +1,6 @@
-"""Whether a run settles, vibrates or diverges: a small pure function of its records (ours; paper section 5
-names the cases).
+"""Whether a run settles, vibrates or diverges: a small pure function of its records.
+
+Paper section 5 names the cases; the figures are ours.
 """
 
 from __future__ import annotations

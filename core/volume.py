@@ -1,5 +1,6 @@
-"""The volume of the control mesh, its gradient and curvature, and the laws that hold it (paper sections 4 and
-5).
+"""The volume of the control mesh, its gradient and curvature, and the laws that hold it.
+
+Source: paper sections 4 and 5.
 """
 
 from __future__ import annotations
@@ -24,9 +25,9 @@ def _cross(a: Points, b: Points) -> Points:
 
 @dataclass(frozen=True, eq=False)
 class VolumeMeasure:
-    """The volume between the control mesh and the fan from the centre of its border (closed mesh: any
-    centre).
+    """The volume between the control mesh and the fan from the centre of its border.
 
+    A closed mesh may have any centre.
     The border is fixed, so a volume *difference* does not depend on the centre; ``rest_volume`` [mm^3] and
     with it every percentage does. ``faces`` (m, 3) are the triangles that can move, ``left`` (m,) those of
     the subject's left breast; ``still_volume`` [mm^3] is the share of all other triangles.

@@ -1,6 +1,4 @@
-"""What is watched on the body turn by turn: the heights of its bust points, and its foremost point (the
-apex).
-"""
+"""What is watched on the body turn by turn: the heights of its bust points, and its foremost place."""
 
 from __future__ import annotations
 
@@ -21,8 +19,7 @@ _CANDIDATES = 400
 
 
 class BodyWatch:
-    """Follows a few hundred body vertices through t-FFD, so that a turn can be measured without moving them
-    all.
+    """Follows a few hundred body vertices through t-FFD, so that a turn is measured without moving them all.
 
     The bust points are the body vertices nearest to the landmarks. The apex of a breast is the mean of its 12
     foremost vertices, because a single foremost vertex jumps about on a flat breast. Protrusion is the
