@@ -5,11 +5,12 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import re
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from core import __version__
 from core.design import Design, ScanSource
@@ -17,7 +18,7 @@ from core.errors import LineError, UserError
 from core.lines import length_ratio
 from core.project import is_project, open_project
 
-SETTLED, BAD_INPUT, NOT_SETTLED = 0, 2, 3
+SETTLED, PIPE_CLOSED, BAD_INPUT, NOT_SETTLED = 0, 1, 2, 3
 SETTINGS: dict[str, Callable[[str], Any]] = {
     "gain": float,
     "line_stiffness": float,
@@ -29,21 +30,38 @@ SETTINGS: dict[str, Callable[[str], Any]] = {
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run ``busk``; the exit code is 0 settled or done, 3 not settled, 2 bad input with one sentence on
-    stderr.
-    """
-    words = list(sys.argv[1:] if arguments is None else arguments)
-    try:
-        if words and words[0] in COMMANDS:
-            options = _parser(words[0]).parse_args(words[1:])
-            return COMMANDS[words[0]][1](options)
-        options = _window_parser().parse_args(words)
-        from app.window import run_window
+    """Run ``busk`` and return its exit code.
 
-        return run_window(options.file)
+    It is 0 for settled or done, 3 for not settled, 2 for bad input, with one sentence on stderr.
+    """
+    try:
+        code = _run(list(sys.argv[1:] if arguments is None else arguments))
+        print(end="", flush=True)
+        return code
     except UserError as error:
         print(f"busk: {error}", file=sys.stderr)
         return BAD_INPUT
+    except BrokenPipeError:
+        # Who reads the answer has enough of it (busk detect ... | head): no error of ours.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        return PIPE_CLOSED
+
+
+def _run(words: list[str]) -> int:
+    if words and words[0] in COMMANDS:
+        options = _parser(words[0]).parse_args(words[1:])
+        return COMMANDS[words[0]][1](options)
+    options = _window_parser().parse_args(words)
+    from app.window import run_window
+
+    return run_window(options.file)
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong with the words of a command as all other bad input is said."""
+
+    def error(self, message: str) -> NoReturn:
+        raise UserError(f"{message[:1].upper()}{message[1:]}.", f"See '{self.prog} --help'.")
 
 
 def design_of(path: str, options: argparse.Namespace) -> Design:
@@ -172,7 +190,7 @@ def _folder(name: str) -> Path:
 
 def _window_parser() -> argparse.ArgumentParser:
     commands = "\n".join(f"  busk {name:10} {help_}" for name, (help_, _) in COMMANDS.items())
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="busk",
         description="See how a foundation garment reshapes a body.",
         epilog=f"without a window:\n{commands}\n\n'busk COMMAND --help' tells more.",
@@ -184,7 +202,7 @@ def _window_parser() -> argparse.ArgumentParser:
 
 
 def _parser(command: str) -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog=f"busk {command}", description=COMMANDS[command][0])
+    parser = _Parser(prog=f"busk {command}", description=COMMANDS[command][0])
     if command in ("solve", "detect", "picture"):
         parser.add_argument("input", metavar="SCAN_OR_PROJECT", help="PLY, OBJ, STL or .busk")
         parser.add_argument(
@@ -221,15 +239,16 @@ def _parser(command: str) -> argparse.ArgumentParser:
 
 
 def _turns(text: str) -> int:
-    turns = int(text)
-    if not 1 <= turns <= 100_000:
-        raise argparse.ArgumentTypeError("a number of turns from 1 to 100000")
-    return turns
+    if not (text.isdecimal() and 1 <= int(text) <= 100_000):
+        raise argparse.ArgumentTypeError(f"'{text}' is no number of turns from 1 to 100000")
+    return int(text)
 
 
 def _size(text: str) -> tuple[int, int]:
-    width, _, height = text.partition("x")
-    return int(width), int(height)
+    match = re.fullmatch(r"([1-9]\d{1,3})x([1-9]\d{1,3})", text)
+    if match is None:
+        raise argparse.ArgumentTypeError(f"'{text}' is no size like 1600x1000")
+    return int(match[1]), int(match[2])
 
 
 COMMANDS: dict[str, tuple[str, Callable[[argparse.Namespace], int]]] = {
@@ -239,12 +258,3 @@ COMMANDS: dict[str, tuple[str, Callable[[argparse.Namespace], int]]] = {
     "demo": ("do the sample session off-screen and write what comes out", demo),
     "self-test": ("check this installation", self_test),
 }
-
-if __name__ == "__main__":
-    # A closed pipe (busk detect ... | head) is no error of ours.
-    try:
-        code = main()
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-        code = 1
-    sys.exit(code)

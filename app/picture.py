@@ -27,6 +27,7 @@ def draw_picture(
     size: tuple[int, int] = (1600, 1000),
 ) -> None:
     """Write a PNG of the reshaped body from one side. Raises UserError."""
+    _check_name(out)
     off_screen()
     import pyvista as pv
 
@@ -61,7 +62,7 @@ def draw_picture(
     try:
         plotter.screenshot(str(out))
     except (OSError, ValueError) as problem:
-        raise UserError(f"{out} cannot be written.", "Choose a name that ends in .png.") from problem
+        raise UserError(f"{out} cannot be written.", "Choose another folder.") from problem
     finally:
         plotter.close()
 
@@ -75,6 +76,7 @@ def draw_window(
     size: tuple[int, int] = (1600, 1000),
 ) -> None:
     """Write a PNG of the whole window on a settled design. Raises UserError."""
+    _check_name(out)
     with settled_window(design, dark=dark, language=language, size=size) as window:
         save_window(window, out)
 
@@ -118,7 +120,12 @@ def save_window(window: MainWindow, out: Path) -> None:
     still = time.monotonic() + 0.6
     wait_until(lambda: time.monotonic() > still, QApplication.processEvents)
     if not window.grab().save(str(out)):
-        raise UserError(f"{out} cannot be written.", "Choose a name that ends in .png.")
+        raise UserError(f"{out} cannot be written.", "Choose another folder.")
+
+
+def _check_name(out: Path) -> None:
+    if out.suffix.lower() != ".png":
+        raise UserError(f"{out} is no name for a picture.", "Choose one that ends in .png.")
 
 
 def wait_until(ready: Callable[[], bool], turn: Callable[[], None]) -> None:

@@ -135,6 +135,45 @@ def test_bad_requests_get_one_sentence(
     assert not (tmp_path / "out" / "body.ply").exists()
 
 
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["--frob"], "Unrecognized arguments: --frob"),
+        (["solve", "body.ply"], "required: --out"),
+        (["solve", "body.ply", "--out", "o", "--turns", "abc"], "'abc' is no number of turns"),
+        (["solve", "body.ply", "--out", "o", "--turns", "0"], "'0' is no number of turns"),
+        (["solve", "body.ply", "--out", "o", "--volume", "all"], "invalid choice: 'all'"),
+        (["picture", "body.ply", "--out", "a.png", "--size", "0x0"], "'0x0' is no size"),
+        (["picture", "body.ply", "--out", "a.png", "--size", "800"], "'800' is no size"),
+        (["picture", "body.ply", "--out", "a"], "ends in .png"),
+        (["picture", "body.ply", "--out", "a.jpg", "--window"], "ends in .png"),
+    ],
+)
+def test_bad_words_get_one_sentence(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    words: list[str],
+    sentence: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(words) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("busk: ")
+    assert sentence in said
+    assert said.count("\n") == 1
+
+
+def test_a_reader_who_leaves_early_meets_no_traceback(mannequin: Path) -> None:
+    command = [sys.executable, "-m", "app", "detect", str(mannequin), "--json"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as busk:
+        assert busk.stdout is not None
+        assert busk.stderr is not None
+        busk.stdout.close()
+        assert busk.stderr.read() == b""
+    assert busk.returncode == 1
+
+
 @pytest.mark.parametrize("name", ["gone.ply", "note.txt", "broken.ply", "broken.busk"])
 def test_bad_files_get_one_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str) -> None:
     path = tmp_path / name
