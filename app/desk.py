@@ -34,6 +34,7 @@ from app.words import tr
 from core.design import Design
 from core.errors import UserError
 from core.live import Frame
+from core.pipeline import Stages
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -57,8 +58,9 @@ class Desk(QObject):
         self._plot_clock = QTimer(self, interval=PLOT_INTERVAL, singleShot=True)
         self._plot_clock.timeout.connect(self.plot_now)
         settings = QSettings()
-        window.actions_.themes[str(settings.value("theme", "system"))].setChecked(True)
-        window.actions_.languages[str(settings.value("language", "en"))].setChecked(True)
+        themes, languages = window.actions_.themes, window.actions_.languages
+        themes.get(str(settings.value("theme")), themes["system"]).setChecked(True)
+        languages.get(str(settings.value("language")), languages["en"]).setChecked(True)
         window.actions_.strip.setChecked(True)
         self.go_to("lines")
         self.show_title()
@@ -67,27 +69,25 @@ class Desk(QObject):
 
     def show_opened(self, frame: Frame) -> None:
         """Show a document that has just been opened."""
-        window, design = self._window, self._session.design
+        window = self._window
         window.actions_.enable_document()
-        self.show_title()
         window.notices.clear()
-        landmarks = frame.stages.landmarks
-        window.landmarks.set_landmarks(landmark_views(landmarks))
-        if design is not None:
-            window.scan.set_scan(scan_view(design, frame.stages))
-        weak = sum(tone_of(mark.confidence) != "ok" for mark in landmarks.points.values())
-        window.rail.set_state("scan", "done" if frame.stages.body.pose.sure else "look", 1)
-        window.rail.set_state("landmarks", "look" if weak else "done", weak)
-        for step in ("lines", "result"):
-            window.rail.set_state(step, "available")
+        self.show_title()
         self.select_line(window.view.selected_line)
         window.view.viewport.setFocus()
+        pose = frame.stages.body.pose
+        if not pose.sure:
+            window.notices.show_notice(
+                "warn", tr("Busk is not sure how this scan stands."), pose.reason, lasting=True
+            )
         for sentence in frame.stages.control.warnings:
             window.notices.show_notice("warn", sentence, lasting=True)
 
     def show_frame(self, frame: Frame) -> None:
         """Show how far the solver has come."""
         design = frame.stages.design
+        if self._frame is None or frame.stages.landmarks is not self._frame.stages.landmarks:
+            self._show_found(frame.stages)
         self._frame = frame
         self._window.view.show_frame(frame, design)
         self._window.lines.set_lines(line_views(design, frame, self._window.view.hidden_lines))
@@ -99,6 +99,15 @@ class Desk(QObject):
             self.plot_now()
         elif not self._plot_clock.isActive():
             self._plot_clock.start()
+
+    def _show_found(self, stages: Stages) -> None:
+        """Show what was understood of the scan, and found on it."""
+        window, marks = self._window, stages.landmarks.points.values()
+        window.landmarks.set_landmarks(landmark_views(stages.landmarks))
+        window.scan.set_scan(scan_view(stages))
+        weak = sum(tone_of(mark.confidence) != "ok" for mark in marks)
+        window.rail.set_state("scan", "done" if stages.body.pose.sure else "look", 1)
+        window.rail.set_state("landmarks", "look" if weak else "done", weak)
 
     def show_design(self, design: Design) -> None:
         """Show what was decided."""

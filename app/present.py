@@ -151,11 +151,11 @@ def landmark_views(landmarks: Landmarks) -> list[LandmarkView]:
     ]
 
 
-def scan_view(design: Design, stages: Stages) -> ScanView:
+def scan_view(stages: Stages) -> ScanView:
     """Return the facts of the scan."""
     pose = stages.body.pose
     return ScanView(
-        design.scan.name,
+        stages.scan.name,
         pose.unit,
         pose.reason,
         pose.sure,
