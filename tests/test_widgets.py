@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import pytest
 from gallery import Mock
@@ -190,6 +191,19 @@ def test_rows_stay_while_values_change(lines: LinesPanel) -> None:
     assert any(text.startswith("+1.9") for text in said), "reached minus set"
     assert any("95.0 % of the front part, side to side" in text for text in said)
     assert any("680.0 of 700.0 mm (97.1 %)" in text for text in said)
+
+
+def test_the_numbers_of_a_dragged_line_stay_with_the_hand(lines: LinesPanel) -> None:
+    row = lines.rows["waist"]
+    hold(row.slider, QEvent.Type.MouseButtonPress, row.slider._x_of(1.0))
+    hold(row.slider, QEvent.Type.MouseMove, row.slider._x_of(0.95))
+    ahead = row.percent.text()
+    assert ahead.startswith("95")
+    lines.set_lines([replace(WAIST, ratio=0.97), RIBS])
+    assert row.percent.text() == ahead
+    hold(row.slider, QEvent.Type.MouseButtonRelease, row.slider._x_of(0.95))
+    lines.set_lines([replace(WAIST, ratio=0.97), RIBS])
+    assert row.percent.text().startswith("97")
 
 
 @pytest.mark.parametrize(("ratio", "tone"), [(1.0, ""), (0.984, "warn"), (0.96, "bad"), (0.992, "")])

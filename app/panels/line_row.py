@@ -88,7 +88,7 @@ class LineRow(QFrame):
         self._name.setText(view.title)
         set_tag(self._name, "tone", "" if view.visible else "faint")
         self._chip.set_filled(view.visible)
-        self._show_lengths(view.ratio)
+        self._show_lengths(self.slider.ratio() if self.slider.isSliderDown() else view.ratio)
         self.slider.set_ratio(view.ratio)
         self.slider.set_reached(None if view.reached_mm is None else view.reached_mm / view.rest_mm)
         for each in (self.slider, self.percent, self.millimetres):

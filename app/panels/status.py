@@ -5,19 +5,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import QRectF, Qt, Signal
+from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
-from app.parts import ToolButton
 from app.theme import label, tokens_of
 from app.words import number, tr
 
 
 class StatusBar(QWidget):
-    """Facts and volume on the left; the job, with a button to stop it, and the saved time on the right."""
-
-    cancel_asked = Signal()
+    """Facts and volume on the left; the job and the saved time on the right."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -35,9 +32,7 @@ class StatusBar(QWidget):
         job.setContentsMargins(0, 0, 0, 0)
         job.setSpacing(8)
         self._job_name, self._bar = label("", "caption"), ProgressBar()
-        stop = ToolButton("x", tr("Stop (Esc)"), size=12, room=20)
-        stop.clicked.connect(self.cancel_asked)
-        for each in (self._job_name, self._bar, stop):
+        for each in (self._job_name, self._bar):
             job.addWidget(each)
         self._job.hide()
         self._saved = label("", "caption")

@@ -10,14 +10,13 @@ from app.parts import FloatingPanel, Segment, ToolButton, hairline
 from app.words import tr
 
 VIEWS = ("front", "left", "right", "back", "three-quarter", "top")
-LAYERS = ("perspective", "control-mesh", "landmarks", "bands")
 
 
 class ViewTools(FloatingPanel):
     """Views, projection and layers; each tool is an action of ``actions``, for menus and shortcuts too.
 
-    ``view_chosen`` carries front, left, right, back, three-quarter or top; ``toggled`` a layer of ``LAYERS``
-    with its state; ``fit_asked`` and ``picture_asked`` nothing.
+    ``view_chosen`` carries one of ``VIEWS``; ``toggled`` perspective, control-mesh, landmarks or bands with
+    its state; ``fit_asked`` and ``picture_asked`` nothing.
     """
 
     view_chosen = Signal(str)
