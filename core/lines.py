@@ -69,29 +69,41 @@ _LENGTH = re.compile(r"^\s*=?\s*([+-]?)\s*(\d+(?:[.,]\d+)?)\s*(%|mm|cm|in)?\s*$"
 _MM = {"mm": 1.0, "cm": 10.0, "in": 25.4}
 
 
-def length_ratio(text: str, line: Line) -> float:
-    """Read what a designer writes for a length and return it as ratio of the line's rest length [1].
+def typed_ratio(text: str, rest_mm: float, whole_mm: float, unit: str = "%") -> float | None:
+    """Return what a designer writes for a length as ratio of the rest length [1], or None if it is no length.
 
     ``97%`` of the front part's rest length, ``-6%`` or ``-20mm`` (also cm, in) shorter or longer, ``400mm``
-    absolute. An absolute length is that of the front part, or of the whole band if only that reading makes
-    sense: the two never lie near each other. Raises LineError if the text is no length or lies outside
-    RATIO_LIMITS.
+    absolute; ``unit`` is that of a bare number. An absolute length is that of the front part, ``rest_mm`` at
+    rest, or of the whole band, ``whole_mm``, if only that reading makes sense: the two never lie near each
+    other.
     """
     # A Japanese keyboard writes full-width digits and signs: the normal form has them plain.
     plain = unicodedata.normalize("NFKC", text).replace("\N{MINUS SIGN}", "-").lower()
     match = _LENGTH.match(plain)
     if match is None:
+        return None
+    sign, number, unit = match.group(1), float(match.group(2).replace(",", ".")), match.group(3) or unit
+    if not sign and unit != "%":
+        return _absolute_ratio(number * _MM[unit], rest_mm, whole_mm)
+    share = number / 100.0 if unit == "%" else number * _MM[unit] / rest_mm
+    return {"": share, "+": 1.0 + share, "-": 1.0 - share}[sign]
+
+
+def _absolute_ratio(mm: float, rest_mm: float, whole_mm: float) -> float:
+    front = mm / rest_mm
+    whole = (mm - (whole_mm - rest_mm)) / rest_mm
+    low, high = RATIO_LIMITS
+    return whole if not low <= front <= high and low <= whole <= high else front
+
+
+def length_ratio(text: str, line: Line) -> float:
+    """Read a length as ``typed_ratio`` does; raises LineError if it is none or lies outside RATIO_LIMITS."""
+    ratio = typed_ratio(text, line.rest_length, line.whole_length)
+    if ratio is None:
         raise LineError(
             f"'{text}' is not a length for {line.name}.",
             "Write 97% of the rest length, -20mm shorter, or 400mm absolute.",
         )
-    sign, number, unit = match.group(1), float(match.group(2).replace(",", ".")), match.group(3) or "%"
-    if unit == "%":
-        ratio = 1.0 + float(f"{sign}{number}") / 100.0 if sign else number / 100.0
-    elif sign:
-        ratio = 1.0 + float(f"{sign}{number}") * _MM[unit] / line.rest_length
-    else:
-        ratio = _absolute_ratio(number * _MM[unit], line)
     low, high = RATIO_LIMITS
     if not low <= ratio <= high:
         raise LineError(
@@ -100,10 +112,3 @@ def length_ratio(text: str, line: Line) -> float:
             f"{low * line.rest_length:.0f} to {high * line.rest_length:.0f} mm of the front part.",
         )
     return ratio
-
-
-def _absolute_ratio(mm: float, line: Line) -> float:
-    front = mm / line.rest_length
-    whole = (mm - line.back_length) / line.rest_length
-    low, high = RATIO_LIMITS
-    return whole if not low <= front <= high and low <= whole <= high else front

@@ -143,7 +143,7 @@ def test_lengths_as_they_are_typed(text: str, unit: str, ratio: float) -> None:
     assert parse_length(text, 400.0, 700.0, unit) == pytest.approx(ratio)
 
 
-@pytest.mark.parametrize("text", ["", "tight", "94 mmm", "--6", "79.9", "112.1", "-30%", "1 200 mm", "94%%"])
+@pytest.mark.parametrize("text", ["", "tight", "94 mmm", "--6", "49.9", "130.1", "-60%", "1 200 mm", "94%%"])
 def test_what_is_no_length_is_refused(text: str) -> None:
     with pytest.raises(ValueError, match="no length"):
         parse_length(text, 400.0, 700.0)
@@ -170,12 +170,24 @@ def test_a_typed_length_is_committed_for_its_line(lines: LinesPanel, qtbot: QtBo
     assert (field.text(), lines.rows["waist"].millimetres.text()) == ("94.0", "376.0")
 
 
+def test_a_length_beyond_the_slider_can_be_typed(lines: LinesPanel, qtbot: QtBot) -> None:
+    row = lines.rows["waist"]
+    row.percent.setFocus()
+    row.percent.selectAll()
+    QTest.keyClicks(row.percent, "60")
+    with qtbot.waitSignal(lines.length_committed) as said:
+        QTest.keyClick(row.percent, Qt.Key.Key_Return)
+    assert said.args == ["waist", pytest.approx(0.6)]
+    lines.set_lines([replace(WAIST, ratio=0.6), RIBS])
+    assert (row.percent.text(), row.slider.ratio()) == ("60.0", 0.8)
+
+
 def test_nonsense_is_marked_and_not_committed(lines: LinesPanel, qtbot: QtBot) -> None:
     field = lines.rows["waist"].percent
     field.setFocus()
     field.selectAll()
     with qtbot.assertNotEmitted(lines.length_committed):
-        QTest.keyClicks(field, "50")
+        QTest.keyClicks(field, "40")
         QTest.keyClick(field, Qt.Key.Key_Return)
     assert field.property("wrong") is True
     QTest.keyClick(field, Qt.Key.Key_Escape)

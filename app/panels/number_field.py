@@ -3,52 +3,28 @@
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
 
-import re
-import unicodedata
-
 from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QFocusEvent, QKeyEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QLineEdit
 
-from app.panels.length_slider import LONGEST, SHORTEST
 from app.theme import font, set_tag, tokens_of
 from app.words import number, tr
+from core.lines import RATIO_LIMITS, typed_ratio
 
-_MM_PER_UNIT = {"mm": 1.0, "cm": 10.0, "in": 25.4}
 _FOCUS = Qt.FocusReason
 _BY_KEY = (_FOCUS.TabFocusReason, _FOCUS.BacktabFocusReason, _FOCUS.ShortcutFocusReason)
-_TYPED = re.compile(r"([+-]?)(\d+(?:\.\d*)?|\.\d+)(%|mm|cm|in)?")
 
 
 def parse_length(text: str, rest_mm: float, whole_mm: float, unit: str = "%") -> float:
     """Return what was typed as a share of the rest length of the front part [1].
 
-    ``94``, ``94%``, ``692mm``, ``69.2cm`` and ``27.2in`` are lengths; ``-6%`` and ``-20mm``, with a sign,
-    change the rest length. ``unit`` is that of a bare number. A length is read as that of the whole band,
-    ``whole_mm`` at rest, if only so it can be set. Raises ValueError for anything else.
+    It may be shorter or longer than the slider goes. Raises ValueError for anything that cannot be set; see
+    ``core.lines.typed_ratio`` for what is understood.
     """
-    plain = unicodedata.normalize("NFKC", text).replace("\N{MINUS SIGN}", "-").replace(",", ".")
-    match = _TYPED.fullmatch(re.sub(r"\s+", "", plain).lower())
-    if match is None:
-        raise ValueError(f"no length: {text}")
-    sign, figures, typed_unit = match.groups()
-    value = float(sign + figures)
-    typed_unit = typed_unit or unit
-    if typed_unit == "%":
-        share = value / 100
-    else:
-        share = value * _MM_PER_UNIT[typed_unit] / rest_mm
-        of_whole = share - (whole_mm - rest_mm) / rest_mm
-        if not sign and not _can_be_set(share) and _can_be_set(of_whole):
-            share = of_whole
-    ratio = 1.0 + share if sign else share
-    if not _can_be_set(ratio):
+    ratio = typed_ratio(text, rest_mm, whole_mm, unit)
+    if ratio is None or not RATIO_LIMITS[0] <= ratio <= RATIO_LIMITS[1]:
         raise ValueError(f"no length: {text}")
     return ratio
-
-
-def _can_be_set(ratio: float) -> bool:
-    return SHORTEST <= round(ratio, 9) <= LONGEST
 
 
 class NumberField(QLineEdit):
@@ -70,7 +46,7 @@ class NumberField(QLineEdit):
         self.setProperty("kind", "number")
         self.setTextMargins(0, 0, self._unit_width(), 0)
         self.setFixedSize(self.sizeHint())
-        self.setToolTip(tr("Type 94, −6%, −20mm, 692mm or 69.2cm; from 80 to 112 % of the length at rest."))
+        self.setToolTip(tr("Type 94, −6%, −20mm, 692mm or 69.2cm; from 50 to 130 % of the length at rest."))
         self.textEdited.connect(lambda _: set_tag(self, "wrong", False))
 
     def sizeHint(self) -> QSize:

@@ -42,7 +42,7 @@ class ScanPanel(QWidget):
         self._empty = EmptyState(
             "folder-open",
             tr("No scan yet"),
-            tr("Open a body scan, or drop one on the window: PLY, OBJ, STL and more."),
+            tr("Open a body scan, or drop one on the window: PLY, OBJ or STL."),
             tr("Open a scan…"),
         )
         self._empty.asked.connect(self.open_asked)
