@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
@@ -10,6 +11,8 @@ from app.words import tr
 from core import __version__
 
 SCANS = "*.ply *.obj *.stl"
+
+_ENDING = re.compile(r"\*(\.\w+)")
 
 
 def ask_open(parent: QWidget) -> str:
@@ -20,9 +23,21 @@ def ask_open(parent: QWidget) -> str:
 
 
 def ask_save(parent: QWidget, title: str, name: str, kinds: str, ending: str) -> str:
-    """Return where to save, with an ending, or an empty text."""
-    path, _ = QFileDialog.getSaveFileName(parent, title, name, kinds)
-    return path if not path or Path(path).suffix else f"{path}{ending}"
+    """Return where to save, or an empty text.
+
+    A name without one of the endings in ``kinds`` gets that of the chosen kind, else ``ending``.
+    """
+    path, kind = QFileDialog.getSaveFileName(parent, title, name, kinds)
+    if not path or Path(path).suffix.lower() in _ENDING.findall(kinds):
+        return path
+    whole = Path(path + next(iter(_ENDING.findall(kind)), ending))
+    # The dialog has only asked about the name as it was typed.
+    return str(whole) if not whole.exists() or _may_replace(parent, title, whole.name) else ""
+
+
+def _may_replace(parent: QWidget, title: str, name: str) -> bool:
+    question = tr("{name} is there already. Replace it?").format(name=name)
+    return QMessageBox.question(parent, title, question) == QMessageBox.StandardButton.Yes
 
 
 def ask_about_changes(parent: QWidget, name: str) -> str:
