@@ -52,9 +52,17 @@ def application(language: str | None = None, dark: bool | None = None) -> QAppli
 
 @contextmanager
 def log_kept() -> Iterator[Path]:
-    """Write faults, never the scan or its measures, to a log while the window is open; gives its folder."""
+    """Write faults, never the scan or its measures, to a log while the window is open; gives its folder.
+
+    Where no log can be written there is none.
+    """
     folder = Path(platformdirs.user_log_dir("Busk", appauthor=False))
-    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        crashes = open(folder / "crash.log", "a", encoding="utf-8")  # noqa: SIM115 - closed below
+    except OSError:
+        yield folder
+        return
     handler = logging.FileHandler(folder / "busk.log", encoding="utf-8", delay=True)
     handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
     logging.getLogger().addHandler(handler)
@@ -62,7 +70,7 @@ def log_kept() -> Iterator[Path]:
     sys.excepthook = _log_fault
     threading.excepthook = _log_thread_fault
     try:
-        with open(folder / "crash.log", "a", encoding="utf-8") as crashes:
+        with crashes:
             faulthandler.enable(crashes)
             yield folder
     finally:
