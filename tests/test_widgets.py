@@ -209,13 +209,11 @@ def test_the_numbers_of_a_dragged_line_stay_with_the_hand(lines: LinesPanel) -> 
     row = lines.rows["waist"]
     hold(row.slider, QEvent.Type.MouseButtonPress, row.slider._x_of(1.0))
     hold(row.slider, QEvent.Type.MouseMove, row.slider._x_of(0.95))
-    ahead = row.percent.text()
-    assert ahead.startswith("95")
     lines.set_lines([replace(WAIST, ratio=0.97), RIBS])
-    assert row.percent.text() == ahead
+    assert row.percent.text() == "95.0"
     hold(row.slider, QEvent.Type.MouseButtonRelease, row.slider._x_of(0.95))
     lines.set_lines([replace(WAIST, ratio=0.97), RIBS])
-    assert row.percent.text().startswith("97")
+    assert row.percent.text() == "97.0"
 
 
 @pytest.mark.parametrize(("ratio", "tone"), [(1.0, ""), (0.984, "warn"), (0.96, "bad"), (0.992, "")])
