@@ -54,6 +54,7 @@ class Desk(QObject):
         self._session = window.session
         self._frame: Frame | None = None
         self._plotted: Frame | None = None
+        self._asked = ""
         self._plot_due = 0.0
         self._plot_clock = QTimer(self, interval=PLOT_INTERVAL, singleShot=True)
         self._plot_clock.timeout.connect(self.plot_now)
@@ -70,6 +71,9 @@ class Desk(QObject):
     def show_opened(self, frame: Frame) -> None:
         """Show a document that has just been opened."""
         window = self._window
+        if self._asked:
+            remember_file(self._asked)
+            self._asked = ""
         window.actions_.enable_document()
         window.notices.clear()
         self.show_title()
@@ -121,6 +125,8 @@ class Desk(QObject):
         """Say what went wrong; what is on the screen stays."""
         if isinstance(error, UserError):
             self._window.notices.show_notice("bad", error.message, error.hint, lasting=True)
+            if self._frame is not None:
+                self._show_found(self._frame.stages)
             return
         logging.error("unexpected fault\n%s", "".join(traceback.format_exception(error)))
         self._window.notices.show_notice(
@@ -175,8 +181,8 @@ class Desk(QObject):
             self.show_frame(self._frame)
 
     def commit_line(self, name: str, ratio: float) -> None:
-        """Set a line's length; at 100 % a line is off: it measures and does not pull."""
-        self._session.commit_line(name, line_title(name), None if abs(ratio - 1.0) < 5e-6 else ratio)
+        """Set a line's length."""
+        self._session.commit_line(name, line_title(name), ratio)
 
     def open(self) -> None:
         """Ask for a file and open it."""
@@ -185,7 +191,7 @@ class Desk(QObject):
     def open_file(self, path: str) -> None:
         """Open a project or a scan."""
         if path and self.may_leave():
-            remember_file(path)
+            self._asked = path
             self._session.open(path)
 
     def open_sample(self, name: str) -> None:

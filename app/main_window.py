@@ -154,6 +154,8 @@ class MainWindow(QMainWindow):
         if not self.desk.may_leave():
             event.ignore()
             return
+        # The solver may be in the middle of reading a scan: nobody has to watch the window wait for it.
+        self.hide()
         self.desk.close()
         self.session.close()
         self.view.close_view()

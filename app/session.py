@@ -80,24 +80,27 @@ class Session(QObject):
 
     def preview_line(self, name: str, ratio: float) -> None:
         """Show a length while it is dragged; nothing is committed."""
-        if self.design is not None:
+        if self.design is not None and self._opening is None:
             fresh = self._preview is None
-            self._preview = self.design.with_line(name, ratio)
+            # As when it is let go: at its rest length a line is off.
+            self._preview = self.design.with_line(name, None if at_rest_length(ratio) else ratio)
             self._solver.submit(self._preview, fresh)
 
     def cancel_preview(self) -> None:
         """Go back to the committed lengths."""
         if self.design is not None and self._preview is not None:
             self._preview = None
-            self._solver.submit(self.design)
+            self._submit(self.design)
 
-    def commit_line(self, name: str, title: str, ratio: float | None) -> None:
-        """Set a line's length as one undo step; None takes the line off."""
+    def commit_line(self, name: str, title: str, ratio: float) -> None:
+        """Set a line's length as one undo step; at its rest length it is off: it does not pull."""
         if self.design is None:
             return
-        text = tr("{line} off") if ratio is None else tr("{line} {percent} %")
-        text = text.format(line=title, percent=number(100.0 * (ratio or 0.0), 1))
-        self._commit(self.design.with_line(name, ratio), text)
+        worn = None if at_rest_length(ratio) else ratio
+        text = tr("{line} off") if worn is None else tr("{line} {percent} %")
+        self._commit(
+            self.design.with_line(name, worn), text.format(line=title, percent=number(100.0 * ratio, 1))
+        )
 
     def reset_lines(self) -> None:
         """Take every line off: the body as scanned."""
@@ -160,14 +163,19 @@ class Session(QObject):
         """Make ``design`` the present one, as the undo stack asks."""
         self._preview = None
         self.design = design
-        self._revision = self._solver.submit(design, fresh=True)
+        self._submit(design, fresh=True)
         self.design_changed.emit(design)
 
     def settle_preview(self, design: Design) -> None:
         """Commit what the preview already shows: its run goes on without a break."""
         self.design = design
-        self._revision = self._solver.submit(design)
+        self._submit(design)
         self.design_changed.emit(design)
+
+    def _submit(self, design: Design, fresh: bool = False) -> None:
+        # While another document is being opened its frame must be the next: edits of the old one wait.
+        if self._opening is None:
+            self._revision = self._solver.submit(design, fresh)
 
     def _begin(self, design: Design, path: Path | None) -> None:
         self._preview = None
@@ -178,7 +186,7 @@ class Session(QObject):
         if after != self.design and self.design is not None:
             self.undo_stack.push(_Edit(self, self.design, after, text, shown=previewing))
         elif previewing and self.design is not None:
-            self._solver.submit(self.design)
+            self._submit(self.design)
 
     def _hear_stage(self, stage: str) -> None:
         # Called in the solver's thread: only the attribute is set, the clock tells the window.
@@ -214,17 +222,22 @@ class Session(QObject):
         if self._opening is not None and failure.revision >= self._opening[2]:
             self._opening = None
             if self.design is not None:
-                self._solver.submit(self.design)
+                self._submit(self.design)
         elif failure.revision == self._revision and self.undo_stack.canUndo():
             # The edit cannot be carried out: it leaves the history as if it had not been made.
             edit = self.undo_stack.command(self.undo_stack.index() - 1)
-            if isinstance(edit, _Edit):
+            if isinstance(edit, _Edit) and edit.after is self.design:
                 before = edit.before
                 edit.setObsolete(True)
                 # Qt drops an obsolete command without undoing it.
                 self.undo_stack.undo()
                 self.take(before)
         self.failed.emit(failure.error)
+
+
+def at_rest_length(ratio: float) -> bool:
+    """Tell whether a ratio is 100 % as it is shown: a line there is off."""
+    return abs(ratio - 1.0) < 5e-6
 
 
 class _Edit(QUndoCommand):
@@ -236,15 +249,15 @@ class _Edit(QUndoCommand):
         super().__init__(text)
         self._session = session
         self.before = before
-        self._after = after
+        self.after = after
         self._shown = shown
 
     def redo(self) -> None:
         if self._shown:
             self._shown = False
-            self._session.settle_preview(self._after)
+            self._session.settle_preview(self.after)
         else:
-            self._session.take(self._after)
+            self._session.take(self.after)
 
     def undo(self) -> None:
         self._session.take(self.before)

@@ -125,3 +125,21 @@ def test_a_project_that_cannot_be_opened_at_start_is_told(tmp_path: Path) -> Non
         assert not window.actions_.save.isEnabled()
 
     run_main([str(tmp_path / "broken.busk")], script)
+
+
+def test_an_edit_while_another_scan_is_read_does_not_mix_the_two(person: Path) -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        window.session.open(str(person))
+        window.lines.length_previewed.emit("mid-bust", 0.9)
+        window.lines.length_committed.emit("mid-bust", 0.9)
+        yield lambda: window.session.name == "person"
+        yield settled(window)
+        frame, design = window.session.frame, window.session.design
+        assert frame is not None
+        assert design is not None
+        assert frame.stages.scan.name == design.scan.name == "person.ply"
+        assert len(frame.stages.body.mesh.faces) == 65218
+        assert design.lines == ()
+
+    run_main([], script)
