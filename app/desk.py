@@ -14,7 +14,6 @@ from PySide6.QtWidgets import QApplication
 
 from app.application import chosen_dark
 from app.dialogs import about_busk, ask_about_changes, ask_open, ask_save
-from app.panels.landmarks import tone_of
 from app.present import (
     exact_answer,
     facts,
@@ -29,7 +28,7 @@ from app.present import (
 )
 from app.recent import remember_file
 from app.samples import sample_design
-from app.theme import apply_theme
+from app.theme import apply_theme, tone_of
 from app.words import tr
 from core.design import Design
 from core.errors import UserError

@@ -124,6 +124,8 @@ class LivePlot(QWidget):
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
         if event.type() == QEvent.Type.PaletteChange:
+            # The view keeps a picture of its ground.
+            self._plot.resetCachedContent()
             self._set_axes()
 
     def resizeEvent(self, event: QResizeEvent) -> None:

@@ -11,11 +11,8 @@ from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
 from app.camera import View
-from app.theme import font, tokens_of
+from app.theme import font, tokens_of, tone_of
 from core.mesh import Floats, Points
-
-SURE = 0.8
-"""Confidence from which a landmark counts as found without a look."""
 
 PILL = 24.0
 """Height of a label [px]."""
@@ -172,7 +169,7 @@ class Overlay(QWidget):
             self._head(painter, QPointF(spot[0], spot[1]), pin)
         tokens = tokens_of(self)
         for pin, pill in zip(self._pins, pills, strict=True):
-            dot = tokens.ok if pin.confidence >= SURE else tokens.warn_mark
+            dot = getattr(tokens, tone_of(pin.confidence))
             self._pill(painter, pill, pin.name == self._selected)
             self._words(painter, pill, dot, pin.label, _percent(pin.confidence))
 

@@ -72,6 +72,11 @@ def tokens_of(widget: QWidget) -> Tokens:
     return DARK if widget.palette().color(QPalette.ColorRole.Mid).lightness() < 128 else LIGHT
 
 
+def tone_of(confidence: float) -> str:
+    """Return the tone of a landmark's confidence 0..1: ok from 0.5, bad below 0.3, warn between them."""
+    return "ok" if confidence >= 0.5 else "warn" if confidence >= 0.3 else "bad"
+
+
 def apply_theme(app: QApplication, dark: bool) -> None:
     """Dress the whole program in the light or the dark theme; it may be changed while windows are open."""
     load_fonts()

@@ -11,11 +11,8 @@ from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QAbstractButton, QButtonGroup, QVBoxLayout, QWidget
 
 from app.parts import EmptyState, hairline, sentence
-from app.theme import font, label, tokens_of
+from app.theme import font, label, tokens_of, tone_of
 from app.words import say, tr
-
-SURE, WEAK = 0.5, 0.3
-"""Confidence from which a landmark is green, and below which it is red; between them it is amber."""
 
 
 @dataclass(frozen=True)
@@ -26,11 +23,6 @@ class LandmarkView:
     title: str
     confidence: float
     rule: str
-
-
-def tone_of(confidence: float) -> str:
-    """Return ok, warn or bad for a confidence 0..1."""
-    return "ok" if confidence >= SURE else "warn" if confidence >= WEAK else "bad"
 
 
 class LandmarksPanel(QWidget):
