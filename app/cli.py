@@ -19,11 +19,17 @@ from core.lines import length_ratio
 from core.project import is_project, open_project
 
 SETTLED, PIPE_CLOSED, BAD_INPUT, NOT_SETTLED = 0, 1, 2, 3
+
+
+def _number(text: str) -> float:
+    return float(text.replace(",", "."))
+
+
 SETTINGS: dict[str, Callable[[str], Any]] = {
-    "gain": float,
-    "line_stiffness": float,
+    "gain": _number,
+    "line_stiffness": _number,
     "line_contact": str,
-    "line_height": float,
+    "line_height": _number,
     "template": str,
     "weights": str,
 }
@@ -49,12 +55,25 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _run(words: list[str]) -> int:
     if words and words[0] in COMMANDS:
-        options = _parser(words[0]).parse_args(words[1:])
+        options = _parser(words[0]).parse_args(_joined(words[1:]))
         return COMMANDS[words[0]][1](options)
     options = _window_parser().parse_args(words)
+    if options.file is not None and not Path(options.file).exists():
+        raise UserError(f"There is no file {options.file}, and no such command.", "See 'busk --help'.")
     from app.window import run_window
 
     return run_window(options.file)
+
+
+def _joined(words: Sequence[str]) -> list[str]:
+    """Join an axis to its option: in '--front -y' the parser takes -y for another option."""
+    joined: list[str] = []
+    for word in words:
+        if joined and joined[-1] in ("--up", "--front"):
+            joined[-1] = f"{joined[-1]}={word}"
+        else:
+            joined.append(word)
+    return joined
 
 
 class _Parser(argparse.ArgumentParser):
@@ -95,32 +114,32 @@ def _settings(pairs: Sequence[str]) -> dict[str, Any]:
 
 def solve(options: argparse.Namespace) -> int:
     """Solve a design with no window and write what came out."""
-    from core.export import write_mesh
-    from core.mesh import Mesh
     from core.pipeline import build
-    from core.report import report, run, write_report, write_turns
-    from core.tffd import deform
+    from core.report import still_lines, write_solution
+    from core.solution import run
 
     design = design_of(options.input, options)
     if options.volume:
         design = replace(design, volume=options.volume)
-    out = _folder(options.out)
     stages = build(design)
     for request in options.line or []:
         name, equals, text = request.partition("=")
-        line = next((line for line in stages.model.lines if line.name == name.strip()), None)
+        line = next((line for line in stages.model.lines if line.name == name.strip().lower()), None)
         if line is None or not equals:
             names = ", ".join(line.name for line in stages.model.lines)
             raise LineError(f"'{request}' names no line.", f"Write NAME=LENGTH; the lines are: {names}.")
         design = design.with_line(line.name, length_ratio(text, line))
+    out = _folder(options.out)
     solution = run(build(design, stages), options.turns)
-    stages = solution.stages
-    points = stages.model.tensegric.expand(solution.state.moved)
-    write_mesh(out / "body.ply", Mesh(deform(stages.binding, points), stages.body.mesh.faces))
-    write_mesh(out / "control.ply", stages.control.mesh.moved(points))
-    write_turns(out / "turns.csv", solution.records, stages.model.lines)
-    figures = report(solution)
-    write_report(out / "report.json", figures)
+    figures = write_solution(solution, out)
+    for sentence in still_lines(solution.stages):
+        print(f"busk: {sentence}", file=sys.stderr)
+    for name, line in figures["lines"].items():
+        if line["worn"]:
+            print(
+                f"{name}: set {line['set_mm']:.1f} mm of the front part ({line['set_percent']:.1f} %), "
+                f"reached {line['reached_mm']:.1f} mm; whole band {line['whole_band_reached_mm']:.1f} mm"
+            )
     volume = figures["volume"]
     print(
         f"{solution.verdict.state} after {solution.last.turn} turns, volume error "
@@ -178,6 +197,8 @@ def self_test(options: argparse.Namespace) -> int:
 
 
 def _folder(name: str) -> Path:
+    if not name.strip():
+        raise UserError("The place to write to has no name.", "Name a folder: --out result.")
     folder = Path(name)
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -204,6 +204,8 @@ class Strip(QWidget):
 
     def _show_emptiness(self, empty: bool) -> None:
         self._nothing.setVisible(empty)
+        self.chip.setVisible(not empty)
+        self._small_chip.setVisible(not empty)
         self.error_plot.setVisible(not empty)
         self.apex_plot.setVisible(not empty)
 

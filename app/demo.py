@@ -7,11 +7,9 @@ from pathlib import Path
 
 from app.picture import draw_picture, draw_window
 from app.samples import sample_design
-from core.export import write_mesh
-from core.mesh import Mesh
 from core.pipeline import build
-from core.report import report, run, write_report, write_turns
-from core.tffd import deform
+from core.report import write_solution
+from core.solution import run
 
 
 def run_demo(out: Path) -> int:
@@ -24,13 +22,8 @@ def run_demo(out: Path) -> int:
         draw_picture(replace(design, lines=lines), out / f"{name}.png", view=view, size=(1000, 900))
         print(f"  {out / f'{name}.png'}: the body {name}")
     solution = run(build(design))
-    points = solution.stages.model.tensegric.expand(solution.state.moved)
-    write_mesh(
-        out / "body.ply", Mesh(deform(solution.stages.binding, points), solution.stages.body.mesh.faces)
-    )
+    write_solution(solution, out)
     print(f"  {out / 'body.ply'}: the deformed body")
-    write_turns(out / "turns.csv", solution.records, solution.stages.model.lines)
-    write_report(out / "report.json", report(solution))
     print(f"  {out / 'turns.csv'}, {out / 'report.json'}: every turn, and the figures at the end")
     last = solution.last
     print(f"{solution.verdict.state} after {last.turn} turns, volume error {last.error_ml:+.2f} ml")

@@ -34,6 +34,7 @@ from core.design import Design
 from core.errors import UserError
 from core.live import Frame
 from core.pipeline import Stages
+from core.report import warnings
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -83,7 +84,7 @@ class Desk(QObject):
             window.notices.show_notice(
                 "warn", tr("Busk is not sure how this scan stands."), pose.reason, lasting=True
             )
-        for sentence in frame.stages.control.warnings:
+        for sentence in warnings(frame.stages):
             window.notices.show_notice("warn", sentence, lasting=True)
 
     def show_frame(self, frame: Frame) -> None:

@@ -14,6 +14,8 @@ from core.errors import UserError
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
+    from app.scene import Scene
+    from core.solution import Solution
 
 _PATIENCE = 120.0
 
@@ -32,22 +34,35 @@ def draw_picture(
     import pyvista as pv
 
     from app.camera import VIEWS
-    from app.present import BAND_WIDTHS, LINE_COLOURS, worn_bands
     from app.scene import Scene
-    from app.scene_bands import Band
-    from app.scene_body import bake_occlusion
     from core.pipeline import build
-    from core.report import run
+    from core.solution import run
 
     side = {"side": "left"}.get(view, view)
     if side not in VIEWS:
         raise UserError(f"There is no view '{view}'.", f"Choose one of: {', '.join(VIEWS)}.")
     solution = run(build(design))
-    stages = solution.stages
-    control_points = stages.model.tensegric.expand(solution.state.moved)
-    points, normals = stages.shape(control_points)
     plotter = pv.Plotter(off_screen=True, window_size=list(size), lighting="none")
-    scene = Scene(plotter, dark)
+    try:
+        scene = Scene(plotter, dark)
+        _set_up(scene, solution)
+        scene.set_view(side)
+        scene.frame_bust()
+        plotter.enable_anti_aliasing("ssaa")
+        plotter.screenshot(str(out))
+    except OSError as problem:
+        raise UserError(f"{out} cannot be written.", "Choose another folder.") from problem
+    finally:
+        plotter.close()
+
+
+def _set_up(scene: Scene, solution: Solution) -> None:
+    """Put the reshaped body of a solution with its lines into a scene."""
+    from app.present import BAND_WIDTHS, LINE_COLOURS, worn_bands
+    from app.scene_bands import Band
+    from app.scene_body import bake_occlusion
+
+    stages = solution.stages
     scene.show_body(stages.body.mesh)
     scene.set_occlusion(bake_occlusion(stages.body.mesh))
     scene.show_control_mesh(stages.control.mesh, stages.control.fixed)
@@ -56,15 +71,7 @@ def draw_picture(
         Band(name, rest[list(stages.control.paths[name])], LINE_COLOURS[name], BAND_WIDTHS[name])
         for name in worn_bands(stages.control, ())
     )
-    scene.move_body(stages.moving.vertices, points, normals)
-    scene.set_view(side)
-    scene.frame_bust()
-    try:
-        plotter.screenshot(str(out))
-    except (OSError, ValueError) as problem:
-        raise UserError(f"{out} cannot be written.", "Choose another folder.") from problem
-    finally:
-        plotter.close()
+    scene.move_body(stages.moving.vertices, *stages.shape(solution.control_points))
 
 
 def draw_window(
@@ -126,6 +133,8 @@ def save_window(window: MainWindow, out: Path) -> None:
 def _check_name(out: Path) -> None:
     if out.suffix.lower() != ".png":
         raise UserError(f"{out} is no name for a picture.", "Choose one that ends in .png.")
+    if not out.absolute().parent.is_dir():
+        raise UserError(f"There is no folder {out.absolute().parent}.", "Make it, or choose another one.")
 
 
 def wait_until(ready: Callable[[], bool], turn: Callable[[], None]) -> None:

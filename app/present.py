@@ -27,7 +27,7 @@ LINE_COLOURS = {"full-bust": "#0A5F73", "mid-bust": "#E5536B", "under-bust": "#5
 BAND_WIDTHS = {"full-bust": 10.0, "mid-bust": 12.0, "under-bust": 22.0}
 """Width of the bands as they are drawn [mm]; what they are made of comes with the garment."""
 
-PLOTTED_TURNS = 240
+PLOTTED_TURNS = 600
 """Turns that the live plot looks back."""
 
 
@@ -189,7 +189,7 @@ def facts(frame: Frame) -> list[str]:
     return [
         "mm",
         tr("{count} triangles").format(count=number(len(frame.stages.body.mesh.faces), 0)),
-        tr("{count} control mesh").format(count=len(frame.stages.control.mesh.faces)),
+        tr("control mesh of {count} polygons").format(count=len(frame.stages.control.mesh.faces)),
         state_title(frame.verdict.state),
     ]
 

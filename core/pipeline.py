@@ -17,7 +17,7 @@ from core.errors import LineError
 from core.landmarks import Landmarks, find_landmarks
 from core.mesh import Points
 from core.moving import MovingFaces, moving_faces
-from core.patch import patch_fade
+from core.patch import Patch, patch_fade
 from core.project import ScanFile, read_scan_file
 from core.solver import ConstrainedModel, Marks, Targets, constrained_model, gain_limit
 from core.template import read_template
@@ -45,6 +45,7 @@ class Stages:
     body: Body
     landmarks: Landmarks
     control: ControlMesh
+    patch: Patch
     binding: Binding
     moving: MovingFaces
     watch: BodyWatch
@@ -123,6 +124,7 @@ def build(design: Design, previous: Stages | None = None, tell: Tell = lambda _:
         body,
         landmarks,
         control,
+        patch,
         binding,
         moving,
         watch,

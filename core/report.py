@@ -13,74 +13,29 @@ from typing import Any
 
 from core import __version__
 from core.design import to_json
-from core.exact import NEWTON_LIMIT, newton
+from core.export import write_mesh
 from core.lines import Line
-from core.pipeline import Stages, targets_of
+from core.pipeline import Stages
 from core.project import whole_file
-from core.solver import Record, State, at_rest, iterate, record
-from core.verdict import Verdict, judge
+from core.solution import Solution
+from core.solver import Record
 
 _LIBRARIES = ("numpy", "scipy", "trimesh")
-MOST_TURNS = 300
 
 
-class Solution:
-    """A design solved to the end in one go: its records, last state and verdict.
+def write_solution(solution: Solution, folder: Path) -> dict[str, Any]:
+    """Write body.ply, control.ply, turns.csv and report.json to ``folder``, and return the report.
 
-    ``rest`` is the record before the first turn.
+    Raises UserError if something cannot be written.
     """
-
-    def __init__(
-        self, stages: Stages, rest: Record, records: Sequence[Record], state: State, verdict: Verdict
-    ) -> None:
-        self.stages = stages
-        self.rest = rest
-        self.records = tuple(records)
-        self.state = state
-        self.verdict = verdict
-
-    @property
-    def last(self) -> Record:
-        """The last record."""
-        return self.records[-1] if self.records else self.rest
-
-
-def run(stages: Stages, turns: int | None = None) -> Solution:
-    """Solve the design of ``stages`` from rest.
-
-    Makes exactly ``turns`` turns, or as many as it takes to settle (at most MOST_TURNS) if None; the exact
-    control makes Newton steps in their place.
-    """
-    targets = targets_of(stages.design, stages)
-    rest = record(stages.model, at_rest(stages.model), 0.0, stages.watch)
-    if targets.control == "exact":
-        return _run_exact(stages, rest, turns)
-    records: list[Record] = []
-    state = at_rest(stages.model)
-    steps = iterate(
-        stages.model, lambda: targets, turns=MOST_TURNS if turns is None else turns, watch=stages.watch
-    )
-    for now, measured in steps:
-        state = now
-        records.append(measured)
-        if turns is None and judge(records).state in ("settled", "diverged"):
-            break
-    return Solution(stages, rest, records, state, judge(records))
-
-
-def _run_exact(stages: Stages, rest: Record, turns: int | None) -> Solution:
-    ratios = targets_of(stages.design, stages).ratios
-    records: list[Record] = []
-    before = at_rest(stages.model)
-    for balance in newton(stages.model, ratios, limit=NEWTON_LIMIT if turns is None else turns):
-        if balance.steps:
-            step = float(((balance.state.moved - before.moved) ** 2).sum(axis=1).max() ** 0.5)
-            records.append(record(stages.model, balance.state, step, stages.watch))
-        before = balance.state
-    state = "settled" if balance.found else "settling"
-    return Solution(
-        stages, rest, records, balance.state, Verdict(state, balance.steps, (records or [rest])[-1].error)
-    )
+    stages = solution.stages
+    write_mesh(folder / "body.ply", solution.body)
+    write_mesh(folder / "control.ply", stages.control.mesh.moved(solution.control_points))
+    write_turns(folder / "turns.csv", solution.records, stages.model.lines)
+    figures = report(solution)
+    with whole_file((folder / "report.json").absolute()) as partial:
+        partial.write_text(json.dumps(figures, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    return figures
 
 
 def write_turns(path: str | os.PathLike[str], records: Sequence[Record], lines: Sequence[Line]) -> None:
@@ -131,7 +86,10 @@ def report(solution: Solution) -> dict[str, Any]:
         "marks": {"rest": _marks(solution.rest), "final": _marks(last)},
         "settings": _settings(stages),
         "notes": notes(stages),
-        "seconds": {name: round(seconds, 4) for name, seconds in stages.seconds.items()},
+        "seconds": {
+            **{name: round(seconds, 4) for name, seconds in stages.seconds.items()},
+            "solve": round(solution.seconds, 4),
+        },
         "versions": {
             "busk": __version__,
             "python": platform.python_version(),
@@ -155,19 +113,30 @@ def _settings(stages: Stages) -> dict[str, Any]:
 
 def notes(stages: Stages) -> list[str]:
     """Return in sentences what a reader of the figures has to know."""
-    still = [
-        line.name for line in stages.model.lines if line.name in stages.design.worn() and not line.constrains
-    ]
     return [
-        *(
-            f"{name} lies on the rib cage: it is measured, and no length that is set moves it."
-            for name in still
-        ),
-        *stages.control.warnings,
+        *still_lines(stages),
+        *warnings(stages),
         *stages.body.repairs,
         "Lengths are those of the front part of a line, side to side; the back does not change.",
         "Not modelled: sliding of the garment on the skin, gravity, stiffness of real tape and real tissue.",
     ]
+
+
+def still_lines(stages: Stages) -> list[str]:
+    """Return a sentence for each line that is worn where no length can move anything."""
+    worn = [line for line in stages.model.lines if line.name in stages.design.worn()]
+    return [
+        f"{line.name} lies on the rib cage: it is measured, and no length that is set moves it."
+        for line in worn
+        if not line.constrains
+    ]
+
+
+def warnings(stages: Stages) -> list[str]:
+    """Return in sentences what did not go as well as it should on the way to the model."""
+    patch = stages.patch
+    faded = [] if patch.rule == "flood" else [f"The reshaped part fades by distance: {patch.reason}."]
+    return [*stages.control.warnings, *faded]
 
 
 def _line_report(line: Line, stages: Stages, reached: float) -> dict[str, Any]:
@@ -194,9 +163,3 @@ def _marks(row: Record) -> dict[str, float]:
         "apex_z_mm": marks.apex_z,
         "apex_protrusion_mm": marks.apex_protrusion,
     }
-
-
-def write_report(path: str | os.PathLike[str], values: dict[str, Any]) -> None:
-    """Write a report as JSON, whole or not at all."""
-    with whole_file(Path(path).absolute()) as partial:
-        partial.write_text(json.dumps(values, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")

@@ -13,7 +13,7 @@ from core.mesh import Flags, Indices, Points
 from core.solver import Marks
 from core.tffd import Binding, deform_moving
 
-_FOREMOST = 12
+_SHARPNESS = 1.0  # [mm]
 _REACH = 30.0
 _CANDIDATES = 400
 
@@ -21,10 +21,10 @@ _CANDIDATES = 400
 class BodyWatch:
     """Follows a few hundred body vertices through t-FFD, so that a turn is measured without moving them all.
 
-    The bust points are the body vertices nearest to the landmarks. The apex of a breast is the mean of its 12
-    foremost vertices, because a single foremost vertex jumps about on a flat breast. Protrusion is the
-    distance of the apex in front of the centre of the control mesh's border. Calling it with control points,
-    shape (n, 3) [mm], gives Marks, mean of both sides for the apex.
+    The bust points are the body vertices nearest to the landmarks. The apex of a breast is the mean of its
+    vertices, weighted by exp(-d / 1 mm) with their distance d behind the foremost: a single foremost vertex
+    jumps about on a flat breast (ours). Protrusion is the distance of the apex in front of the centre of the
+    control mesh's border. Calling it with control points, shape (n, 3) [mm], gives Marks; apex of both sides.
     """
 
     def __init__(self, binding: Binding, control: ControlMesh, landmarks: Landmarks) -> None:
@@ -62,6 +62,6 @@ def _foremost(rest: Points, on_side: Flags) -> Indices:
 
 
 def _apex(places: Points) -> Points:
-    """Return y and z of the mean of the foremost points, shape (2,) [mm]."""
-    count = min(_FOREMOST, len(places)) - 1
-    return np.asarray(places[np.argpartition(places[:, 1], count)[: count + 1], 1:].mean(axis=0))
+    """Return y and z of the apex, shape (2,) [mm]: a mean that favours what lies foremost."""
+    weight = np.exp((places[:, 1].min() - places[:, 1]) / _SHARPNESS)
+    return np.asarray(weight @ places[:, 1:] / weight.sum())

@@ -10,7 +10,7 @@ import pytest
 
 from core.exact import solve_exact
 from core.pipeline import Stages, build
-from core.report import Solution, run
+from core.solution import Solution, run
 from core.solver import Targets, iterate
 
 Built = Callable[[str], Stages]

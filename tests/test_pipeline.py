@@ -71,7 +71,7 @@ def test_the_watched_points_are_the_landmarks(built: Built, sample: str) -> None
     marks = stages.rest_marks
     assert marks.nipple_left_z == pytest.approx(stages.landmarks.position("bust_point_left")[2], abs=1e-9)
     assert marks.nipple_right_z == pytest.approx(stages.landmarks.position("bust_point_right")[2], abs=1e-9)
-    # No bust point lies in front of the apex by more than a mean of 12 vertices allows.
+    # No bust point lies in front of the apex by more than the softness of its mean allows.
     foremost = -min(stages.landmarks.position(f"bust_point_{side}")[1] for side in ("left", "right"))
     border = stages.control.mesh.vertices[stages.control.border, 1].mean()
     assert marks.apex_protrusion > foremost + border - 2.0

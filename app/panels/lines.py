@@ -48,6 +48,7 @@ class LinesPanel(QWidget):
         frame = QVBoxLayout()
         frame.setContentsMargins(14, 4, 14, 0)
         frame.addWidget(self._empty)
+        frame.addStretch(1)
         column.addLayout(frame)
         column.addWidget(self._scroll_area(), 1)
         self.set_lines([])

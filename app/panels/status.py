@@ -54,8 +54,10 @@ class StatusBar(QWidget):
 
     def set_job(self, text: str, fraction: float | None = None) -> None:
         """Show the running job and how much is done [0..1], None when unknown; an empty text ends it."""
-        self._job.setVisible(bool(text))
         self._job_name.setText(text)
+        self._job.setVisible(bool(text))
+        # The window may be too busy to lay itself out again before it is painted.
+        self._job.adjustSize()
         self._bar.set_fraction(fraction)
 
     def set_saved(self, text: str) -> None:

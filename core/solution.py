@@ -1,0 +1,87 @@
+"""A design solved to the end in one go, for the command line, pictures and tests."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+from core.exact import NEWTON_LIMIT, newton
+from core.mesh import Mesh, Points
+from core.pipeline import Stages, targets_of
+from core.solver import Record, State, at_rest, iterate, record
+from core.tffd import deform
+from core.verdict import Verdict, judge
+
+MOST_TURNS = 300
+"""Turns after which a run is left as it is, settled or not."""
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """What came out: all records, the last state and the verdict.
+
+    ``rest`` is the record before the first turn; ``seconds`` what the solving took.
+    """
+
+    stages: Stages
+    rest: Record
+    records: tuple[Record, ...]
+    state: State
+    verdict: Verdict
+    seconds: float
+
+    @property
+    def last(self) -> Record:
+        """The last record."""
+        return self.records[-1] if self.records else self.rest
+
+    @property
+    def control_points(self) -> Points:
+        """The control points at the end, shape (n, 3) [mm]."""
+        return self.stages.model.tensegric.expand(self.state.moved)
+
+    @property
+    def body(self) -> Mesh:
+        """The reshaped body."""
+        return self.stages.body.mesh.moved(deform(self.stages.binding, self.control_points))
+
+
+def run(stages: Stages, turns: int | None = None) -> Solution:
+    """Solve the design of ``stages`` from rest.
+
+    Makes exactly ``turns`` turns, or as many as it takes to settle (at most MOST_TURNS) if None; the exact
+    control makes Newton steps in their place.
+    """
+    start = time.perf_counter()
+    rest = record(stages.model, at_rest(stages.model), 0.0, stages.watch)
+    solve = _run_exact if stages.design.volume == "exact" else _run_turns
+    records, state, verdict = solve(stages, rest, turns)
+    return Solution(stages, rest, tuple(records), state, verdict, time.perf_counter() - start)
+
+
+def _run_turns(stages: Stages, rest: Record, turns: int | None) -> tuple[list[Record], State, Verdict]:
+    targets = targets_of(stages.design, stages)
+    records: list[Record] = []
+    state = at_rest(stages.model)
+    most = MOST_TURNS if turns is None else turns
+    for now, measured in iterate(stages.model, lambda: targets, turns=most, watch=stages.watch):
+        state = now
+        records.append(measured)
+        if turns is None and judge(records).state in ("settled", "diverged"):
+            break
+    return records, state, judge(records)
+
+
+def _run_exact(stages: Stages, rest: Record, turns: int | None) -> tuple[list[Record], State, Verdict]:
+    ratios = targets_of(stages.design, stages).ratios
+    records: list[Record] = []
+    before = at_rest(stages.model)
+    for balance in newton(stages.model, ratios, limit=NEWTON_LIMIT if turns is None else turns):
+        if balance.steps:
+            step = float(((balance.state.moved - before.moved) ** 2).sum(axis=1).max() ** 0.5)
+            records.append(record(stages.model, balance.state, step, stages.watch))
+        before = balance.state
+    verdict = Verdict(
+        "settled" if balance.found else "settling", balance.steps, (records or [rest])[-1].error
+    )
+    return records, balance.state, verdict
