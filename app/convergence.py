@@ -142,9 +142,7 @@ class Strip(QWidget):
         self._legend.setVisible(self.width() >= _LEGEND_FROM)
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        painter, line = QPainter(self), QColor(tokens_of(self).line)
-        painter.fillRect(0, 0, self.width(), 1, line)
-        painter.fillRect(self.width() - 1, 0, 1, self.height(), line)
+        QPainter(self).fillRect(0, 0, self.width(), 1, QColor(tokens_of(self).line))
 
     def _build_body(self) -> None:
         row = QHBoxLayout(self._body)

@@ -138,7 +138,9 @@ class Desk(QObject):
 
     def show_work(self, stage: str) -> None:
         """Name the work that takes its time."""
-        self._window.status.set_job(stage_words(stage))
+        words = stage_words(stage)
+        self._window.status.set_job(words)
+        self._window.view.show_waiting(f"{words}…" if words else "")
 
     def show_saved(self, path: str) -> None:
         """Say when the project was saved."""

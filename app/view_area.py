@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, QObject
+from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QImage, QResizeEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
@@ -12,6 +12,7 @@ from app.panels.view_tools import CompareTools, ViewTools
 from app.present import BAND_WIDTHS, LINE_COLOURS, band_label, landmark_title, worn_bands
 from app.scene_bands import Band
 from app.scene_body import bake_occlusion
+from app.theme import label
 from app.viewport import Viewport
 from core.body import Body
 from core.control_mesh import ControlMesh
@@ -40,17 +41,25 @@ class ViewArea(QWidget):
         self._landmark = ""
         self._labels: dict[str, tuple[str, str]] = {}
         self._background = Background(self)
+        self._waiting = label("", "page")
+        self._waiting.setAlignment(Qt.AlignmentFlag.AlignCenter)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.viewport)
+        self._waiting.setParent(self)
         for panel in (self.tools, self.compare):
             panel.installEventFilter(self)
             panel.raise_()
+            panel.hide()
         self.viewport.set_view("three-quarter")
         self.tools.set_view("three-quarter")
         self.tools.set_shown("bands", True)
         self.tools.set_shown("perspective", True)
         self._background.finished.connect(self._shade)
+
+    def show_waiting(self, text: str) -> None:
+        """Say in the empty view what is being done, until there is a body to show."""
+        self._waiting.setText(text if self._body is None else "")
 
     def show_frame(self, frame: Frame, design: Design) -> None:
         """Bring the view up to date: what is new is built, what moved is moved."""
@@ -144,10 +153,14 @@ class ViewArea(QWidget):
         self.tools.move(
             (self.width() - self.tools.width()) // 2, self.height() - self.tools.height() - _MARGIN + 10
         )
+        self._waiting.setGeometry(self.rect())
         self.compare.move(_MARGIN - 10, _MARGIN - 8)
 
     def _show_body(self, body: Body) -> None:
         self._body = body
+        self.show_waiting("")
+        for panel in (self.tools, self.compare):
+            panel.show()
         self.viewport.scene.show_body(body.mesh)
         self.after, self.is_shaded = True, False
         self.compare.set_after(True)

@@ -57,7 +57,8 @@ class StatusBar(QWidget):
         self._job_name.setText(text)
         self._job.setVisible(bool(text))
         # The window may be too busy to lay itself out again before it is painted.
-        self._job.adjustSize()
+        self._job.layout().activate()
+        self.layout().activate()
         self._bar.set_fraction(fraction)
 
     def set_saved(self, text: str) -> None:
