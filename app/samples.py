@@ -21,4 +21,6 @@ def sample_path(name: str) -> Path:
 
 def sample_design(name: str = "mannequin") -> Design:
     """Return a design on a sample body that is already worth looking at."""
-    return Design(ScanSource(str(sample_path(name))), lines=(WornLine("mid-bust", FIRST_RATIO),))
+    # How the samples stand is known: not to search for it shows the first body sooner.
+    scan = ScanSource(str(sample_path(name)), unit="mm", up="+z", front="-y")
+    return Design(scan, lines=(WornLine("mid-bust", FIRST_RATIO),))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -28,6 +29,8 @@ def run_window(file: str | None = None) -> int:
     with log_kept():
         window = open_window(file if file is not None else sample_design())
         window.show()
+        gc.freeze()
+        gc.enable()
         return app.exec()
 
 

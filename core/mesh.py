@@ -66,7 +66,8 @@ class Mesh:
     @cached_property
     def edges(self) -> Indices:
         """Every edge once, lower index first, shape (e, 2)."""
-        return np.unique(np.sort(_half_edges(self.faces), axis=1), axis=0)
+        _, first = np.unique(_edge_keys(_half_edges(self.faces)), return_index=True)
+        return np.sort(_half_edges(self.faces)[first], axis=1)
 
     @cached_property
     def boundary_loops(self) -> tuple[Indices, ...]:
@@ -105,10 +106,16 @@ def _half_edges(faces: Faces) -> Indices:
     return np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
 
 
+def _edge_keys(half_edges: Indices) -> Indices:
+    """Return one number for each edge, the same in both directions, ordered as its vertices are."""
+    ends = np.sort(half_edges, axis=1)
+    return np.asarray(ends[:, 0] * (ends[:, 1].max(initial=0) + 1) + ends[:, 1])
+
+
 def boundary_loops(faces: Faces) -> tuple[Indices, ...]:
     """Return the closed loops of border vertices of ``faces``, longest first."""
     half = _half_edges(faces)
-    _, first, count = np.unique(np.sort(half, axis=1), axis=0, return_index=True, return_counts=True)
+    _, first, count = np.unique(_edge_keys(half), return_index=True, return_counts=True)
     after: dict[int, list[int]] = defaultdict(list)
     for start, end in half[first[count == 1]].tolist():
         after[start].append(end)

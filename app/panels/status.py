@@ -19,7 +19,7 @@ class StatusBar(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setFixedHeight(26)
-        row = QHBoxLayout(self)
+        row = self._row = QHBoxLayout(self)
         row.setContentsMargins(14, 1, 14, 0)
         row.setSpacing(16)
         self._facts = label("", "caption")
@@ -57,8 +57,7 @@ class StatusBar(QWidget):
         self._job_name.setText(text)
         self._job.setVisible(bool(text))
         # The window may be too busy to lay itself out again before it is painted.
-        self._job.layout().activate()
-        self.layout().activate()
+        self._row.activate()
         self._bar.set_fraction(fraction)
 
     def set_saved(self, text: str) -> None:
