@@ -124,8 +124,7 @@ class LivePlot(QWidget):
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
         if event.type() == QEvent.Type.PaletteChange:
-            # The view keeps a picture of its ground.
-            self._plot.resetCachedContent()
+            self._plot.resetCachedContent()  # the view keeps a picture of its ground
             self._set_axes()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
@@ -292,11 +291,10 @@ def _bare_plot() -> pg.PlotWidget:
     plot.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Ignored)
     plot.setFocusPolicy(Qt.FocusPolicy.NoFocus)
     plot.getPlotItem().layout.setContentsMargins(0, 0, 12, 0)
-    for side in ("left", "bottom"):
-        axis = plot.getAxis(side)
+    for axis in map(plot.getAxis, ("left", "bottom")):
         axis.setTickPen(QColor(0, 0, 0, 0))  # a tick of no length still draws a dot
-        axis.setStyle(tickLength=0, tickAlpha=0, hideOverlappingLabels=False)
-        axis.setStyle(tickFont=font("axis", tabular=True))
+        tick_font = font("axis", tabular=True)
+        axis.setStyle(tickLength=0, tickAlpha=0, hideOverlappingLabels=False, tickFont=tick_font)
     plot.getAxis("left").setWidth(34)
     plot.getAxis("bottom").setHeight(18)
     return plot

@@ -6,8 +6,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QAction, QColor, QFont, QPainter, QPaintEvent
+from PySide6.QtGui import QAction, QColor, QFont, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import (
+    QAbstractButton,
     QButtonGroup,
     QFrame,
     QHBoxLayout,
@@ -49,6 +50,15 @@ def hairline(vertical: bool = False) -> QFrame:
     else:
         result.setFixedHeight(1)
     return result
+
+
+def paint_card(painter: QPainter, item: QAbstractButton, checked: str, radius: int) -> None:
+    """Paint the ground of an item of a list: ``checked`` names its token, hovered and focused follow."""
+    tokens = tokens_of(item)
+    painter.setPen(QPen(QColor(tokens.accent), 2) if item.hasFocus() else Qt.PenStyle.NoPen)
+    if item.isChecked() or item.underMouse() or item.hasFocus():
+        painter.setBrush(QColor(getattr(tokens, checked) if item.isChecked() else tokens.hover))
+        painter.drawRoundedRect(QRectF(item.rect()).adjusted(1, 1, -1, -1), radius, radius)
 
 
 class IconLabel(QLabel):

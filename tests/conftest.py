@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import QSettings
 from PySide6.QtWidgets import QApplication
+from small_project import write_project
 
 from core.design import Design, ScanSource, WornLine
 from core.pipeline import Stages, build
@@ -65,3 +66,9 @@ def empty_house(qapp: QApplication) -> Iterator[None]:
     gc.collect()
     assert not [thread for thread in threading.enumerate() if thread.name.startswith("busk")]
     assert not [widget for widget in QApplication.topLevelWidgets() if type(widget).__name__ == "MainWindow"]
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    """A small project in a folder of its own."""
+    return write_project(tmp_path)

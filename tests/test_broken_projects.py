@@ -8,21 +8,11 @@ from dataclasses import replace
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from small_project import DESIGN, PICTURE, SCAN
 
-from core.design import Design, ScanSource, to_json
+from core.design import ScanSource, to_json
 from core.errors import ProjectError, UserError
-from core.project import ScanFile, open_project, read_scan_file, save_project
-
-SCAN = ScanFile("body.ply", b"ply\nformat ascii 1.0\nend_header\n" + bytes(range(256)))
-DESIGN = Design(ScanSource("/scans/body.ply", unit="cm")).with_line("mid-bust", 0.97)
-PICTURE = b"\x89PNG not really"
-
-
-@pytest.fixture
-def project(tmp_path):
-    path = tmp_path / "anna.busk"
-    save_project(path, DESIGN, SCAN, PICTURE)
-    return path
+from core.project import open_project, read_scan_file, save_project
 
 
 def test_every_truncation_is_refused_in_a_sentence(project):

@@ -195,4 +195,4 @@ def test_a_design_cannot_be_changed():
 
 def test_a_scan_is_called_by_its_file_name():
     assert ScanSource("/scans/body.ply").name == "body.ply"
-    assert ScanSource("/work/project.busk", member="scan/body.ply").name == "body.ply"
+    assert ScanSource("/customers/project.busk", member="scan/body.ply").name == "body.ply"

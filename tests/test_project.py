@@ -8,8 +8,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from small_project import DESIGN, PICTURE, SCAN
 
-from core.design import Design, ScanSource
+from core.design import ScanSource
 from core.errors import ProjectError, ScanError
 from core.project import (
     ScanFile,
@@ -19,17 +20,6 @@ from core.project import (
     save_project,
     whole_file,
 )
-
-SCAN = ScanFile("body.ply", b"ply\nformat ascii 1.0\nend_header\n" + bytes(range(256)))
-DESIGN = Design(ScanSource("/scans/body.ply", unit="cm")).with_line("mid-bust", 0.97)
-PICTURE = b"\x89PNG not really"
-
-
-@pytest.fixture
-def project(tmp_path):
-    path = tmp_path / "anna.busk"
-    save_project(path, DESIGN, SCAN, PICTURE)
-    return path
 
 
 def left_over(folder):

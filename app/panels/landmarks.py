@@ -10,7 +10,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QAbstractButton, QButtonGroup, QVBoxLayout, QWidget
 
-from app.parts import EmptyState, hairline, sentence
+from app.parts import EmptyState, hairline, paint_card, sentence
 from app.theme import font, label, tokens_of, tone_of
 from app.words import say, tr
 
@@ -140,10 +140,7 @@ class LandmarkRow(QAbstractButton):
         tokens = tokens_of(self)
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(QPen(QColor(tokens.accent), 2) if self.hasFocus() else Qt.PenStyle.NoPen)
-        if self.isChecked() or self.underMouse() or self.hasFocus():
-            painter.setBrush(QColor(tokens.selected if self.isChecked() else tokens.hover))
-            painter.drawRoundedRect(QRectF(self.rect()).adjusted(1, 1, -1, -1), 7, 7)
+        paint_card(painter, self, "selected", 7)
         tone = getattr(tokens, tone_of(self.view.confidence))
         middle, right = self.height() / 2, self.width() - 10
         painter.setPen(QPen(QColor(tokens.raised), 1.5))

@@ -8,7 +8,7 @@ from PySide6.QtGui import QAction, QColor, QKeySequence, QPainter, QPaintEvent, 
 from PySide6.QtWidgets import QAbstractButton, QButtonGroup, QVBoxLayout, QWidget
 
 from app.icons import paint_icon
-from app.parts import ToolButton
+from app.parts import ToolButton, paint_card
 from app.theme import font, tokens_of
 from app.words import tr
 
@@ -94,10 +94,7 @@ class RailItem(QAbstractButton):
         tokens = tokens_of(self)
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(QPen(QColor(tokens.accent), 2) if self.hasFocus() else Qt.PenStyle.NoPen)
-        if self.isChecked() or self.underMouse() or self.hasFocus():
-            painter.setBrush(QColor(tokens.pressed if self.isChecked() else tokens.hover))
-            painter.drawRoundedRect(QRectF(self.rect()).adjusted(1, 1, -1, -1), 8, 8)
+        paint_card(painter, self, "pressed", 8)
         quiet = self._state == "missing" and not self.isChecked()
         ink = tokens.text if self.isChecked() else tokens.text_caption if quiet else tokens.text_quiet
         paint_icon(painter, self._drawing, ink, QRectF(self.width() / 2 - 12, 10, 24, 24))
