@@ -66,7 +66,7 @@ def log_kept() -> Iterator[Path]:
     handler = logging.FileHandler(folder / "busk.log", encoding="utf-8", delay=True)
     handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
     logging.getLogger().addHandler(handler)
-    hooks = sys.excepthook, threading.excepthook
+    hooks, told = (sys.excepthook, threading.excepthook), faulthandler.is_enabled()
     sys.excepthook = _log_fault
     threading.excepthook = _log_thread_fault
     try:
@@ -74,8 +74,10 @@ def log_kept() -> Iterator[Path]:
             faulthandler.enable(crashes)
             yield folder
     finally:
-        # With no other file to write to, faults go to the terminal again.
+        # The file is closed: faults go to the terminal again, if they did before.
         faulthandler.disable()
+        if told and sys.__stderr__ is not None:
+            faulthandler.enable(sys.__stderr__)
         sys.excepthook, threading.excepthook = hooks
         logging.getLogger().removeHandler(handler)
         handler.close()

@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QStackedWidget, QVBoxLay
 from app.actions import Actions
 from app.convergence import Strip
 from app.desk import Desk
+from app.housekeeping import Housekeeping
 from app.notice import NoticeBar
 from app.panels.landmarks import LandmarksPanel
 from app.panels.lines import LinesPanel
@@ -48,6 +49,7 @@ class MainWindow(QMainWindow):
         self.inspector = QStackedWidget()
         self._lay_out()
         self.desk = Desk(self)
+        self.housekeeping = Housekeeping(self)
         self._connect()
 
     def _lay_out(self) -> None:
@@ -157,6 +159,7 @@ class MainWindow(QMainWindow):
         # The solver may be in the middle of reading a scan: nobody has to watch the window wait for it.
         self.hide()
         self.desk.close()
+        self.housekeeping.close()
         self.session.close()
         self.view.close_view()
         event.accept()

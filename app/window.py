@@ -29,9 +29,12 @@ def run_window(file: str | None = None) -> int:
     with log_kept():
         window = open_window(file if file is not None else sample_design())
         window.show()
-        gc.freeze()
-        gc.enable()
-        return app.exec()
+        code = app.exec()
+    # The window and its solver are gone: what they leave is taken away here, in the thread it belongs to.
+    gc.unfreeze()
+    gc.collect()
+    gc.enable()
+    return code
 
 
 def open_window(what: str | Design) -> MainWindow:

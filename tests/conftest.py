@@ -35,6 +35,14 @@ def own_folders() -> Iterator[None]:
         yield
 
 
+@pytest.fixture(autouse=True)
+def garbage_in_this_thread(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Python looks for garbage in the tests' thread alone: in a solver's it would destroy Qt objects."""
+    gc.disable()
+    yield
+    gc.collect(2 if "qapp" in request.fixturenames else 0)
+
+
 @pytest.fixture(scope="session")
 def mannequin() -> Path:
     """The sample body on which the program opens: a smooth, watertight scan."""

@@ -27,7 +27,7 @@ FLOORS = {
     "dress": "icons theme parts",
     "showing": "background canvas overlay pointer viewport live_plot verdict_chip convergence notice "
     "panels.length_slider panels.number_field panels.line_row panels.lines panels.landmarks panels.rail "
-    "panels.result panels.scan panels.status panels.top_bar panels.view_tools",
+    "housekeeping panels.result panels.scan panels.status panels.top_bar panels.view_tools",
     "roof": "present view_area actions recent dialogs application desk main_window window picture demo "
     "self_test cli __main__",
 }
