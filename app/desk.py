@@ -39,7 +39,7 @@ from core.report import warnings
 if TYPE_CHECKING:
     from app.main_window import MainWindow
 
-PLOT_INTERVAL = 100
+PLOT_INTERVAL = 200
 """Milliseconds between two pictures of the live plot: it costs more than the figures beside it."""
 
 STEPS = ("scan", "landmarks", "lines", "result")

@@ -31,8 +31,10 @@ class Housekeeping(QObject):
         self._clock.start()
 
     def close(self) -> None:
-        """Stop the clock; the last look and Python's own way come back with the end of the window."""
+        """Give the search back to Python, once the solver's thread has ended."""
         self._clock.stop()
+        gc.unfreeze()
+        gc.enable()
 
     def _look(self) -> None:
         self._looks += 1

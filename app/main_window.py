@@ -159,7 +159,7 @@ class MainWindow(QMainWindow):
         # The solver may be in the middle of reading a scan: nobody has to watch the window wait for it.
         self.hide()
         self.desk.close()
-        self.housekeeping.close()
         self.session.close()
         self.view.close_view()
+        self.housekeeping.close()
         event.accept()

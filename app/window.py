@@ -30,10 +30,8 @@ def run_window(file: str | None = None) -> int:
         window = open_window(file if file is not None else sample_design())
         window.show()
         code = app.exec()
-    # The window and its solver are gone: what they leave is taken away here, in the thread it belongs to.
-    gc.unfreeze()
+    # What the window leaves is taken away here, in the thread that it belongs to.
     gc.collect()
-    gc.enable()
     return code
 
 

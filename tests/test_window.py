@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+
 import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
@@ -22,12 +24,14 @@ def test_the_sample_opens_in_a_finished_state() -> None:
         assert window.session.name == "mannequin"
         assert len(frame.stages.body.mesh.faces) == 65742
         assert frame.verdict.state == "settled"
+        assert not gc.isenabled(), "the solver's thread must not look for garbage"
         assert frame.marks.apex_z - frame.stages.rest_marks.apex_z > 1.0
         window.desk.plot_now()
         yield lambda: window.strip.chip.state() == "settled"
         assert set(frame.tracks) == {"adaptive", "conventional"}
 
     assert run_main([], script) == 0
+    assert gc.isenabled()
 
 
 def test_dragging_a_slider_moves_the_body_and_is_one_undo_step() -> None:
