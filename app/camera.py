@@ -44,6 +44,15 @@ class View:
     parallel: bool = False
 
     @property
+    def name(self) -> str | None:
+        """Which of ``VIEWS`` this is, or None from any other side."""
+        for name, (azimuth, elevation) in VIEWS.items():
+            turned = (self.azimuth - azimuth + 180.0) % 360.0 - 180.0
+            if abs(turned) < 0.5 and abs(self.elevation - elevation) < 0.5:
+                return name
+        return None
+
+    @property
     def axes(self) -> Points:
         """Unit vectors right, up and towards the eye, shape (3, 3)."""
         a, e = np.radians([self.azimuth, self.elevation])

@@ -192,7 +192,7 @@ class LivePlot(QWidget):
         self._plot.setRange(xRange=within, yRange=(low - room, high + room), padding=0)
         self._levels = round_ticks(low, high, 4 if self.height() > 110 else 3)
         digits = next((d for d in (0, 1, 2) if all(abs(v - round(v, d)) < 1e-9 for v in self._levels)), 3)
-        room_for_word = last - 0.14 * (last - first)
+        room_for_word = last - 0.2 * (last - first)
         turns = [turn for turn in round_ticks(first, last, 4) if turn < room_for_word and turn.is_integer()]
         left, bottom = self._plot.getAxis("left"), self._plot.getAxis("bottom")
         left.setTicks([[(level, number(level, digits)) for level in self._levels]])

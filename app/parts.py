@@ -145,10 +145,6 @@ class Segment(QFrame):
         """Show ``name`` as the choice that is on; nothing is emitted."""
         self._buttons[name].setChecked(True)
 
-    def choice(self) -> str | None:
-        """Return the choice that is on."""
-        return next((name for name, each in self._buttons.items() if each.isChecked()), None)
-
     def button(self, name: str) -> QPushButton:
         """Return the button of one choice, for tooltip, shortcut or state."""
         return self._buttons[name]

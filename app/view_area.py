@@ -21,6 +21,8 @@ from core.landmarks import Landmarks
 from core.live import Frame
 
 _MARGIN = 14
+SCENE_PARTS = {"control-mesh": "control", "bands": "bands", "ghost": "ghost"}
+"""Layers of the tools by what the scene calls them."""
 
 
 class ViewArea(QWidget):
@@ -56,6 +58,7 @@ class ViewArea(QWidget):
         self.tools.set_shown("bands", True)
         self.tools.set_shown("perspective", True)
         self._background.finished.connect(self._shade)
+        self.viewport.view_changed.connect(self._show_view)
 
     def show_waiting(self, text: str) -> None:
         """Say in the empty view what is being done, until there is a body to show."""
@@ -123,7 +126,7 @@ class ViewArea(QWidget):
         elif layer == "landmarks":
             self._show_pins()
         else:
-            self.viewport.scene.set_visible({"control-mesh": "control", "bands": "bands"}[layer], shown)
+            self.viewport.scene.set_visible(SCENE_PARTS[layer], shown)
         self._show_label()
         self.viewport.request_draw()
 
@@ -146,6 +149,12 @@ class ViewArea(QWidget):
         if event.type() == QEvent.Type.Show:
             self._place_tools()
         return False
+
+    def _show_view(self) -> None:
+        """Mark the tool of the view that the camera is in; on its way there it stays marked."""
+        name = self.viewport.scene.view.name
+        if name is not None or not self.viewport.gliding:
+            self.tools.set_view(name)
 
     def _place_tools(self) -> None:
         for panel in (self.tools, self.compare):

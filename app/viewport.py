@@ -165,6 +165,11 @@ class Viewport(QWidget):
 
     # -- the camera
 
+    @property
+    def gliding(self) -> bool:
+        """Whether the camera is on its way to another view."""
+        return self._glide.state() == QVariantAnimation.State.Running
+
     def set_view(self, name: str) -> None:
         """Glide to the side called ``name`` in ``app.camera.VIEWS``."""
         self._go(self.scene.view.named(name))

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import gc
+import os
 import sys
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from app.application import application, log_kept
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 def run_window(file: str | None = None) -> int:
     """Open the window on a file, or on the sample, and stay until it is closed."""
-    if not has_display() and not _platform_chosen():
+    if not has_display() and "QT_QPA_PLATFORM" not in os.environ:
         raise UserError(
             "There is no display to open a window on.",
             "Use 'busk demo --out out' for the same session in pictures, or 'busk --help' for the commands.",
@@ -48,12 +48,3 @@ def open_window(what: str | Design) -> MainWindow:
     from app.main_window import MainWindow
 
     return MainWindow(session)
-
-
-def _platform_chosen() -> bool:
-    import os
-
-    return bool(os.environ.get("QT_QPA_PLATFORM"))
-
-
-__all__: Sequence[str] = ("open_window", "run_window")

@@ -33,6 +33,7 @@ def with_control_mesh(window: MainWindow) -> None:
 
 def from_the_side(window: MainWindow) -> None:
     window.view.viewport.set_view("left")
+    window.view.set_layer("ghost", True)
     window.desk.go_to("result")
 
 

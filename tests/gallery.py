@@ -140,8 +140,6 @@ class Mock(QWidget):
         rail.set_state("landmarks", "look", 2)
         rail.set_state("lines", "available")
         rail.set_current(page)
-        rail.add_tool("question", QAction(tr("Help"), self))
-        rail.add_tool("gear-six", QAction(tr("Preferences"), self))
         return rail
 
     def _status(self) -> StatusBar:

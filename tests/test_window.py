@@ -11,6 +11,7 @@ from PySide6.QtGui import QColor, QImage
 from PySide6.QtTest import QTest
 from window_tools import Script, drag, points, run_main, settled
 
+from app.camera import VIEWS
 from app.main_window import MainWindow
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -92,6 +93,25 @@ def test_before_and_after_flip_on_the_space_bar() -> None:
     run_main([], script)
 
 
+def test_the_tools_tell_where_the_body_is_seen_from() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        view, tools = window.view.viewport, window.view.tools.actions_by_name
+        assert tools["three-quarter"].isChecked()
+        tools["left"].trigger()
+        yield lambda: view.scene.view.name == "left"
+        assert tools["left"].isChecked()
+        canvas = view.childAt(view.rect().center())
+        start = canvas.rect().center()
+        QTest.mousePress(canvas, Qt.MouseButton.LeftButton, pos=start)
+        QTest.mouseMove(canvas, start + QPoint(30, 0))
+        QTest.mouseMove(canvas, start + QPoint(60, 0))
+        QTest.mouseRelease(canvas, Qt.MouseButton.LeftButton, pos=start + QPoint(60, 0))
+        assert not any(tools[name].isChecked() for name in VIEWS)
+
+    run_main([], script)
+
+
 def test_control_mesh_and_lines_can_be_hidden() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
@@ -102,6 +122,8 @@ def test_control_mesh_and_lines_can_be_hidden() -> None:
         assert scene.is_visible("control")
         tools["bands"].trigger()
         assert not scene.is_visible("bands")
+        tools["ghost"].trigger()
+        assert scene.is_visible("ghost")
         window.lines.visibility_changed.emit("mid-bust", False)
         assert "mid-bust" not in scene.bands.names
 

@@ -99,5 +99,7 @@ class _Player:
         self._timer.stop()
         if self._window is not None and isValid(self._window):
             self._window.session.undo_stack.setClean()
+            # The last window's end is the end of main(); a second quit would wait for the next event loop.
             self._window.close()
-        QApplication.quit()
+        else:
+            QApplication.quit()

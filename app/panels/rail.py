@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QAction, QColor, QKeySequence, QPainter, QPaintEvent, QPen, QPolygonF
+from PySide6.QtGui import QColor, QKeySequence, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QAbstractButton, QButtonGroup, QVBoxLayout, QWidget
 
 from app.icons import paint_icon
-from app.parts import ToolButton, paint_card
+from app.parts import paint_card
 from app.theme import font, tokens_of
 from app.words import tr
 
@@ -48,11 +48,6 @@ class Rail(QWidget):
     def set_state(self, step: str, state: str, count: int = 0) -> None:
         """Show how a step stands, one of ``STATES``; ``count`` is how many things want a look."""
         self.items[step].set_state(state, count)
-
-    def add_tool(self, drawing: str, action: QAction) -> None:
-        """Put an action at the foot, such as help or preferences."""
-        tool = ToolButton(drawing, action.toolTip(), size=20, room=38, action=action)
-        self._column.addWidget(tool, alignment=Qt.AlignmentFlag.AlignHCenter)
 
     def paintEvent(self, event: QPaintEvent) -> None:
         painter = QPainter(self)

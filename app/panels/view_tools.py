@@ -46,6 +46,7 @@ class ViewTools(FloatingPanel):
         self._add_layer("control-mesh", "control-mesh", tr("Control mesh"), "K")
         self._add_layer("landmarks", "map-pin", tr("Landmarks"), "M")
         self._add_layer("bands", "bands", tr("Bands"), "B")
+        self._add_layer("ghost", "ghost", tr("Body at rest as a fringe"), "G")
         self._add("picture", "camera", tr("Save a picture"), "Ctrl+Shift+P")
         self.actions_by_name["picture"].triggered.connect(self.picture_asked)
 
