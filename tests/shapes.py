@@ -114,30 +114,6 @@ def octahedron(radius: float = 1.0) -> Mesh:
     return Mesh(points, np.array([(a, b, 4) for a, b in around] + [(b, a, 5) for a, b in around]))
 
 
-def sphere(rings: int = 7, spokes: int = 12, radius: float = 100.0) -> Mesh:
-    """A closed ball of rings and spokes with a point at each pole, wound outward."""
-    polar = np.pi * np.arange(1, rings + 1) / (rings + 1)
-    turn = 2.0 * np.pi * np.arange(spokes) / spokes
-    ring = np.stack(
-        [
-            np.outer(np.sin(polar), np.cos(turn)),
-            np.outer(np.sin(polar), np.sin(turn)),
-            np.outer(np.cos(polar), np.ones(spokes)),
-        ],
-        axis=-1,
-    ).reshape(-1, 3)
-    points = radius * np.concatenate([ring, [[0, 0, 1], [0, 0, -1]]])
-    top, bottom = len(ring), len(ring) + 1
-    faces = []
-    for s in range(spokes):
-        t = (s + 1) % spokes
-        faces += [(s, t, top), (t + (rings - 1) * spokes, s + (rings - 1) * spokes, bottom)]
-        for r in range(rings - 1):
-            upper, lower = r * spokes, (r + 1) * spokes
-            faces += [(lower + s, lower + t, upper + t), (lower + s, upper + t, upper + s)]
-    return Mesh(points, np.array(faces))
-
-
 def central_difference(function: Callable[[np.ndarray], object], at: np.ndarray, step: float) -> np.ndarray:
     """The derivative of ``function`` at the array ``at``, one last axis entry per entry of ``at``."""
     columns = []

@@ -20,7 +20,7 @@ FLOORS = {
     "fit_check laying control_mesh measure detect",
     "mechanics": "tensegric lines volume patch tffd",
     "solving": "solver exact verdict comparison watch",
-    "document": "design project pipeline live export solution report",
+    "document": "design project pipeline sphere live export solution report",
     "seeing": "camera scene_stage scene_body scene_bands scene_control scene",
     "wording": "display tokens words samples",
     "asking": "session",

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from shapes import octahedron, sphere, torso
+from shapes import octahedron, torso
 
 from core.mesh import Mesh
 from core.sections import arc_length, chains, cut, hull_perimeter, resample
+from core.sphere import sphere
 
 BALL = sphere(rings=31, spokes=64)
 

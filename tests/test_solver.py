@@ -5,7 +5,7 @@ from itertools import islice
 
 import numpy as np
 import pytest
-from shapes import mid_bust, run, sphere, tent_model, torso
+from shapes import mid_bust, run, tent_model, torso
 
 from core.lines import line_on
 from core.mesh import Mesh
@@ -21,6 +21,7 @@ from core.solver import (
     record,
     turn,
 )
+from core.sphere import sphere
 from core.tensegric import tensegric_model
 from core.volume import Pressure, volume_measure
 

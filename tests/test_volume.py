@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from shapes import central_difference, octahedron, sphere, tent, torso
+from shapes import central_difference, octahedron, tent, torso
 
 from core.mesh import Mesh
+from core.sphere import sphere
 from core.tensegric import tensegric_model
 from core.volume import CONTROLS, Pressure, next_pressure, volume_measure
 
