@@ -19,7 +19,7 @@ FLOORS = {
     "anatomy": "scan_file repair symmetry stance upright body trunk relief landmarks torso template profiles "
     "fit_check laying control_mesh measure detect",
     "mechanics": "tensegric lines volume patch tffd",
-    "solving": "solver exact verdict comparison watch",
+    "solving": "condition solver exact verdict comparison watch",
     "document": "design project pipeline sphere live export solution report",
     "seeing": "camera scene_stage scene_body scene_bands scene_control scene",
     "wording": "display tokens words samples",
