@@ -8,8 +8,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from core.exact import Balance, solve_exact
-from core.solver import ConstrainedModel, Record, State, Targets, Watch, at_rest, record, turn
+from core.condition import Condition, RestShape
+from core.exact import solve_exact
+from core.model import ConstrainedModel
+from core.newton import Balance
+from core.solver import Record, State, Targets, Watch, at_rest, record, turn
 from core.verdict import Verdict, judge
 
 TURN_CONTROLS = ("adaptive", "conventional")
@@ -20,25 +23,35 @@ MOST_TURNS = 300
 
 
 class Run:
-    """One volume control at work: its state and all its records."""
+    """One volume control at work: its state, all its records, and its motion since the targets changed."""
 
     def __init__(self, model: ConstrainedModel, control: str, state: State, watch: Watch | None) -> None:
         self.control = control
         self.state = state
         self.records: list[Record] = [record(model, state, 0.0, watch)]
-        self.changed_at = state.turn
+        self.watch_anew()
 
-    @property
-    def verdict(self) -> Verdict:
-        """How the run stands since the targets last changed."""
-        since = self.changed_at - self.records[0].turn
-        return judge(self.records[max(since, 0) + 1 :])
+    def watch_anew(self) -> None:
+        """Judge only what comes from now on."""
+        self.changed_at = self.state.turn
+        self.verdict = judge([])
+
+    def take(self, state: State, measured: Record) -> None:
+        """Take the next turn."""
+        self.state = state
+        self.records.append(measured)
+        self.verdict = judge(self.records[self.changed_at - self.records[0].turn + 1 :])
 
     @property
     def resting(self) -> bool:
-        """Whether there is nothing more to see: settled, diverged, or long enough watched."""
+        """Whether there is nothing more to see: settled, diverging, or long enough watched."""
         turns = self.state.turn - self.changed_at
-        return turns > 0 and (turns >= MOST_TURNS or self.verdict.state in ("settled", "diverged"))
+        return turns > 0 and (turns >= MOST_TURNS or self.verdict.motion in ("settled", "diverging"))
+
+    @property
+    def sane(self) -> bool:
+        """Whether the run can be gone on from: a diverging one starts again at rest."""
+        return self.verdict.motion != "diverging"
 
 
 class Comparison:
@@ -49,6 +62,7 @@ class Comparison:
         self.targets = targets
         self.watch = watch
         self.runs: dict[str, Run] = {}
+        self._shape = shape_of(model)
         self.exact = solve_exact(model, targets.ratios)
         self._set_runs(fresh=True)
 
@@ -74,8 +88,10 @@ class Comparison:
 
     @property
     def verdict(self) -> Verdict:
-        """How the chosen control stands."""
-        return self.main.verdict if self.main else judge_balance(self.model, self.exact, self.watch)
+        """How the chosen control stands, and in what condition the mesh is that is shown."""
+        verdict = self.main.verdict if self.main else judge_balance(self.model, self.exact)
+        points = self.model.tensegric.expand(self.shown.moved)
+        return replace(verdict, condition=self._shape.condition(points))
 
     @property
     def resting(self) -> bool:
@@ -87,8 +103,7 @@ class Comparison:
         for run in self.runs.values():
             if not run.resting:
                 targets = replace(self.targets, control=run.control)
-                run.state, measured = turn(self.model, targets, run.state, self.watch)
-                run.records.append(measured)
+                run.take(*turn(self.model, targets, run.state, self.watch))
 
     def _set_runs(self, fresh: bool) -> None:
         wanted = [*TURN_CONTROLS] + (["none"] if self.targets.control == "none" else [])
@@ -96,22 +111,22 @@ class Comparison:
         for control in wanted:
             old = self.runs.get(control)
             if old is None or fresh:
-                state = replace(old.state, turn=0) if old and _sane(old) else at_rest(self.model)
+                state = replace(old.state, turn=0) if old and old.sane else at_rest(self.model)
                 runs[control] = Run(self.model, control, state, self.watch)
             else:
-                if not _sane(old):
+                if not old.sane:
                     old.state = replace(at_rest(self.model), turn=old.state.turn)
+                old.watch_anew()
                 runs[control] = old
-                old.changed_at = old.state.turn
         self.runs = runs
 
 
-def judge_balance(model: ConstrainedModel, balance: Balance, watch: Watch | None = None) -> Verdict:
+def judge_balance(model: ConstrainedModel, balance: Balance, condition: Condition | None = None) -> Verdict:
     """Return the verdict of an exact answer: settled if the balance was found."""
-    error = record(model, balance.state, 0.0, watch).error
-    return Verdict("settled" if balance.found else "settling", balance.steps, error)
+    error = record(model, balance.state, 0.0).error
+    return Verdict("settled" if balance.found else "settling", balance.steps, error, condition=condition)
 
 
-def _sane(run: Run) -> bool:
-    """Whether a run can be gone on from: a diverged one starts again at rest."""
-    return run.verdict.state != "diverged"
+def shape_of(model: ConstrainedModel) -> RestShape:
+    """Return the control mesh of a model at rest."""
+    return RestShape(model.tensegric.rest, model.volume.faces, model.tensegric.cables)

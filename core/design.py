@@ -10,11 +10,10 @@ from typing import Any
 
 from core.errors import LineError, ProjectError, UserError
 from core.lines import RATIO_LIMITS
-from core.solver import DEFAULT_LINE_STIFFNESS
+from core.mechanics import CHOICES, DEFAULT_LINE_STIFFNESS, RANGES, Mechanics
 from core.volume import CONTROLS
 
 FORMAT = 1
-CONTACTS = ("glued",)
 WEIGHTS = ("smooth", "paper")
 TEMPLATES = ("168", "120")
 
@@ -47,13 +46,24 @@ class WornLine:
 
 
 @dataclass(frozen=True)
+class OwnLine:
+    """A line of the designer's own through control points of the template, by number; "closed" goes round."""
+
+    name: str
+    points: tuple[int, ...]
+    closed: bool = False
+
+
+@dataclass(frozen=True)
 class Design:
     """The document: what is saved, undone and solved.
 
     A line that is not in ``lines`` is not worn: it is measured only. ``line_height`` [1] is where the
     mid-bust line runs between fold (0) and bust point (1). ``gain`` [probe units] is that of the conventional
-    force; None stands for 0.97 of the limit at which it starts to vibrate at rest. ``line_stiffness`` [1] see
-    ``core.solver``. ``unknown`` keeps what a later version wrote.
+    force; None stands for 0.97 of the limit at which it starts to vibrate at rest. ``scaled_normals`` lets
+    what stands off the control mesh grow with it; ``dense_volume`` lets the exact answer hold the volume of
+    the body itself and not that of the control mesh. For the choices of the model see ``core.mechanics``.
+    ``own_lines`` are lines beside those of the template. ``unknown`` keeps what a later version wrote.
     """
 
     scan: ScanSource
@@ -65,20 +75,29 @@ class Design:
     line_stiffness: float = DEFAULT_LINE_STIFFNESS
     line_contact: str = "glued"
     weights: str = "smooth"
+    scaled_normals: bool = False
+    dense_volume: bool = False
+    member_law: str = "force-density"
+    prestress: float = 0.5
+    line_force: str = "implicit"
+    line_hold: str = "spring"
+    firm_chest: float = 0.0
+    volume_of: str = "each"
+    own_lines: tuple[OwnLine, ...] = ()
     unknown: Mapping[str, Any] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
         for value, choices, what in (
             (self.template, TEMPLATES, "template"),
             (self.volume, CONTROLS, "volume control"),
-            (self.line_contact, CONTACTS, "line contact"),
             (self.weights, WEIGHTS, "t-FFD weights"),
+            *((getattr(self, key), words, key.replace("_", " ")) for key, words in CHOICES.items()),
         ):
             if value not in choices:
                 raise UserError(f"There is no {what} '{value}'.", f"Choose one of: {', '.join(choices)}.")
         for number, low, high, what in (
             (self.line_height, 0.25, 0.75, "line height"),
-            (self.line_stiffness, 0.1, 500.0, "line stiffness"),
+            *((getattr(self, key), *limits, key.replace("_", " ")) for key, limits in RANGES.items()),
             (1.0 if self.gain is None else self.gain, 0.0, 10.0, "gain"),
         ):
             if not low <= number <= high:
@@ -91,6 +110,11 @@ class Design:
                     f"{line.name} cannot be set to {100 * line.ratio:.1f} % of its rest length.",
                     f"Stay between {100 * RATIO_LIMITS[0]:.0f} and {100 * RATIO_LIMITS[1]:.0f} %.",
                 )
+
+    @property
+    def mechanics(self) -> Mechanics:
+        """The choices of the model among the settings."""
+        return Mechanics(**{field.name: getattr(self, field.name) for field in fields(Mechanics)})
 
     def ratio(self, name: str) -> float:
         """Return the ratio of a line, 1 if it is not worn."""
@@ -126,12 +150,18 @@ def from_json(text: str) -> Design:
             )
         scan = ScanSource(**values.pop("scan"))
         lines = tuple(WornLine(str(line["name"]), float(line["ratio"])) for line in values.pop("lines"))
+        own = tuple(_own_line(line) for line in values.pop("own_lines", ()))
         known = {f.name for f in fields(Design)} - {"unknown"}
         unknown = {key: values.pop(key) for key in list(values) if key not in known}
-        return Design(scan=scan, lines=lines, unknown=unknown, **values)
+        return Design(scan=scan, lines=lines, own_lines=own, unknown=unknown, **values)
     except UserError:
         raise
     except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as broken:
         raise ProjectError(
             "The project's design cannot be read.", "Open a backup or start from the scan."
         ) from broken
+
+
+def _own_line(values: Mapping[str, Any]) -> OwnLine:
+    points = tuple(int(point) for point in values["points"])
+    return OwnLine(str(values["name"]), points, bool(values.get("closed", False)))

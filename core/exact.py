@@ -1,176 +1,111 @@
-"""The exact answer: least energy at constant volume, by Newton steps (ours, beyond the paper).
+"""The exact answer that turns aim at: balance at exactly the wanted volumes and lengths (ours).
 
-Unknowns are the free displacements and one pressure for each breast, so that one cannot feed the other. Turns
-hold only the sum of both volumes: on a symmetric body they end at this answer, on an asymmetric one close to
-it. Every iterate has the exact volumes, and the energy falls strictly.
+Newton steps lead there from rest, so that the answer depends on the design alone and not on the way there. If
+they fail, the lengths are walked from rest in strides; under sliding lines turns are the last resort.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
-from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
-from core.mesh import Floats, Points
-from core.solver import ConstrainedModel, State, at_rest
-
-RESIDUAL_LIMIT = 1e-10
-"""Largest unbalanced force over the mean stiffness [mm] at which the balance counts as exact."""
+from core.mesh import Floats
+from core.model import ConstrainedModel
+from core.newton import Balance, balance_at, energy_steps
+from core.potential import Potential
+from core.sliding import Skin, sliding_steps
+from core.solver import Targets, at_rest, iterate
 
 NEWTON_LIMIT = 200
 """Newton steps after which the search is given up; half a dozen are the rule."""
 
-
-@dataclass(frozen=True, eq=False)
-class Balance:
-    """An iterate of the exact solve: state, residual [mm], left and right pressure, Newton steps taken."""
-
-    state: State
-    residual: float
-    pressures: Floats
-    steps: int
-
-    @property
-    def found(self) -> bool:
-        """Whether the residual came down to the limit, with some grace for round-off."""
-        return self.residual < 100.0 * RESIDUAL_LIMIT
+_STRIDE_STEPS = 20
+_LEAST_STRIDE = 1.0 / 256.0
+_TURNS = 3000
 
 
-class Energy:
-    """Elastic energy of cables and lines over the free displacements (f, 3) [mm], with two derivatives."""
+def solve_exact(
+    model: ConstrainedModel,
+    ratios: tuple[float, ...],
+    limit: int = NEWTON_LIMIT,
+    *,
+    excess: Floats | None = None,
+    near: Balance | None = None,
+) -> Balance:
+    """Return the exact balance for line ``ratios``, one per line.
 
-    def __init__(self, model: ConstrainedModel, ratios: tuple[float, ...]) -> None:
-        self.model = model
-        self.cables = model.tensegric.stiffness
-        self.natural = model.natural_lengths(ratios)
-
-    def _spans(self, moved: Points) -> tuple[Points, Floats]:
-        spans = self.model.rest_spans + self.model.signs @ moved
-        return spans, np.sqrt(np.einsum("ij,ij->i", spans, spans))
-
-    def value(self, moved: Points) -> float:
-        """Return the energy above that of the slack rest shape."""
-        _, length = self._spans(moved)
-        lines = self.model.line_stiffness @ (length - self.natural) ** 2
-        return 0.5 * float(np.sum(moved * (self.cables @ moved)) + lines)
-
-    def gradient(self, moved: Points) -> Points:
-        """Return the first derivative, shape (f, 3)."""
-        spans, length = self._spans(moved)
-        tension = self.model.line_stiffness * (1.0 - self.natural / length)
-        return np.asarray(self.cables @ moved + self.model.signs.T @ (tension[:, None] * spans))
-
-    def hessian(self, moved: Points, clip: bool) -> Floats:
-        """Return the second derivative, shape (3 f, 3 f).
-
-        ``clip`` leaves out what compressed lines take from it.
-        """
-        spans, length = self._spans(moved)
-        u = spans / length[:, None]
-        b = 1.0 - self.natural / length
-        if clip:
-            b = np.maximum(b, 0.0)
-        k = self.model.line_stiffness
-        blocks = (k * (1.0 - b))[:, None, None] * u[:, :, None] * u[:, None, :]
-        blocks += (k * b)[:, None, None] * np.eye(3)
-        size = 3 * len(moved)
-        lines = (self.model.line_scatter @ blocks.ravel()).reshape(size, size)
-        return np.asarray(self.model.cable_hessian + lines)
-
-
-def solve_exact(model: ConstrainedModel, ratios: tuple[float, ...], limit: int = NEWTON_LIMIT) -> Balance:
-    """Return the exact balance for line ``ratios``, one per line."""
-    *_, last = newton(model, ratios, limit)
+    ``excess`` (2,) [mm^3] is what the left and the right volume are to have beyond rest. ``near`` is a
+    balance of the same model for other ratios to start from: quicker, but where there are several equilibria
+    the answer then depends on it. If there is no balance, the nearest on the way there is returned, which is
+    not ``found``.
+    """
+    *_, last = newton(model, ratios, limit, excess=excess, near=near)
     return last
 
 
 def newton(
-    model: ConstrainedModel, ratios: tuple[float, ...], limit: int = NEWTON_LIMIT
-) -> Iterator[Balance]:
-    """Yield each Newton iterate from rest, rest included, until exact or ``limit`` steps are made.
-
-    It always starts at rest, so that the answer depends on the design alone and not on the way there.
-    """
-    energy = Energy(model, ratios)
-    wanted = model.volume.side_volumes(model.tensegric.rest)
-    moved = at_rest(model).moved
-    pressures, residual = np.zeros(2), np.inf
-    for step in range(limit + 1):
-        gradient = energy.gradient(moved).ravel()
-        sides = model.volume.side_gradients(model.tensegric.expand(moved)).reshape(2, -1)
-        if step:
-            unbalanced = float(np.abs(gradient - sides.T @ pressures).max())
-            residual = unbalanced / model.tensegric.mean_stiffness
-        yield Balance(State(moved, turn=step), residual, pressures, step)
-        if residual < RESIDUAL_LIMIT or step == limit:
-            return
-        solve = _factor(model, energy, moved, pressures)
-        solved = solve(np.column_stack([-gradient, sides.T]))
-        free, push = solved[:, 0], solved[:, 1:]
-        pressures = -_small_solve(sides @ push, sides @ free)
-        direction = free + push @ pressures
-        taken = _line_search(model, energy, moved, direction, push, wanted, float(gradient @ direction))
-        if taken is None:
-            return
-        moved = taken
-
-
-def _factor(
-    model: ConstrainedModel, energy: Energy, moved: Points, pressures: Floats
-) -> Callable[[Floats], Floats]:
-    """Return a solver of the first positive definite Hessian: the full one, or without what spoils it."""
-    shift = 1e-8 * model.tensegric.mean_stiffness * np.eye(3 * len(moved))
-    bend = model.volume.hessian(model.tensegric.expand(moved), pressures)
-    for clip, curved in ((False, True), (True, True), (True, False)):
-        matrix = energy.hessian(moved, clip) + shift - (bend if curved else 0.0)
-        try:
-            factor = cho_factor(matrix, lower=True, check_finite=False)
-        except LinAlgError:
-            continue
-        return lambda right: np.asarray(cho_solve(factor, right, check_finite=False))
-    raise AssertionError("cables alone are positive definite")
-
-
-def _line_search(
     model: ConstrainedModel,
-    energy: Energy,
-    moved: Points,
-    direction: Floats,
-    push: Floats,
-    wanted: Floats,
-    slope: float,
-) -> Points | None:
-    """Return where the longest halved step that lowers the energy leads, brought to the volumes, or None."""
-    here = energy.value(moved)
-    length = 1.0
-    while length > 1e-6:
-        there = _retract(model, moved + length * direction.reshape(-1, 3), push, wanted)
-        # The last steps lower the energy by less than its round-off: allow for that.
-        if there is not None and energy.value(there) <= here + 1e-4 * length * min(slope, 0.0) + 1e-12 * abs(
-            here
-        ):
-            return there
-        length /= 2.0
-    return None
+    ratios: tuple[float, ...],
+    limit: int = NEWTON_LIMIT,
+    *,
+    excess: Floats | None = None,
+    near: Balance | None = None,
+) -> Iterator[Balance]:
+    """Yield the iterates on the way to the exact balance, the start included; see ``solve_exact``."""
+    potential = Potential(model, ratios, excess)
+    start = balance_at(potential, at_rest(model).moved) if near is None else near
+    last = start
+    for last in _steps(potential, start, min(limit, _first_try(model))):
+        yield last
+    if last.found or last.steps >= limit:
+        return
+    walked = _walk(model, ratios, excess, limit - last.steps)
+    if not walked.found and _slides(model):
+        walked = _turned(potential, ratios)
+    yield replace(walked, steps=last.steps + walked.steps)
 
 
-def _retract(model: ConstrainedModel, moved: Points, push: Floats, wanted: Floats) -> Points | None:
-    """Return ``moved`` shifted along ``push`` (3 f, 2) until both breasts have their ``wanted`` volumes."""
-    tolerance = 1e-13 * abs(model.volume.rest_volume)
-    for _ in range(12):
-        points = model.tensegric.expand(moved)
-        missing = wanted - model.volume.side_volumes(points)
-        if float(np.abs(missing).max()) < tolerance:
-            return moved
-        sides = model.volume.side_gradients(points).reshape(2, -1)
-        moved = moved + (push @ _small_solve(sides @ push, missing)).reshape(-1, 3)
-        if not np.isfinite(moved).all():
-            return None
-    return moved if float(np.abs(missing).max()) < 1e3 * tolerance else None
+def _first_try(model: ConstrainedModel) -> int:
+    return 2 * _STRIDE_STEPS if _slides(model) else NEWTON_LIMIT
 
 
-def _small_solve(matrix: Floats, right: Floats) -> Floats:
-    """Solve the 2 x 2 system of the two breasts; least pressures where they do not matter."""
-    return np.asarray(np.linalg.lstsq(matrix, right, rcond=1e-12)[0])
+def _slides(model: ConstrainedModel) -> bool:
+    return model.mechanics.line_contact == "sliding" and len(model.owner) > 0
+
+
+def _steps(potential: Potential, start: Balance, limit: int) -> Iterator[Balance]:
+    steps = sliding_steps if _slides(potential.model) else energy_steps
+    return steps(potential, start, limit)
+
+
+def _walk(model: ConstrainedModel, ratios: tuple[float, ...], excess: Floats | None, limit: int) -> Balance:
+    """Return the balance that the lengths lead to on a straight way from rest, as far as that goes."""
+    done, stride, steps = 0.0, 0.25, 0
+    last = balance_at(Potential(model, ratios), at_rest(model).moved)
+    while done < 1.0 and steps < limit and stride > _LEAST_STRIDE:
+        share = min(done + stride, 1.0)
+        between = tuple(1.0 + share * (ratio - 1.0) for ratio in ratios)
+        potential = Potential(model, between, None if excess is None else share * excess)
+        *_, found = _steps(potential, last, _STRIDE_STEPS)
+        steps += found.steps
+        if found.found:
+            done, last, stride = share, found, 1.5 * stride
+        else:
+            stride /= 2.0
+    return replace(last, steps=steps, residual=last.residual if done >= 1.0 else np.inf)
+
+
+def _turned(potential: Potential, ratios: tuple[float, ...]) -> Balance:
+    """Return what adaptive turns and a few Newton steps after them come to, balanced or not."""
+    moved = at_rest(potential.model).moved
+    for state, measured in iterate(potential.model, lambda: Targets(ratios), turns=_TURNS):
+        moved = state.moved
+        if measured.step < 1e-6:
+            break
+    place = potential.at(moved)
+    forces, push = Skin(potential.model).projected(place)
+    multipliers = np.asarray(np.linalg.lstsq(push.T, forces, rcond=1e-12)[0])
+    start = balance_at(potential, moved, np.inf, multipliers)
+    return min(_steps(potential, start, _STRIDE_STEPS), key=lambda balance: balance.residual)

@@ -4,24 +4,29 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
+from types import MappingProxyType
 from typing import Any, TypeVar
 
 import numpy as np
 
 from core.body import Body, body_of
 from core.control_mesh import ControlMesh, back_length, fit_control_mesh
-from core.design import Design, ScanSource
+from core.design import Design, OwnLine, ScanSource
 from core.errors import LineError
+from core.gain import gain_limit
 from core.landmarks import Landmarks, find_landmarks
-from core.mesh import Points
+from core.mechanics import Mechanics
+from core.mesh import Floats, Mesh, Points
+from core.model import ConstrainedModel, constrained_model
 from core.moving import MovingFaces, moving_faces
 from core.patch import Patch, patch_fade
 from core.project import ScanFile, read_scan_file
-from core.solver import ConstrainedModel, Marks, Targets, constrained_model, gain_limit
+from core.solver import Marks, Targets
 from core.template import read_template
-from core.tffd import Binding, bind, deform
+from core.tffd import Binding, Operator, Weights, bind
 from core.watch import BodyWatch
 
 GAIN_SHARE = 0.97
@@ -69,8 +74,12 @@ class Stages:
 
         ``control_points`` have shape (n, 3) [mm].
         """
-        positions = deform(self.binding, control_points)
-        return positions[self.moving.vertices], self.moving.normals(positions)
+        places = self._operator.added(self.binding.change(control_points), self.moving.rest)
+        return places, self.moving.normals(places)
+
+    @cached_property
+    def _operator(self) -> Operator:
+        return self.binding.operator.onto(self.moving.moving)
 
 
 class _Stager:
@@ -112,11 +121,13 @@ def build(design: Design, previous: Stages | None = None, tell: Tell = lambda _:
     template = stage("read template", read_template, design.template)
     control = stage("fit control mesh", fit_control_mesh, template, body, landmarks, design.line_height)
     patch = stage("find patch", patch_fade, body.mesh, control)
-    binding = stage("bind body", bind, body.mesh, control.mesh, patch.fade, design.weights)
+    weights = design.weights, design.scaled_normals
+    binding = stage("bind body", _bind, body.mesh, control.mesh, patch.fade, *weights)
     moving = stage("prepare normals", moving_faces, body.mesh, binding.moving)
     watch = stage("watch body", BodyWatch, binding, control, landmarks)
     backs = stage("measure bands", _back_lengths, body, control)
-    model = stage("build model", _model, control, backs, design.worn(), design.line_stiffness)
+    laid = stage("lay own lines", with_own_lines, control, design.own_lines)
+    model = stage("build model", _model, laid, backs, design.worn(), design.mechanics)
     limit = stage("probe gain", gain_limit, model)
     return Stages(
         design,
@@ -146,14 +157,43 @@ def read_body(source: ScanSource) -> tuple[ScanFile, Body]:
     return scan, body_of(scan.name, scan.data, unit=source.unit, up=source.up, front=source.front)
 
 
+def _bind(body: Mesh, control: Mesh, fade: Floats, weights: Weights, scaled_normals: bool) -> Binding:
+    return bind(body, control, fade, weights, scaled_normals=scaled_normals)
+
+
+def with_own_lines(control: ControlMesh, own: tuple[OwnLine, ...]) -> ControlMesh:
+    """Return the control mesh with the paths of ``own`` lines beside those of the template.
+
+    A closed path ends with the point that it begins with. Raises LineError if a line cannot be laid.
+    """
+    paths = dict(control.paths)
+    count = len(control.mesh.vertices)
+    for line in own:
+        path = line.points + line.points[:1] if line.closed else line.points
+        if not line.name or line.name in paths:
+            raise LineError(f"There are two lines '{line.name}'.", "Give each line a name of its own.")
+        if len(path) < 2 or any(a == b for a, b in pairwise(path)):
+            raise LineError(
+                f"The line {line.name} does not go from point to point.",
+                "Name two control points at least, and none twice in a row.",
+            )
+        if not all(0 <= point < count for point in path):
+            raise LineError(
+                f"The line {line.name} names a control point that there is not.",
+                f"The control mesh has the points 0 to {count - 1}.",
+            )
+        paths[line.name] = path
+    return replace(control, paths=MappingProxyType(paths))
+
+
 def _back_lengths(body: Body, control: ControlMesh) -> dict[str, float]:
     return {name: back_length(body.mesh, control, name) for name in control.paths}
 
 
 def _model(
-    control: ControlMesh, backs: Mapping[str, float], worn: frozenset[str], stiffness: float
+    control: ControlMesh, backs: Mapping[str, float], worn: frozenset[str], mechanics: Mechanics
 ) -> ConstrainedModel:
     unknown = sorted(worn - set(control.paths))
     if unknown:
         raise LineError(f"There is no line '{unknown[0]}'.", f"The lines are: {', '.join(control.paths)}.")
-    return constrained_model(control, worn=worn, back_lengths=backs, line_stiffness=stiffness)
+    return constrained_model(control, worn=worn, back_lengths=backs, mechanics=mechanics)

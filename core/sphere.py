@@ -9,8 +9,9 @@ import numpy as np
 import trimesh
 
 from core.control_mesh import ControlMesh
+from core.mechanics import Mechanics
 from core.mesh import Mesh, Points, frozen
-from core.solver import DEFAULT_LINE_STIFFNESS, ConstrainedModel, constrained_model
+from core.model import ConstrainedModel, constrained_model
 from core.tffd import Binding, bind, deform
 
 RINGS, SPOKES = 7, 12
@@ -38,9 +39,7 @@ class SphereModel:
         return self.body.moved(deform(self.binding, self.centred(moved)))
 
 
-def sphere_model(
-    worn: Collection[str] = ("horizontal",), line_stiffness: float = DEFAULT_LINE_STIFFNESS
-) -> SphereModel:
+def sphere_model(worn: Collection[str] = ("horizontal",), mechanics: Mechanics | None = None) -> SphereModel:
     """Build the sphere with a ``horizontal`` and a ``vertical`` line; ``worn`` ones act (paper section 3).
 
     The control mesh has 86 points, all free, and 168 triangles; the body has 20,480. The paper gives neither.
@@ -49,9 +48,7 @@ def sphere_model(
     ball = trimesh.creation.icosphere(subdivisions=5, radius=RADIUS)
     body = Mesh(ball.vertices, ball.faces)
     binding = bind(body, control.mesh, np.ones(len(body.vertices)))
-    return SphereModel(
-        control, body, binding, constrained_model(control, worn=worn, line_stiffness=line_stiffness)
-    )
+    return SphereModel(control, body, binding, constrained_model(control, worn=worn, mechanics=mechanics))
 
 
 def sphere_control() -> ControlMesh:

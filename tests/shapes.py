@@ -12,8 +12,10 @@ from core.body import read_scan
 from core.control_mesh import ControlMesh, fit_control_mesh
 from core.landmarks import find_landmarks
 from core.lines import line_on
+from core.mechanics import Mechanics
 from core.mesh import Mesh, frozen
-from core.solver import ConstrainedModel, Record, State, Targets, assemble, iterate
+from core.model import ConstrainedModel, assemble
+from core.solver import Record, State, Targets, iterate
 from core.template import read_template
 from core.tensegric import TensegricModel, tensegric_model
 from core.volume import volume_measure
@@ -93,10 +95,10 @@ def tent(height: float = 3.0) -> tuple[Mesh, np.ndarray]:
 def tent_model(stiffness: float = 16.0) -> ConstrainedModel:
     """The tent with a line over its ridge, from corner to corner."""
     mesh, fixed = tent()
-    tensegric = tensegric_model(mesh, fixed)
+    tensegric = tensegric_model(mesh, fixed, Mechanics(line_stiffness=stiffness))
     line = line_on("ridge", (2, 4, 0), mesh.vertices, tensegric.free)
     volume = volume_measure(mesh, tensegric.free)
-    return assemble(tensegric, (line,), volume, ("ridge",), stiffness)
+    return assemble(tensegric, (line,), volume, ("ridge",))
 
 
 def string() -> TensegricModel:

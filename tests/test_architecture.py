@@ -18,8 +18,8 @@ FLOORS = {
     "ground": "errors mesh sections proximity moving",
     "anatomy": "scan_file repair symmetry stance upright body trunk relief landmarks torso template profiles "
     "fit_check laying control_mesh measure detect",
-    "mechanics": "tensegric lines volume patch tffd",
-    "solving": "condition solver exact verdict comparison watch",
+    "mechanics": "mechanics band springs cells tensegric lines volume patch tffd",
+    "solving": "condition layout sweep model solver gain potential newton sliding exact verdict comparison watch",
     "document": "design project pipeline sphere live export solution report",
     "seeing": "camera scene_stage scene_body scene_bands scene_control scene",
     "wording": "display tokens words samples",

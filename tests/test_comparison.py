@@ -8,7 +8,9 @@ from shapes import torso
 
 from core.comparison import MOST_TURNS, Comparison, judge_balance
 from core.exact import solve_exact
-from core.solver import Marks, Targets, constrained_model, gain_limit, iterate
+from core.gain import gain_limit
+from core.model import constrained_model
+from core.solver import Marks, Targets, iterate
 
 MODEL = constrained_model(torso(), worn=["mid-bust"])
 CALM = 0.9 * gain_limit(MODEL)

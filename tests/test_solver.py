@@ -8,19 +8,11 @@ import pytest
 from shapes import mid_bust, run, tent_model, torso
 
 from core.lines import line_on
+from core.mechanics import DEFAULT_LINE_STIFFNESS
 from core.mesh import Mesh
-from core.solver import (
-    DEFAULT_LINE_STIFFNESS,
-    Marks,
-    State,
-    Targets,
-    assemble,
-    at_rest,
-    constrained_model,
-    iterate,
-    record,
-    turn,
-)
+from core.model import assemble, constrained_model
+from core.potential import Potential
+from core.solver import Marks, State, Targets, at_rest, iterate, record, turn
 from core.sphere import sphere
 from core.tensegric import tensegric_model
 from core.volume import Pressure, volume_measure
@@ -33,31 +25,32 @@ SKEW = constrained_model(torso(skew=0.3))
 def test_line_stiffness_by_hand():
     model = tent_model(stiffness=16.0)
     # Two equal segments, each 16 times what all cables at the tip make together.
-    np.testing.assert_allclose(model.line_stiffness, 16.0 * model.tensegric.mean_stiffness)
-    np.testing.assert_allclose(model.rest_segments, np.sqrt(41.0))
+    np.testing.assert_allclose(model.segments.stiffness, 16.0 * model.tensegric.mean_stiffness)
+    np.testing.assert_allclose(model.segments.rest_lengths, np.sqrt(41.0))
     assert DEFAULT_LINE_STIFFNESS == 16.0
 
 
 def test_a_tape_is_the_same_along_a_line():
     np.testing.assert_allclose(
-        TORSO.line_stiffness * TORSO.rest_segments,
-        (TORSO.line_stiffness * TORSO.rest_segments)[0],
+        TORSO.segments.stiffness * TORSO.segments.rest_lengths,
+        (TORSO.segments.stiffness * TORSO.segments.rest_lengths)[0],
         rtol=1e-12,
     )
 
 
 def test_hooke_force_by_hand():
     model = tent_model()
-    k, length = model.line_stiffness[0], np.sqrt(41.0)
-    force = model.pull(model.tensegric.rest, model.natural_lengths((0.9,)))
+    k, length = model.segments.stiffness[0], np.sqrt(41.0)
+
+    def pull(ratio):
+        return -Potential(model, (ratio,)).at(np.zeros((1, 3))).line
+
     # Both segments are too long by a tenth and pull the tip along them, which is 3 down in sqrt(41).
-    np.testing.assert_allclose(force, [[0, 0, -2 * k * (0.1 * length) * 3 / length]], atol=1e-12)
-    longer = model.pull(model.tensegric.rest, model.natural_lengths((1.1,)))
-    np.testing.assert_allclose(longer, -force, atol=1e-12)
+    np.testing.assert_allclose(pull(0.9), [[0, 0, -2 * k * (0.1 * length) * 3 / length]], atol=1e-12)
+    np.testing.assert_allclose(pull(1.1), -pull(0.9), atol=1e-12)
 
 
 def test_hooke_force_equals_the_tension_of_every_segment():
-    """What the implicit member k (n u - e) adds beside its stiffness is the spring's k (n - |e|) u."""
     rng = np.random.default_rng(2)
     moved = 4.0 * rng.normal(size=(len(SKEW.tensegric.free), 3))
     points, ratios = SKEW.tensegric.expand(moved), (0.9, 0.8, 1.1)
@@ -65,7 +58,7 @@ def test_hooke_force_equals_the_tension_of_every_segment():
     for index, line in enumerate(SKEW.lines):
         for (i, j), k, natural in zip(
             line.pairs,
-            SKEW.line_stiffness[SKEW.owner == index],
+            SKEW.segments.stiffness[SKEW.owner == index],
             ratios[index] * line.rest_lengths,
             strict=line.constrains,
         ):
@@ -73,7 +66,7 @@ def test_hooke_force_equals_the_tension_of_every_segment():
             tension = k * (np.linalg.norm(span) - natural) * span / np.linalg.norm(span)
             force[i] -= tension
             force[j] += tension
-    found = SKEW.pull(points, SKEW.natural_lengths(ratios)) - SKEW.line_laplacian @ moved
+    found = -Potential(SKEW, ratios).at(moved).line
     np.testing.assert_allclose(found, force[SKEW.tensegric.free], atol=1e-10)
 
 
@@ -114,7 +107,7 @@ def plain_sweep(model, targets, state):
                 j = b if i == a else a
                 total = total + q * (now[j] + tensegric.rest[i] - tensegric.rest[j])
                 stiffness += q
-        for (a, b), k, length in zip(model.pairs, model.line_stiffness, natural, strict=True):
+        for (a, b), k, length in zip(model.segments.pairs, model.segments.stiffness, natural, strict=True):
             if i in (a, b):
                 j = b if i == a else a
                 way = old[i] - old[j]

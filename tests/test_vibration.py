@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from shapes import central_difference, errors_of, fitted, mid_bust, run, torso
 
-from core.solver import State, Targets, at_rest, constrained_model, gain_limit, turn
+from core.gain import gain_limit
+from core.model import constrained_model
+from core.solver import State, Targets, at_rest, turn
 from core.volume import Pressure
 
 CONTROLS = ("none", "conventional", "adaptive")

@@ -1,0 +1,53 @@
+"""Mechanics: the choices that make up the model, one small immutable value."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+LAWS = ("force-density", "prestressed", "co-rotated")
+LINE_FORCES = ("implicit", "explicit")
+CONTACTS = ("glued", "sliding")
+HOLDS = ("spring", "held")
+VOLUMES = ("each", "both")
+
+DEFAULT_LINE_STIFFNESS = 16.0
+"""Stiffness of a line segment in units of the cables' mean stiffness at a point [1]; ours."""
+
+
+@dataclass(frozen=True)
+class Mechanics:
+    """How members, lines and volume act; the paper leaves all of it open, so the choices are ours.
+
+    ``member_law`` is that of the cables: "force-density" (a constant force for each mm of shift),
+    "prestressed" (Hooke cables of natural length (1 - ``prestress``) times that at rest) or "co-rotated"
+    (shapes of the neighbourhood turn freely). ``line_stiffness`` [1] in units of the cables' mean stiffness
+    at a point. ``line_force`` tells whether a turn solves for the line's force together with the cables
+    ("implicit") or keeps it during the turn ("explicit", the paper to the letter); both end in the same
+    place. ``line_contact`` "glued" lets the whole force of a line act on the skin, "sliding" only its part
+    across the skin, the garment carries the rest. ``line_hold``: a line is a "spring" (paper section 3) or
+    its length is "held" exactly, under one tension. ``firm_chest`` [1] ties points to their rest, the more
+    the thinner the tissue below; 0 not at all, 0.1 firm. ``volume_of`` tells what the exact answer holds:
+    "each" breast, or the sum of "both".
+    """
+
+    member_law: str = "force-density"
+    prestress: float = 0.5
+    line_stiffness: float = DEFAULT_LINE_STIFFNESS
+    line_force: str = "implicit"
+    line_contact: str = "glued"
+    line_hold: str = "spring"
+    firm_chest: float = 0.0
+    volume_of: str = "each"
+
+
+CHOICES = {
+    "member_law": LAWS,
+    "line_force": LINE_FORCES,
+    "line_contact": CONTACTS,
+    "line_hold": HOLDS,
+    "volume_of": VOLUMES,
+}
+"""The words that each choice allows."""
+
+RANGES = {"prestress": (0.1, 1.0), "line_stiffness": (0.1, 500.0), "firm_chest": (0.0, 1.0)}
+"""The least and the largest number that each setting allows."""

@@ -1,0 +1,144 @@
+"""ConstrainedModel: a tensegric model with its constraining lines and its volume, ready to be solved."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy import sparse
+
+from core.band import Operator, compact
+from core.control_mesh import ControlMesh
+from core.layout import Layout, layout_of
+from core.lines import Line, line_on
+from core.mechanics import Mechanics
+from core.mesh import Floats, Indices, Points
+from core.springs import Springs, laplacian, springs
+from core.sweep import Sweep, glued_sweep, sliding_sweep
+from core.tensegric import TensegricModel, tensegric_model
+from core.volume import VolumeMeasure, volume_measure
+
+
+@dataclass(frozen=True, eq=False)
+class ConstrainedModel:
+    """A tensegric model with its constraining lines and its volume: all that stays fixed during a run.
+
+    ``lines`` are all lines, worn or only measured. ``segments`` are those of the worn ones as springs, the
+    same tape along a line; ``owner`` (s,) tells the line of each.
+    """
+
+    tensegric: TensegricModel
+    lines: tuple[Line, ...]
+    volume: VolumeMeasure
+    segments: Springs
+    owner: Indices
+
+    @property
+    def mechanics(self) -> Mechanics:
+        """The choices that this model was built with."""
+        return self.tensegric.mechanics
+
+    @cached_property
+    def stiffness(self) -> Operator:
+        """Stiffness of cables, ground and implicit line segments between free points, shape (f, f) [1]."""
+        return compact(sparse.csr_array(sparse.csr_array(self.tensegric.stiffness) + self.line_laplacian))
+
+    @cached_property
+    def line_laplacian(self) -> sparse.csr_array:
+        """What the segments of the lines add to the stiffness of a turn, shape (f, f) [1]."""
+        implicit = self.mechanics.line_force == "implicit"
+        weight = self.segments.stiffness if implicit else np.zeros(len(self.owner))
+        return laplacian(self.tensegric.place, self.segments.pairs, weight)
+
+    @cached_property
+    def sweep(self) -> Sweep:
+        """How one turn answers the forces that it finds unbalanced."""
+        if self.mechanics.line_contact == "glued" or not len(self.owner):
+            return glued_sweep(self.stiffness)
+        pairs = self.tensegric.place[self.segments.pairs]
+        return sliding_sweep(self.tensegric.stiffness, self.line_laplacian, np.unique(pairs[pairs >= 0]))
+
+    @cached_property
+    def rest_gradient(self) -> Points:
+        """The direction of the volume force at rest, shape (f, 3) [mm^2]."""
+        return self.volume.gradient(self.tensegric.rest)
+
+    @cached_property
+    def probe(self) -> float:
+        """Volume change of one sweep per unit of pressure, dV/dP [mm^5], measured on a zero field (ours)."""
+        a = self.rest_gradient
+        return float(np.sum(a * self.sweep.answer(a, np.zeros_like(a), a)))
+
+    @cached_property
+    def layout(self) -> Layout:
+        """Where the second derivatives lie that the exact answer needs."""
+        return layout_of(self.tensegric, self.segments, self.volume)
+
+    @property
+    def pressure_unit(self) -> float:
+        """The pressure that would change the whole volume by 100 % in one turn, linearised."""
+        return self.volume.rest_volume / self.probe
+
+    def natural_lengths(self, ratios: tuple[float, ...]) -> Floats:
+        """Return the natural lengths of the worn segments for a ratio per line, shape (s,) [mm].
+
+        Source: paper section 3.
+        """
+        return np.asarray(np.asarray(ratios)[self.owner] * self.segments.rest_lengths)
+
+    def sums(self, values: Floats) -> Floats:
+        """Return the sums of values of the worn segments over each line, shape (lines,)."""
+        return np.asarray(np.bincount(self.owner, values, len(self.lines)), dtype=np.float64)
+
+    @cached_property
+    def tapes(self) -> Floats:
+        """Stiffness of each line as a whole, its segments in a row, shape (lines,) [1]; 0 if not worn."""
+        give = self.sums(1.0 / self.segments.stiffness)
+        return np.where(give > 0.0, 1.0 / np.where(give > 0.0, give, 1.0), 0.0)
+
+    @cached_property
+    def pulling(self) -> Indices:
+        """The lines that act on a point which can move, ascending."""
+        return np.unique(self.owner)
+
+
+def constrained_model(
+    control: ControlMesh,
+    *,
+    worn: Collection[str] | None = None,
+    back_lengths: Mapping[str, float] | None = None,
+    mechanics: Mechanics | None = None,
+) -> ConstrainedModel:
+    """Build the model of a control mesh with a line on each of its paths.
+
+    ``worn`` names the lines that act (all of them if None), the others are only measured; ``back_lengths``
+    [mm] see ``Line``.
+    """
+    tensegric = tensegric_model(control.mesh, control.fixed, mechanics)
+    backs = back_lengths or {}
+    lines = tuple(
+        line_on(name, path, control.mesh.vertices, tensegric.free, backs.get(name, 0.0))
+        for name, path in control.paths.items()
+    )
+    columns = control.column[control.mesh.faces].sum(axis=1)
+    volume = volume_measure(control.mesh, tensegric.free, columns > 0)
+    return assemble(tensegric, lines, volume, control.paths if worn is None else worn)
+
+
+def assemble(
+    tensegric: TensegricModel, lines: tuple[Line, ...], volume: VolumeMeasure, worn: Collection[str]
+) -> ConstrainedModel:
+    """Join the parts of a model.
+
+    A line that is not worn, or lies on fixed points alone, is measured but does not pull. Its stiffness per
+    mm is the same all along; its segments have the mechanics' ``line_stiffness`` on the mean (ours).
+    """
+    unit = tensegric.mechanics.line_stiffness * tensegric.mean_stiffness
+    pulling = [(index, line) for index, line in enumerate(lines) if line.constrains and line.name in worn]
+    pairs = np.concatenate([np.empty((0, 2), dtype=np.int64), *(line.pairs for _, line in pulling)])
+    owner = np.repeat([i for i, _ in pulling], [len(line.pairs) for _, line in pulling]).astype(np.int64)
+    tape = [unit * line.rest_lengths.mean() / line.rest_lengths for _, line in pulling]
+    segments = springs(tensegric.rest, tensegric.place, pairs, np.concatenate([np.empty(0), *tape]))
+    return ConstrainedModel(tensegric, lines, volume, segments, owner)

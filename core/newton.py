@@ -1,0 +1,135 @@
+"""Newton steps to the least energy at constant volume: the exact answer under glued lines (ours).
+
+Unknowns are the free displacements and a multiplier for all that is held: a pressure for each breast, so that
+one cannot feed the other (or one for the sum of both, which is what turns hold), and a tension for each line
+whose length is held.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from core.band import Solve
+from core.mesh import Floats, Points
+from core.potential import Place, Potential
+from core.solver import State
+
+RESIDUAL_LIMIT = 1e-10
+"""Largest unbalanced force over the mean stiffness [mm] at which the balance counts as exact."""
+
+
+@dataclass(frozen=True, eq=False)
+class Balance:
+    """An iterate of the exact solve: state, residual [mm], left and right pressure, Newton steps taken.
+
+    ``tensions`` (lines,) [mm] are the multipliers of held lines; ``multipliers`` all, in the solver's units.
+    """
+
+    state: State
+    residual: float
+    pressures: Floats
+    steps: int
+    multipliers: Floats = field(default_factory=lambda: np.zeros(2))
+    tensions: Floats = field(default_factory=lambda: np.zeros(0))
+
+    @property
+    def found(self) -> bool:
+        """Whether the residual came down to the limit, with some grace for round-off."""
+        return self.residual < 100.0 * RESIDUAL_LIMIT
+
+
+def energy_steps(potential: Potential, start: Balance, limit: int) -> Iterator[Balance]:
+    """Yield ``start`` and the Newton iterates after it, until exact, lost, or ``limit`` steps are made.
+
+    Every iterate but the start has the exact volumes and lengths, and the energy falls strictly.
+    """
+    moved, multipliers = start.state.moved, start.multipliers
+    for step in range(limit + 1):
+        place = potential.at(moved)
+        forces = place.gradient - place.slopes.T @ multipliers
+        yield balance_at(potential, moved, potential.residual(place, forces), multipliers, step)
+        if potential.residual(place, forces) < RESIDUAL_LIMIT or step == limit:
+            return
+        taken = _step(potential, place, multipliers)
+        if taken is None:
+            return
+        moved, multipliers = taken
+
+
+def balance_at(
+    potential: Potential,
+    moved: Points,
+    residual: float = np.inf,
+    multipliers: Floats | None = None,
+    steps: int = 0,
+) -> Balance:
+    """Return a place as an iterate: ``moved`` (f, 3) [mm] with its residual and multipliers, 0 if None."""
+    if multipliers is None:
+        multipliers = np.zeros(len(potential.wanted))
+    state = State(moved, turn=steps)
+    pressures, tensions = potential.pressures(multipliers), potential.tensions(multipliers)
+    return Balance(state, residual, pressures, steps, multipliers, tensions)
+
+
+def _step(potential: Potential, place: Place, multipliers: Floats) -> tuple[Points, Floats] | None:
+    """Return where one Newton step leads, and the multipliers there; None if no step lowers the energy."""
+    solve = factor(potential, place, multipliers)
+    solved = solve(np.column_stack([-place.gradient, place.slopes.T]))
+    free, push = solved[:, 0], solved[:, 1:]
+    if (np.abs(place.held) > potential.tolerance).any():
+        start = _retract(potential, place.moved, push)
+        if start is None:
+            return None
+        return start, multipliers
+    multipliers = -small_solve(place.slopes @ push, place.slopes @ free)
+    direction = free + push @ multipliers
+    moved = _line_search(potential, place, direction, push)
+    return None if moved is None else (moved, multipliers)
+
+
+def factor(potential: Potential, place: Place, multipliers: Floats) -> Solve:
+    """Return a solver of the first positive definite Hessian: the full one, or without what spoils it."""
+    for clip, curved in ((False, True), (True, True), (True, False)):
+        matrix = potential.hessian(place, multipliers, clip=clip, curved=curved)
+        solve = potential.model.layout.band.cholesky(matrix)
+        if solve is not None:
+            return solve
+    raise AssertionError("cables alone are positive definite")
+
+
+def _line_search(potential: Potential, place: Place, direction: Floats, push: Floats) -> Points | None:
+    """Return where the longest halved step that lowers the energy leads, all held again, or None."""
+    here, slope = potential.energy(place.moved), float(place.gradient @ direction)
+    length = 1.0
+    while length > 1e-6:
+        there = _retract(potential, place.moved + length * direction.reshape(-1, 3), push)
+        if there is not None:
+            # The last steps lower the energy by less than its round-off: allow for that.
+            allowed = here + 1e-4 * length * min(slope, 0.0) + 1e-12 * abs(here)
+            if potential.energy(there) <= allowed:
+                return there
+        length /= 2.0
+    return None
+
+
+def _retract(potential: Potential, moved: Points, push: Floats) -> Points | None:
+    """Return ``moved`` shifted along ``push`` (3 f, h) until all that is held is what it should be."""
+    for _ in range(12):
+        away, slopes = potential.held(moved)
+        if (np.abs(away) < potential.tolerance).all():
+            return moved
+        moved = moved - (push @ small_solve(slopes @ push, away)).reshape(-1, 3)
+        if not np.isfinite(moved).all():
+            return None
+    return moved if (np.abs(away) < 1e3 * potential.tolerance).all() else None
+
+
+def small_solve(matrix: Floats, right: Floats) -> Floats:
+    """Solve the small system of what is held; least multipliers where they do not matter."""
+    try:
+        return np.asarray(np.linalg.solve(matrix, right))
+    except np.linalg.LinAlgError:
+        return np.asarray(np.linalg.lstsq(matrix, right, rcond=1e-12)[0])
