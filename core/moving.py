@@ -6,77 +6,92 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy import sparse
 
-from core.mesh import Faces, Indices, Mesh, Points, frozen, incidence, unit
+from core import kernels
+from core.mesh import Flags, Floats, Indices, Mesh, Points, frozen, incidence
 
 
 @dataclass(frozen=True, eq=False)
 class MovingFaces:
     """The faces of a body that move with some of its vertices; made by ``moving_faces``.
 
-    ``faces`` are these faces, shape (a, 3), and ``vertices`` all their corners, shape (r,), ascending: the
-    vertices whose normals change. ``sides`` are two operators, shape (a, N), that give the sides of each
-    face from its first corner; ``gather``, shape (r, a), sums face values at ``vertices``; ``still`` is twice
-    the area vectors of the other faces there, shape (r, 3) [mm^2].
+    ``vertices`` are all corners of these faces, shape (r,), ascending: the vertices whose normals change;
+    ``moving`` are the places among them of those that move, shape (k,). ``corners`` (3, a) are the faces, as
+    places in ``vertices``, and ``left`` (a,) tells which lie on the subject's left at rest. ``still`` is
+    twice the area vectors of the other faces there, shape (r, 3) [mm^2]. Below, ``places`` are those of
+    ``vertices``, shape (r, 3) [mm].
     """
 
     body: Mesh
-    faces: Faces
     vertices: Indices
-    sides: tuple[sparse.csr_array, sparse.csr_array]
-    gather: sparse.csr_array
+    moving: Indices
+    corners: Indices
+    left: Flags
     still: Points
+    middle: float
 
-    def normals(self, positions: Points) -> Points:
-        """Return the unit normals of ``vertices``, shape (r, 3) [1], at ``positions``, shape (N, 3) [mm]."""
-        return unit(self.still + self.gather @ self._spans(positions))
+    @cached_property
+    def rest(self) -> Points:
+        """The places at rest, shape (r, 3) [mm]."""
+        return frozen(self.body.vertices[self.vertices])
 
-    def volume_change(self, positions: Points) -> float:
-        """Return the volume gained since rest at ``positions``, shape (N, 3) [mm^3].
+    def normals(self, places: Points) -> Points:
+        """Return the unit normals of ``vertices``, shape (r, 3) [1]."""
+        return kernels.normals(places, self.corners, self.still)
+
+    def volume_change(self, places: Points) -> float:
+        """Return the volume gained since rest [mm^3].
 
         Exact where no open border moves; a moving border is closed by a cone from the middle of the faces.
         """
-        return self._cone(positions) - self._rest_cone
+        return float(self.side_volume_changes(places).sum())
+
+    def side_volume_changes(self, places: Points) -> Floats:
+        """Return the volumes gained since rest by the subject's left and right, shape (2,) [mm^3].
+
+        Each side is closed by the cone from a point in the middle, so that both are the volume gained (ours).
+        """
+        return np.asarray(self._cones(places) - self._rest_cones)
+
+    def _cones(self, places: Points) -> Floats:
+        return kernels.cones(places - self._apex, self.corners, self.left)
 
     @cached_property
-    def _rest_cone(self) -> float:
-        return self._cone(self.body.vertices)
+    def _rest_cones(self) -> Floats:
+        return self._cones(self.rest)
 
     @cached_property
-    def _apex(self) -> Points:
-        return np.asarray(self.body.vertices[self.vertices].sum(axis=0) / max(len(self.vertices), 1))
-
-    def _cone(self, positions: Points) -> float:
-        first = positions[self.faces[:, 0]] - self._apex
-        return float(np.einsum("ij,ij->", first, self._spans(positions))) / 6.0
-
-    def _spans(self, positions: Points) -> Points:
-        """Return the cross products of the sides, shape (a, 3) [mm^2], column by column, which is fast."""
-        (ax, ay, az), (bx, by, bz) = ((side @ positions).T for side in self.sides)
-        return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=1)
+    def _apex(self) -> Floats:
+        y, z = self.rest[:, 1:].sum(axis=0) / max(len(self.rest), 1)
+        return np.array([self.middle, y, z])
 
 
-def moving_faces(body: Mesh, vertices: Indices) -> MovingFaces:
-    """Collect the faces of ``body`` that have a corner among ``vertices``, shape (k,)."""
+def moving_faces(body: Mesh, vertices: Indices, middle: float | None = None) -> MovingFaces:
+    """Collect the faces of ``body`` that have a corner among ``vertices``, shape (k,).
+
+    Left is where the centroid of a face has x > ``middle`` [mm]; that of the vertices if None.
+    """
     moves = np.zeros(len(body.vertices), dtype=bool)
     moves[vertices] = True
     touched = moves[body.faces].any(axis=1)
-    faces = body.faces[touched]
-    corners = np.unique(faces)
-    gather = incidence(faces, len(body.vertices))[corners]
-    others = incidence(body.faces[~touched], len(body.vertices))[corners]
-    still = frozen(2.0 * (others @ body.area_vectors[~touched]))
-    sides = (_side(faces, 1, len(body.vertices)), _side(faces, 2, len(body.vertices)))
-    return MovingFaces(body, faces, corners, sides, gather, still)
-
-
-def _side(faces: Faces, corner: int, vertex_count: int) -> sparse.csr_array:
-    """Return the operator from positions to the sides from corner 0 to ``corner``, shape (a, N)."""
-    rows = np.arange(len(faces))
-    ends = np.stack([faces[:, corner], faces[:, 0]], axis=1).ravel()
-    signs = np.tile([1.0, -1.0], len(faces))
-    return sparse.csr_array((signs, (np.repeat(rows, 2), ends)), shape=(len(faces), vertex_count))
+    concerned = moves.copy()
+    concerned[body.faces[touched]] = True
+    corners = np.flatnonzero(concerned)
+    if middle is None:
+        middle = float(body.vertices[corners, 0].sum() / max(len(corners), 1))
+    place = np.cumsum(concerned) - 1
+    others = ~touched & concerned[body.faces].any(axis=1)
+    gather = incidence(body.faces[others], len(body.vertices))[corners]
+    faces = np.ascontiguousarray(body.faces[touched].T)
+    return MovingFaces(
+        body,
+        corners,
+        place[vertices],
+        place[faces],
+        body.vertices[faces, 0].mean(axis=0) > middle,
+        frozen(2.0 * (gather @ body.area_vectors[others])),
+        middle,
+    )
 
 
 def volume_change(body: Mesh, moved: Points) -> float:
@@ -84,4 +99,5 @@ def volume_change(body: Mesh, moved: Points) -> float:
 
     Only the faces that moved are summed; see ``MovingFaces.volume_change`` for open borders.
     """
-    return moving_faces(body, np.flatnonzero((moved != body.vertices).any(axis=1))).volume_change(moved)
+    faces = moving_faces(body, np.flatnonzero((moved != body.vertices).any(axis=1)))
+    return faces.volume_change(moved[faces.vertices])

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from core.control_mesh import ControlMesh
 from core.mesh import Flags, Floats, Indices, Mesh, Points, frozen
-from core.proximity import centroids, corner_reach, nearest_place, pairs_around
+from core.proximity import Frames, centroids, corner_reach, neighbourhoods
 
 FAR = 60.0
 """No vertex further than this from the control mesh belongs to the patch [mm]."""
@@ -145,19 +145,30 @@ def _by_distance(body: Mesh, control: ControlMesh, fade: float) -> Floats:
     """
     mesh = control.mesh
     around = _near_patch(body.vertices, mesh)
-    pairs = pairs_around(body.vertices[around], mesh)
-    distance2, place = nearest_place(pairs, mesh)
-    order = np.lexsort((distance2, pairs.point))
-    nearest = order[np.searchsorted(pairs.point, np.arange(len(around)))]
-    triangle = pairs.triangle[nearest]
-    spots = np.einsum("ij,ijk->ik", place[nearest], mesh.vertices[mesh.faces[triangle]])
+    distance2, triangle, spots = _nearest_spots(body.vertices[around], mesh)
     inwards = _to_loop(spots, mesh.vertices[control.border])
     inwards[inwards < 1e-6] = 0.0  # before the border itself, but for rounding
-    near = smooth_step((FAR - np.sqrt(distance2[nearest])) / (FAR - CLOSE))
+    near = smooth_step((FAR - np.sqrt(distance2)) / (FAR - CLOSE))
     facing = np.einsum("ij,ij->i", body.vertex_normals[around], mesh.face_normals[triangle])
     result = np.zeros(len(body.vertices))
     result[around] = smooth_step(inwards / fade) * near * smooth_step(1.0 + 2.0 * facing)
     return result
+
+
+def _nearest_spots(points: Points, mesh: Mesh) -> tuple[Floats, Indices, Points]:
+    """Return squared distance (k,) [mm^2], triangle (k,) and place (k, 3) [mm] nearest to each point."""
+    frames = Frames.of(mesh)
+    distance2, nearest = np.empty(len(points)), np.empty(len(points), dtype=np.int64)
+    place = np.empty((len(points), 2))
+    for rows, triangles in neighbourhoods(points, mesh):
+        u, v, h = frames.coordinates(points[rows], triangles)
+        away = frames.distance2(triangles, u, v, h)
+        at = np.argmin(away, axis=0), np.arange(len(rows))
+        distance2[rows], nearest[rows] = away[at], triangles[at[0]]
+        on_triangle = frames.nearest_place(triangles, u, v)
+        place[rows] = np.stack([on_triangle[0][at], on_triangle[1][at]], axis=1)
+    v0, v1, v2 = (mesh.vertices[mesh.faces[nearest, k]] for k in range(3))
+    return distance2, nearest, v0 + place[:, :1] * (v1 - v0) + place[:, 1:] * (v2 - v0)
 
 
 def _to_loop(points: Points, corners: Points) -> Floats:

@@ -1,8 +1,14 @@
-"""Where points lie seen from triangles: coordinates in their frames, and the nearest place on them."""
+"""Where points lie seen from triangles: coordinates in their frames, and the nearest place on them.
+
+Points are asked about in groups that lie close together, each with all triangles that matter to it. So every
+array is a full table, one row a triangle and one column a point, and no pair needs an index.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.spatial.distance import cdist
@@ -12,24 +18,10 @@ from core.mesh import Flags, Floats, Indices, Mesh, Points
 _FLAT = 1e-10
 """A triangle whose area is below this part of its longest side squared has no usable frame."""
 
+_GROUP = 256
+"""At most so many points form a group: its tables then stay in the cache of the processor."""
 
-@dataclass(frozen=True, eq=False)
-class Pairs:
-    """Point-triangle pairs, ordered by point, each with the point's place in the triangle's frame.
-
-    ``point`` and ``triangle`` are the indices, shape (p,). With corner v0, sides e1, e2 and unit normal n
-    the point is v0 + u e1 + v e2 + h n; ``u``, ``v`` [1] and ``h`` [mm] have shape (p,).
-    """
-
-    point: Indices
-    triangle: Indices
-    u: Floats
-    v: Floats
-    h: Floats
-
-    def chosen(self, keep: Flags | Indices) -> Pairs:
-        """Return the pairs that ``keep`` selects."""
-        return Pairs(self.point[keep], self.triangle[keep], self.u[keep], self.v[keep], self.h[keep])
+Table = tuple[Floats, Floats, Floats]
 
 
 def usable(mesh: Mesh) -> Flags:
@@ -48,62 +40,102 @@ def corner_reach(mesh: Mesh) -> Floats:
     return np.asarray(np.linalg.norm(mesh.vertices[mesh.faces] - centroids(mesh)[:, None], axis=2))
 
 
-def pairs_within(points: Points, mesh: Mesh, reach: Floats) -> Pairs:
-    """Pair ``points``, shape (k, 3) [mm], with the usable triangles whose centroid is nearer than ``reach``.
-
-    ``reach`` is one radius for each triangle, shape (m,) [mm].
-    """
-    near = (cdist(points, centroids(mesh)) < reach) & usable(mesh)
-    return _framed(points, mesh, near)
-
-
-def pairs_around(points: Points, mesh: Mesh, spread: float = 0.0) -> Pairs:
-    """Pair ``points``, shape (k, 3) [mm], with every usable triangle that can matter, and some more.
+def neighbourhoods(
+    points: Points, mesh: Mesh, spread: float = 0.0, reach: Floats | None = None
+) -> Iterator[tuple[Indices, Indices]]:
+    """Split ``points``, shape (k, 3) [mm], into groups; give rows and the usable triangles that may matter.
 
     Certain to be there: each triangle at a distance d with d^2 <= d_min^2 + ``spread``^2 [mm], d_min being
-    the distance of the point to the nearest triangle.
+    the distance of the point to the nearest triangle; or, if ``reach`` (m,) [mm] is given, each whose
+    centroid is nearer than that. Points that none can matter to are in no group.
     """
-    good = usable(mesh)
-    to_centroid = np.where(good, cdist(points, centroids(mesh)), np.inf)
-    # A triangle is never further than its centroid, and never nearer than its furthest corner allows.
-    at_most = to_centroid.min(axis=1, keepdims=True, initial=np.inf)
-    at_least = np.maximum(to_centroid - corner_reach(mesh).max(axis=1), 0.0)
-    return _framed(points, mesh, at_least <= np.sqrt(at_most**2 + spread**2))
+    good = np.flatnonzero(usable(mesh))
+    if not len(good) or not len(points):
+        return
+    centres = centroids(mesh)[good]
+    radii = corner_reach(mesh)[good].max(axis=1) if reach is None else reach[good]
+    for rows in _split(points, np.arange(len(points))):
+        to_centre = cdist(centres, points[rows])
+        # A triangle is never further than its centroid, and never nearer than its furthest corner allows.
+        leeway = np.hypot(to_centre.min(axis=0), spread) if reach is None else 0.0
+        near = (to_centre <= leeway + radii[:, None]).any(axis=1)
+        if near.any():
+            yield rows, good[near]
 
 
-def _framed(points: Points, mesh: Mesh, near: Flags) -> Pairs:
-    v0, v1, v2 = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
-    frames = np.stack([v1 - v0, v2 - v0, mesh.face_normals], axis=2)
-    frames[~usable(mesh)] = np.eye(3)
-    to_frame = np.linalg.inv(frames)
-    point, triangle = np.nonzero(near)
-    offset = (points[point] - v0[triangle]).T
-    u, v, h = (np.einsum("ij,ji->i", to_frame[triangle, k], offset) for k in range(3))
-    return Pairs(point, triangle, u, v, h)
+def _split(points: Points, rows: Indices) -> Iterator[Indices]:
+    """Halve ``rows`` across their widest extent until all groups are small."""
+    if len(rows) <= _GROUP:
+        yield rows
+        return
+    group = points[rows]
+    axis = int(np.argmax(np.ptp(group, axis=0)))
+    half = len(rows) // 2
+    order = np.argpartition(group[:, axis], half)
+    yield from _split(points, rows[order[:half]])
+    yield from _split(points, rows[order[half:]])
 
 
-def nearest_place(pairs: Pairs, mesh: Mesh) -> tuple[Floats, Floats]:
-    """Return the squared distances to the triangles and the nearest places on them.
+@dataclass(frozen=True, eq=False)
+class Frames:
+    """The frames of some triangles: corner v0, sides e1, e2 and unit normal n of each."""
 
-    Shapes (p,) [mm^2] and (p, 3) [1]: barycentric coordinates, none negative.
-    """
-    v0, v1, v2 = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
-    e1, e2 = v1 - v0, v2 - v0
-    g11, g12, g22 = (np.einsum("ij,ij->i", a, b)[pairs.triangle] for a, b in ((e1, e1), (e1, e2), (e2, e2)))
-    u, v = pairs.u, pairs.v
+    corner: Points
+    to_frame: Floats
+    gram: Floats
 
-    def length2(du: Floats, dv: Floats) -> Floats:
-        return np.asarray(g11 * du * du + 2.0 * g12 * du * dv + g22 * dv * dv)
+    @classmethod
+    def of(cls, mesh: Mesh) -> Frames:
+        """Prepare the frames of all triangles; those of unusable ones mean nothing."""
+        v0, v1, v2 = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
+        e1, e2 = v1 - v0, v2 - v0
+        frames = np.stack([e1, e2, mesh.face_normals], axis=2)
+        frames[~usable(mesh)] = np.eye(3)
+        gram = np.stack([np.einsum("ij,ij->i", a, b) for a, b in ((e1, e1), (e1, e2), (e2, e2))])
+        return cls(v0, np.linalg.inv(frames), gram)
 
-    zero = np.zeros_like(u)
-    t1 = np.clip(u + g12 / g11 * v, 0.0, 1.0)
-    t2 = np.clip(v + g12 / g22 * u, 0.0, 1.0)
-    t3 = np.clip(((1.0 - u) * (g11 - g12) + v * (g22 - g12)) / (g11 - 2.0 * g12 + g22), 0.0, 1.0)
-    best = np.where((u >= 0.0) & (v >= 0.0) & (u + v <= 1.0), 0.0, np.inf)
-    at_u, at_v = u.copy(), v.copy()
-    for side_u, side_v in ((t1, zero), (zero, t2), (1.0 - t3, t3)):
-        away = length2(u - side_u, v - side_v)
-        nearer = away < best
-        best = np.where(nearer, away, best)
-        at_u, at_v = np.where(nearer, side_u, at_u), np.where(nearer, side_v, at_v)
-    return best + pairs.h**2, np.stack([1.0 - at_u - at_v, at_u, at_v], axis=1)
+    def coordinates(self, points: Points, triangles: Indices) -> Table:
+        """Return u, v [1] and h [mm] of each point, v0 + u e1 + v e2 + h n, in each triangle's frame.
+
+        Shapes (k, 3) [mm], (c,) and three of (c, k).
+        """
+        origin = points[0]  # small figures keep their digits
+        to_frame = self.to_frame[triangles]
+        start = np.einsum("cij,cj->ci", to_frame, self.corner[triangles] - origin)
+        u, v, h = (to_frame[:, axis] @ (points - origin).T - start[:, axis, None] for axis in range(3))
+        return u, v, h
+
+    def distance2(self, triangles: Indices, u: Floats, v: Floats, h: Floats) -> Floats:
+        """Return the squared distances to the triangles of points with these coordinates, (c, k) [mm^2]."""
+        sides = self._sides(triangles, u, v)
+        away = np.minimum(np.minimum(next(sides)[0], next(sides)[0]), next(sides)[0])
+        away[(u >= 0.0) & (v >= 0.0) & (u + v <= 1.0)] = 0.0
+        away += h * h
+        return away
+
+    def nearest_place(self, triangles: Indices, u: Floats, v: Floats) -> tuple[Floats, Floats]:
+        """Return u and v of the places on the triangles nearest to points with these coordinates, (c, k)."""
+        inside = (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0)
+        best, at_u, at_v = np.where(inside, -1.0, np.inf), u, v
+        for away, side_u, side_v in self._sides(triangles, u, v):
+            nearer = away < best
+            best = np.where(nearer, away, best)
+            at_u, at_v = np.where(nearer, side_u, at_u), np.where(nearer, side_v, at_v)
+        return at_u, at_v
+
+    def _sides(self, triangles: Indices, u: Floats, v: Floats) -> Iterator[tuple[Floats, Any, Any]]:
+        """Give the squared distance in the plane to each side, and where on it the nearest place is."""
+        g11, g12, g22 = self.gram[:, triangles, None]
+        t = np.clip(u + g12 / g11 * v, 0.0, 1.0)
+        yield _length2(self.gram[:, triangles, None], u - t, v), t, 0.0
+        t = np.clip(v + g12 / g22 * u, 0.0, 1.0)
+        yield _length2(self.gram[:, triangles, None], u, v - t), 0.0, t
+        skew = g11 - 2.0 * g12 + g22
+        t = np.clip((g22 - g12) / skew * v - (g11 - g12) / skew * (u - 1.0), 0.0, 1.0)
+        yield _length2(self.gram[:, triangles, None], u + (t - 1.0), v - t), 1.0 - t, t
+
+
+def _length2(gram: Floats, u: Floats, v: Floats) -> Floats:
+    """Return the squared lengths of u e1 + v e2."""
+    g11, g12, g22 = gram
+    return np.asarray(u * (g11 * u + 2.0 * g12 * v) + g22 * (v * v))

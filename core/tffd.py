@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Literal
+from itertools import pairwise
+from typing import Any, Literal
 
 import numpy as np
+import numpy.typing as npt
 from scipy import sparse
+from scipy.spatial.distance import cdist
 
-from core.mesh import Floats, Indices, Mesh, Points, area_vectors, frozen, unit
-from core.proximity import Pairs, corner_reach, nearest_place, pairs_around, pairs_within, usable
+from core import kernels
+from core.mesh import Faces, Flags, Floats, Indices, Mesh, Points, frozen
+from core.proximity import Frames, centroids, corner_reach, neighbourhoods, usable
 
 Weights = Literal["paper", "smooth"]
 
@@ -25,103 +30,194 @@ NEGLIGIBLE = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
+class Operator:
+    """A sparse operator, stored in groups of rows that have the same columns, as ``kernels.blend`` reads it.
+
+    A full table a group: no entry needs an index, and the inner loop runs over the rows.
+    """
+
+    weights: kernels.Weights
+    starts: Indices
+    columns: Indices
+    rows: Indices
+
+    def added(self, change: Floats, rest: Points) -> Points:
+        """Return ``rest``, shape (k, 3) [mm], plus the operator times ``change``, (columns, 3)."""
+        return kernels.blend(self.weights, self.starts, self.columns, self.rows, change, rest)
+
+    def onto(self, places: Indices) -> Operator:
+        """Return the operator with its row k at the row ``places[k]`` of a larger rest."""
+        return replace(self, rows=places[self.rows])
+
+    def of_rows(self, rows: Indices) -> sparse.csr_array:
+        """Return a few of its rows as a matrix, shape (rows, columns)."""
+        at = np.full(len(self.rows), -1)
+        at[rows] = np.arange(len(rows))
+        dense = np.zeros((len(rows), int(self.columns.max(initial=-1)) + 1))
+        for (r, c, w), (s, d, x) in pairwise(self.starts.tolist()):
+            wanted = at[self.rows[r:s]]
+            chosen = wanted >= 0
+            table = self.weights[w:x].reshape(d - c, s - r)
+            dense[np.ix_(wanted[chosen], self.columns[c:d])] = table[:, chosen].T
+        return sparse.csr_array(dense)
+
+
+@dataclass(frozen=True, eq=False)
 class Binding:
     """How the vertices of a body follow its control mesh: a linear operator on what the control mesh changes.
 
-    ``moving`` are the vertices that can move, shape (k,), ascending. ``operator`` has shape (k, n + m): its
-    columns are the n control points and the m normals of the control triangles.
+    ``moving`` are the vertices that can move, shape (k,), ascending: the rows of ``operator``. Its columns
+    are what can change: the control points ``points`` (p,), then the normals of the control triangles
+    ``triangles`` (t,).
     """
 
     body: Mesh
     control: Mesh
     moving: Indices
-    operator: sparse.csr_array
+    points: Indices
+    triangles: Indices
+    operator: Operator
     scaled_normals: bool
-
-    @cached_property
-    def rest_frames(self) -> Floats:
-        """Control points and triangle normals at rest, shape (n + m, 3)."""
-        return frozen(frames(self.control, self.control.vertices, self.scaled_normals))
 
     @cached_property
     def rest_moving(self) -> Points:
         """The moving vertices at rest, shape (k, 3) [mm]."""
         return frozen(self.body.vertices[self.moving])
 
+    def change(self, control_points: Points) -> Floats:
+        """Return by how much ``points`` and the normals of ``triangles`` changed, shape (p + t, 3)."""
+        return self._frames(control_points) - self._rest_frames
 
-def frames(control: Mesh, points: Points, scaled_normals: bool) -> Floats:
-    """Return control points and unit normals stacked, shape (n + m, 3).
+    def _frames(self, control_points: Points) -> Floats:
+        """Return control points and unit normals.
 
-    Scaled normals grow with the square root of the triangle's area, so that a similarity is followed exactly.
-    """
-    areas = area_vectors(points, control.faces)
-    normals = unit(areas)
-    if scaled_normals:
-        rest = np.where(control.face_areas > 0.0, control.face_areas, 1.0)
-        normals *= np.sqrt(np.linalg.norm(areas, axis=1) / rest)[:, None]
-    return np.concatenate([points, normals])
+        Scaled normals grow with the root of the triangle's area, so that a similarity is followed exactly.
+        """
+        v0, v1, v2 = control_points.T[:, self._corners].swapaxes(0, 1)
+        (ax, ay, az), (bx, by, bz) = v1 - v0, v2 - v0
+        spans = np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
+        length = np.sqrt(np.einsum("ij,ij->j", spans, spans))
+        spans /= np.where(length > 0.0, length, 1.0)
+        if self.scaled_normals:
+            rest = 2.0 * self.control.face_areas[self.triangles]
+            spans *= np.sqrt(length / np.where(rest > 0.0, rest, 1.0))
+        return np.concatenate([control_points[self.points], spans.T])
+
+    @cached_property
+    def _rest_frames(self) -> Floats:
+        return self._frames(self.control.vertices)
+
+    @cached_property
+    def _corners(self) -> Faces:
+        return np.ascontiguousarray(self.control.faces[self.triangles].T)
 
 
 def bind(
-    body: Mesh, control: Mesh, fade: Floats, weights: Weights = "smooth", *, scaled_normals: bool = False
+    body: Mesh,
+    control: Mesh,
+    fade: Floats,
+    weights: Weights = "smooth",
+    *,
+    scaled_normals: bool = False,
+    fixed: Flags | None = None,
+    single: bool = False,
 ) -> Binding:
     """Bind the vertices of ``body`` to the triangles of ``control``.
 
     ``fade`` scales the motion of each vertex, shape (N,), 0 still .. 1 full; vertices without fade or without
     weight keep their place. Weights "paper" are the hat in the distance to the centroid of the 2003 paper,
-    "smooth" is a Gauss curve in the distance to the triangle (ours).
+    "smooth" is a Gauss curve in the distance to the triangle (ours). Control points that are ``fixed``, shape
+    (n,), are taken never to move. ``single`` keeps the operator in single precision: half the memory is read
+    in each frame, and places are exact to 1e-4 mm.
     """
+    free = np.ones(len(control.vertices), dtype=bool) if fixed is None else ~fixed
+    can_change = np.concatenate([free, free[control.faces].any(axis=1)])
     candidates = np.flatnonzero(fade > 0.0)
-    points = body.vertices[candidates]
-    pairs, weight = _hat(points, control) if weights == "paper" else _gauss(points, control)
-    total = np.bincount(pairs.point, weight, minlength=len(candidates))
-    weighted = total > 0.0
-    weight = weight * (fade[candidates] / np.where(weighted, total, 1.0))[pairs.point]
-    operator = _operator(pairs, weight, control, len(candidates))[weighted]
-    moving = candidates[weighted]
-    moving.setflags(write=False)
-    return Binding(body, control, moving, operator, scaled_normals)
-
-
-def _hat(points: Points, control: Mesh) -> tuple[Pairs, Floats]:
-    reach = HAT_RANGE * corner_reach(control).mean(axis=1)
-    pairs = pairs_within(points, control, reach)
-    away = points[pairs.point] - control.vertices[control.faces].mean(axis=1)[pairs.triangle]
-    return pairs, 1.0 - np.linalg.norm(away, axis=1) / reach[pairs.triangle]
-
-
-def _gauss(points: Points, control: Mesh) -> tuple[Pairs, Floats]:
-    sizes = np.sqrt(control.face_areas[usable(control)])
-    sigma = GAUSS_WIDTH * float(np.median(sizes)) if len(sizes) else 0.0
-    spread2 = -2.0 * sigma**2 * np.log(NEGLIGIBLE)
-    pairs = pairs_around(points, control, np.sqrt(spread2))
-    distance2, _ = nearest_place(pairs, control)
-    nearest = np.full(len(points), np.inf)
-    np.minimum.at(nearest, pairs.point, distance2)
-    beyond = distance2 - nearest[pairs.point]
-    kept = beyond < spread2
-    return pairs.chosen(kept), np.exp(-beyond[kept] / (2.0 * sigma**2)) - NEGLIGIBLE
-
-
-def _operator(pairs: Pairs, weight: Floats, control: Mesh, rows: int) -> sparse.csr_array:
-    """Blend the images of each point: first on the corners and normal of its triangles, then joined."""
-    triangles, points = len(control.faces), len(control.vertices)
-    in_frame = np.stack([1.0 - pairs.u - pairs.v, pairs.u, pairs.v, pairs.h], axis=1) * weight[:, None]
-    columns = 4 * pairs.triangle[:, None] + np.arange(4)
-    starts = 4 * np.searchsorted(pairs.point, np.arange(rows + 1))
-    blend = sparse.csr_array((in_frame.ravel(), columns.ravel(), starts), shape=(rows, 4 * triangles))
-    targets = np.column_stack([control.faces, points + np.arange(triangles)]).ravel()
-    join = sparse.csr_array(
-        (np.ones(4 * triangles), targets, np.arange(4 * triangles + 1)),
-        shape=(4 * triangles, points + triangles),
+    groups = list(_groups(body.vertices[candidates], fade[candidates], control, weights, can_change))
+    rows = _joined([group.rows for group in groups], np.int64)
+    kept = np.sort(rows)
+    sizes = [(*group.table.shape[::-1], group.table.size) for group in groups]
+    operator = Operator(
+        _joined([group.table.ravel() for group in groups], np.float32 if single else np.float64),
+        frozen(np.cumsum([(0, 0, 0), *sizes], axis=0), np.int64).view(np.int64),
+        _joined([group.columns for group in groups], np.int64),
+        frozen(np.searchsorted(kept, rows), np.int64).view(np.int64),
     )
-    return sparse.csr_array(blend @ join)
+    points, triangles = np.split(np.flatnonzero(can_change), [int(free.sum())])
+    moving = _joined([candidates[kept]], np.int64)
+    return Binding(body, control, moving, points, triangles - len(free), operator, scaled_normals)
+
+
+def _joined(parts: Sequence[npt.NDArray[Any]], dtype: npt.DTypeLike) -> npt.NDArray[Any]:
+    """Return the parts one after the other, read-only."""
+    joined = np.concatenate([np.empty(0, dtype), *parts], dtype=dtype)
+    joined.setflags(write=False)
+    return joined
+
+
+@dataclass(frozen=True, eq=False)
+class _Group:
+    """Rows (g,) of an operator, their columns (c,) and the entries, shape (c, g)."""
+
+    rows: Indices
+    columns: Indices
+    table: Floats
+
+
+def _groups(
+    points: Points, fade: Floats, control: Mesh, weights: Weights, can_change: Flags
+) -> Iterator[_Group]:
+    """Give the operator on the columns that ``can_change``, for all points that have a weight."""
+    frames, sigma = Frames.of(control), _sigma(control)
+    reach = HAT_RANGE * corner_reach(control).mean(axis=1)
+    column = np.where(can_change, np.cumsum(can_change) - 1, -1)
+    ends = np.column_stack([control.faces, len(control.vertices) + np.arange(len(control.faces))])
+    if weights == "paper":
+        near = neighbourhoods(points, control, reach=reach)
+    else:
+        near = neighbourhoods(points, control, spread=sigma * np.sqrt(-2.0 * np.log(NEGLIGIBLE)))
+    for rows, triangles in near:
+        u, v, h = frames.coordinates(points[rows], triangles)
+        if weights == "paper":
+            weight = _hat(points[rows], centroids(control)[triangles], reach[triangles])
+        else:
+            weight = _gauss(frames.distance2(triangles, u, v, h), sigma)
+        total = weight.sum(axis=0)
+        weighted = total > 0.0
+        weight *= fade[rows] / np.where(weighted, total, 1.0)
+        in_frame = np.stack([weight * (1.0 - u - v), weight * u, weight * v, weight * h], axis=1)
+        near_one = weight.any(axis=1)
+        columns, table = _summed(column[ends[triangles[near_one]]], in_frame[near_one])
+        yield _Group(rows[weighted], columns, table[:, weighted])
+
+
+def _summed(column: Indices, entries: Floats) -> tuple[Indices, Floats]:
+    """Sum the entries, shape (c, 4, g), that have the same column, shape (c, 4); negative: none."""
+    columns, place = np.unique(column, return_inverse=True)
+    join = sparse.csr_array(
+        (np.ones(column.size), (place.ravel(), np.arange(column.size))), shape=(len(columns), column.size)
+    )
+    table: Floats = np.asarray(join @ entries.reshape(column.size, entries.shape[2]))
+    return columns[columns >= 0], table[columns >= 0]
+
+
+def _hat(points: Points, middles: Points, reach: Floats) -> Floats:
+    return np.asarray(np.maximum(1.0 - cdist(middles, points) / reach[:, None], 0.0))
+
+
+def _gauss(distance2: Floats, sigma: float) -> Floats:
+    beyond = distance2 - distance2.min(axis=0)
+    return np.asarray(np.maximum(np.exp(beyond / (-2.0 * sigma**2)) - NEGLIGIBLE, 0.0))
+
+
+def _sigma(control: Mesh) -> float:
+    sizes = np.sqrt(control.face_areas[usable(control)])
+    return GAUSS_WIDTH * float(np.median(sizes)) if len(sizes) else 0.0
 
 
 def deform_moving(binding: Binding, control_points: Points) -> Points:
     """Return the places of ``binding.moving`` for ``control_points``, shapes (k, 3) and (n, 3) [mm]."""
-    now = frames(binding.control, control_points, binding.scaled_normals)
-    return np.asarray(binding.rest_moving + binding.operator @ (now - binding.rest_frames))
+    return binding.operator.added(binding.change(control_points), binding.rest_moving)
 
 
 def deform(binding: Binding, control_points: Points) -> Points:

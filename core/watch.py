@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from scipy.spatial import cKDTree
 
@@ -11,7 +9,7 @@ from core.control_mesh import ControlMesh
 from core.landmarks import Landmarks
 from core.mesh import Flags, Indices, Points
 from core.solver import Marks
-from core.tffd import Binding, deform_moving
+from core.tffd import Binding
 
 _SHARPNESS = 1.0  # [mm]
 _REACH = 30.0
@@ -35,13 +33,13 @@ class BodyWatch:
         self._left = slice(2, 2 + len(left))
         self._right = slice(2 + len(left), None)
         rows = np.concatenate([nipples, left, right])
-        self._binding = replace(binding, moving=binding.moving[rows], operator=binding.operator[rows])
+        self._binding, self._rest, self._operator = binding, rest[rows], binding.operator.of_rows(rows)
         self._offset = points[:, 2] - rest[nipples, 2]
         self._back = float(control.mesh.vertices[control.border, 1].mean())
 
     def __call__(self, control_points: Points) -> Marks:
         """Return the marks for control points, shape (n, 3) [mm]."""
-        places = deform_moving(self._binding, control_points)
+        places = self._rest + self._operator @ self._binding.change(control_points)
         apex = np.mean([_apex(places[self._left]), _apex(places[self._right])], axis=0)
         heights = places[:2, 2] + self._offset
         return Marks(float(heights[0]), float(heights[1]), float(apex[1]), self._back - float(apex[0]))

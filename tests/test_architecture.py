@@ -15,7 +15,7 @@ ROOT = Path(__file__).parent.parent
 
 # From the ground up, each floor in order: a module may import what stands to its left or on a floor below.
 FLOORS = {
-    "ground": "errors mesh sections proximity moving",
+    "ground": "errors mesh sections proximity kernels moving",
     "anatomy": "scan_file repair symmetry stance upright body trunk relief landmarks torso template profiles "
     "fit_check laying control_mesh measure detect",
     "mechanics": "mechanics band springs cells tensegric lines volume patch tffd",
@@ -34,7 +34,7 @@ FLOORS = {
 CORE = ("ground", "anatomy", "mechanics", "solving", "document")
 NUMBERS = {"numpy", "scipy"}
 OUTSIDE = {
-    "ground": NUMBERS,
+    "ground": NUMBERS | {"numba"},
     "anatomy": NUMBERS | {"trimesh"},
     "mechanics": NUMBERS,
     "solving": NUMBERS | {"threadpoolctl"},

@@ -23,8 +23,19 @@ def dented() -> np.ndarray:
 def test_normals_are_those_of_the_whole_body():
     moving = moving_faces(BALL, FRONT)
     whole = BALL.moved(dented())
-    assert moving.normals(dented()) == pytest.approx(whole.vertex_normals[moving.vertices], abs=1e-13)
-    assert moving.normals(BALL.vertices) == pytest.approx(BALL.vertex_normals[moving.vertices], abs=1e-13)
+    places = dented()[moving.vertices]
+    assert moving.normals(places) == pytest.approx(whole.vertex_normals[moving.vertices], abs=1e-13)
+    assert moving.normals(moving.rest) == pytest.approx(BALL.vertex_normals[moving.vertices], abs=1e-13)
+
+
+def test_the_moving_are_found_again_among_the_corners():
+    moving = moving_faces(BALL, FRONT)
+    assert np.array_equal(moving.vertices[moving.moving], FRONT)
+    assert np.array_equal(moving.rest, BALL.vertices[moving.vertices])
+    lonely = Mesh(np.concatenate([BALL.vertices, [[0.0, 0, 0]]]), BALL.faces)
+    with_lonely = moving_faces(lonely, np.append(FRONT, len(BALL.vertices)))
+    assert with_lonely.vertices[with_lonely.moving[-1]] == len(BALL.vertices)
+    assert with_lonely.normals(with_lonely.rest)[-1].tolist() == [0.0, 0.0, 0.0]
 
 
 def test_no_vertex_that_turns_is_forgotten_and_no_other_taken():
@@ -38,7 +49,30 @@ def test_the_volume_gained_is_the_difference_of_the_whole():
     gained = BALL.moved(dented()).enclosed_volume() - BALL.enclosed_volume()
     assert gained < -1e3
     assert volume_change(BALL, dented()) == pytest.approx(gained, rel=1e-10)
-    assert moving_faces(BALL, FRONT).volume_change(dented()) == pytest.approx(gained, rel=1e-10)
+    moving = moving_faces(BALL, FRONT)
+    assert moving.volume_change(dented()[moving.vertices]) == pytest.approx(gained, rel=1e-10)
+
+
+@pytest.mark.parametrize("middle", [None, 300.0, 320.0, 0.0])
+def test_both_sides_together_gain_the_volume(middle):
+    moving = moving_faces(BALL, FRONT, middle)
+    places = dented()[moving.vertices]
+    gained = BALL.moved(dented()).enclosed_volume() - BALL.enclosed_volume()
+    assert moving.side_volume_changes(places).sum() == moving.volume_change(places)
+    assert moving.volume_change(places) == pytest.approx(gained, rel=1e-9)
+
+
+def test_each_side_gains_what_is_done_to_it():
+    """A dent on the left only, far from the middle: the right gains nothing, whatever the left loses."""
+    for side, chosen in enumerate([BALL.vertices[:, 0] > 325.0, BALL.vertices[:, 0] < 275.0]):
+        dent = BALL.vertices.copy()
+        dent[chosen & (BALL.vertices[:, 1] < -210.0), 1] += 3.0
+        moving = moving_faces(BALL, np.flatnonzero(BALL.vertices[:, 1] < -200.0), 300.0)
+        changes = moving.side_volume_changes(dent[moving.vertices])
+        gained = BALL.moved(dent).enclosed_volume() - BALL.enclosed_volume()
+        assert gained < -1e3
+        assert changes[side] == pytest.approx(gained, rel=1e-9)
+        assert changes[1 - side] == pytest.approx(0.0, abs=1e-6)
 
 
 def test_a_tent_on_an_open_sheet_by_hand():
@@ -55,5 +89,5 @@ def test_a_tent_on_an_open_sheet_by_hand():
 def test_nothing_moves_nothing_changes():
     assert volume_change(BALL, BALL.vertices) == 0.0
     still = moving_faces(BALL, np.array([], dtype=np.int64))
-    assert still.normals(BALL.vertices).shape == (0, 3)
-    assert still.volume_change(dented()) == 0.0
+    assert still.normals(still.rest).shape == (0, 3)
+    assert still.volume_change(still.rest) == 0.0

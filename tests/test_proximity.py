@@ -7,55 +7,75 @@ import pytest
 import trimesh
 
 from core.mesh import Mesh
-from core.proximity import nearest_place, pairs_around, pairs_within
+from core.proximity import Frames, centroids, neighbourhoods
 
 RANDOM = np.random.default_rng(12)
-SOUP = Mesh(RANDOM.normal(scale=20.0, size=(90, 3)), np.arange(90).reshape(30, 3))
-POINTS = RANDOM.normal(scale=30.0, size=(200, 3))
+CENTRES = np.repeat(RANDOM.normal(scale=60.0, size=(30, 3)), 3, axis=0)
+SOUP = Mesh(CENTRES + RANDOM.normal(scale=10.0, size=(90, 3)), np.arange(90).reshape(30, 3))
+POINTS = RANDOM.normal(scale=60.0, size=(700, 3))
+ALL = np.arange(30)
 
 
-def every_distance() -> np.ndarray:
-    """Distances of all points to all triangles by trimesh, shape (200, 30)."""
-    corners = np.tile(SOUP.vertices[SOUP.faces], (len(POINTS), 1, 1))
-    points = np.repeat(POINTS, len(SOUP.faces), axis=0)
-    places = trimesh.triangles.closest_point(corners, points)
-    return np.linalg.norm(places - points, axis=1).reshape(len(POINTS), -1)
+def places_by_trimesh() -> np.ndarray:
+    """Nearest places of all points on all triangles by trimesh, shape (30, 700, 3)."""
+    corners = np.repeat(SOUP.vertices[SOUP.faces], len(POINTS), axis=0)
+    points = np.tile(POINTS, (30, 1))
+    return trimesh.triangles.closest_point(corners, points).reshape(30, -1, 3)
+
+
+def in_space(u: np.ndarray, v: np.ndarray, h: np.ndarray | float = 0.0) -> np.ndarray:
+    v0, v1, v2 = (SOUP.vertices[SOUP.faces[:, k], None] for k in range(3))
+    h = np.broadcast_to(h, u.shape)
+    return (
+        v0 + u[..., None] * (v1 - v0) + v[..., None] * (v2 - v0) + h[..., None] * SOUP.face_normals[:, None]
+    )
 
 
 def test_distances_and_places_agree_with_trimesh():
-    pairs = pairs_within(POINTS, SOUP, np.full(30, np.inf))
-    assert len(pairs.point) == 200 * 30
-    distance2, place = nearest_place(pairs, SOUP)
-    assert np.sqrt(distance2).reshape(200, 30) == pytest.approx(every_distance(), abs=1e-9)
-    spot = np.einsum("ij,ijk->ik", place, SOUP.vertices[SOUP.faces[pairs.triangle]])
-    assert np.linalg.norm(spot - POINTS[pairs.point], axis=1) == pytest.approx(np.sqrt(distance2), abs=1e-9)
-    assert place.min() >= -1e-12
-    assert place.sum(axis=1) == pytest.approx(1.0)
+    frames, places = Frames.of(SOUP), places_by_trimesh()
+    u, v, h = frames.coordinates(POINTS, ALL)
+    distance = np.linalg.norm(places - POINTS, axis=2)
+    assert np.sqrt(frames.distance2(ALL, u, v, h)) == pytest.approx(distance, abs=1e-9)
+    at_u, at_v = frames.nearest_place(ALL, u, v)
+    assert np.abs(in_space(at_u, at_v) - places).max() < 1e-9
+    assert min(at_u.min(), at_v.min(), (1.0 - at_u - at_v).min()) >= -1e-12
 
 
 def test_frame_coordinates_give_the_point_back():
-    pairs = pairs_within(POINTS, SOUP, np.full(30, np.inf))
-    v0, v1, v2 = np.moveaxis(SOUP.vertices[SOUP.faces[pairs.triangle]], 1, 0)
-    in_plane = v0 + pairs.u[:, None] * (v1 - v0) + pairs.v[:, None] * (v2 - v0)
-    back = in_plane + pairs.h[:, None] * SOUP.face_normals[pairs.triangle]
-    assert np.abs(back - POINTS[pairs.point]).max() < 1e-9
+    assert np.abs(in_space(*Frames.of(SOUP).coordinates(POINTS, ALL)) - POINTS).max() < 1e-9
+
+
+def found(**asked: object) -> np.ndarray:
+    """Which triangles are given for which points, shape (30, 700); every point is in one group."""
+    given = np.zeros((30, len(POINTS)), dtype=bool)
+    seen = []
+    for rows, triangles in neighbourhoods(POINTS, SOUP, **asked):
+        given[np.ix_(triangles, rows)] = True
+        seen += rows.tolist()
+    assert sorted(seen) == list(range(len(POINTS)))
+    return given
 
 
 @pytest.mark.parametrize("spread", [0.0, 15.0])
 def test_no_triangle_that_matters_is_missing(spread):
-    distance = every_distance()
-    pairs = pairs_around(POINTS, SOUP, spread)
-    found = np.zeros(distance.shape, dtype=bool)
-    found[pairs.point, pairs.triangle] = True
-    matters = distance**2 <= distance.min(axis=1, keepdims=True) ** 2 + spread**2
-    assert found[matters].all()
-    assert found.mean() < 0.9
-    assert (np.diff(pairs.point) >= 0).all()
+    distance = np.linalg.norm(places_by_trimesh() - POINTS, axis=2)
+    given = found(spread=spread)
+    assert given[distance**2 <= distance.min(axis=0) ** 2 + spread**2].all()
+    assert given.mean() < 1.0
 
 
-def test_triangles_without_a_plane_pair_with_nothing():
+def test_no_triangle_within_reach_is_missing():
+    reach = np.linspace(20.0, 60.0, 30)
+    away = np.linalg.norm(centroids(SOUP)[:, None] - POINTS, axis=2)
+    assert found(reach=reach)[away < reach[:, None]].all()
+    assert list(neighbourhoods(POINTS, SOUP, reach=np.zeros(30))) == []
+
+
+def test_triangles_without_a_plane_are_never_given():
     needle = Mesh(
         np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 0, 3], [0, 1, 3]])
     )
-    assert set(pairs_around(POINTS, needle).triangle.tolist()) == {2}
-    assert set(pairs_within(POINTS, needle, np.full(3, 1e3)).triangle.tolist()) == {2}
+    for asked in ({}, {"reach": np.full(3, 1e3)}):
+        assert {t for _, given in neighbourhoods(POINTS, needle, **asked) for t in given.tolist()} == {2}
+    assert list(neighbourhoods(POINTS, Mesh(needle.vertices, needle.faces[:2]))) == []
+    assert list(neighbourhoods(POINTS[:0], needle)) == []
