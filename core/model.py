@@ -66,6 +66,11 @@ class ConstrainedModel:
         return self.volume.gradient(self.tensegric.rest)
 
     @cached_property
+    def rest_sides(self) -> Floats:
+        """The left and the right volume at rest, shape (2,) [mm^3]."""
+        return self.volume.side_volumes(self.tensegric.rest)
+
+    @cached_property
     def probe(self) -> float:
         """Volume change of one sweep per unit of pressure, dV/dP [mm^5], measured on a zero field (ours)."""
         a = self.rest_gradient
@@ -91,6 +96,19 @@ class ConstrainedModel:
     def sums(self, values: Floats) -> Floats:
         """Return the sums of values of the worn segments over each line, shape (lines,)."""
         return np.asarray(np.bincount(self.owner, values, len(self.lines)), dtype=np.float64)
+
+    def line_lengths(self, points: Points) -> tuple[float, ...]:
+        """Return the lengths of the front parts of all lines, worn or not [mm]; ``points`` (n, 3) [mm]."""
+        first, second, owner = self._all_segments
+        spans = points.take(first, axis=0) - points.take(second, axis=0)
+        lengths = np.sqrt(np.einsum("ij,ij->i", spans, spans))
+        return tuple(np.bincount(owner, lengths, len(self.lines)).tolist())
+
+    @cached_property
+    def _all_segments(self) -> tuple[Indices, Indices, Indices]:
+        pairs = np.concatenate([np.empty((0, 2), dtype=np.int64), *(line.pairs for line in self.lines)])
+        owner = np.repeat(np.arange(len(self.lines)), [len(line.pairs) for line in self.lines])
+        return np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1]), owner
 
     @cached_property
     def tapes(self) -> Floats:

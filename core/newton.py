@@ -46,17 +46,16 @@ def energy_steps(potential: Potential, start: Balance, limit: int) -> Iterator[B
 
     Every iterate but the start has the exact volumes and lengths, and the energy falls strictly.
     """
-    moved, multipliers = start.state.moved, start.multipliers
+    place, multipliers = potential.at(start.state.moved), start.multipliers
     for step in range(limit + 1):
-        place = potential.at(moved)
-        forces = place.gradient - place.slopes.T @ multipliers
-        yield balance_at(potential, moved, potential.residual(place, forces), multipliers, step)
-        if potential.residual(place, forces) < RESIDUAL_LIMIT or step == limit:
+        residual = potential.residual(place, place.gradient - place.slopes.T @ multipliers)
+        yield balance_at(potential, place.moved, residual, multipliers, step)
+        if residual < RESIDUAL_LIMIT or step == limit:
             return
         taken = _step(potential, place, multipliers)
         if taken is None:
             return
-        moved, multipliers = taken
+        place, multipliers = taken
 
 
 def balance_at(
@@ -74,20 +73,17 @@ def balance_at(
     return Balance(state, residual, pressures, steps, multipliers, tensions)
 
 
-def _step(potential: Potential, place: Place, multipliers: Floats) -> tuple[Points, Floats] | None:
+def _step(potential: Potential, place: Place, multipliers: Floats) -> tuple[Place, Floats] | None:
     """Return where one Newton step leads, and the multipliers there; None if no step lowers the energy."""
     solve = factor(potential, place, multipliers)
     solved = solve(np.column_stack([-place.gradient, place.slopes.T]))
     free, push = solved[:, 0], solved[:, 1:]
     if (np.abs(place.held) > potential.tolerance).any():
         start = _retract(potential, place.moved, push)
-        if start is None:
-            return None
-        return start, multipliers
+        return None if start is None else (start, multipliers)
     multipliers = -small_solve(place.slopes @ push, place.slopes @ free)
-    direction = free + push @ multipliers
-    moved = _line_search(potential, place, direction, push)
-    return None if moved is None else (moved, multipliers)
+    there = _line_search(potential, place, free + push @ multipliers, push)
+    return None if there is None else (there, multipliers)
 
 
 def factor(potential: Potential, place: Place, multipliers: Floats) -> Solve:
@@ -100,9 +96,9 @@ def factor(potential: Potential, place: Place, multipliers: Floats) -> Solve:
     raise AssertionError("cables alone are positive definite")
 
 
-def _line_search(potential: Potential, place: Place, direction: Floats, push: Floats) -> Points | None:
+def _line_search(potential: Potential, place: Place, direction: Floats, push: Floats) -> Place | None:
     """Return where the longest halved step that lowers the energy leads, all held again, or None."""
-    here, slope = potential.energy(place.moved), float(place.gradient @ direction)
+    here, slope = potential.energy(place), float(place.gradient @ direction)
     length = 1.0
     while length > 1e-6:
         there = _retract(potential, place.moved + length * direction.reshape(-1, 3), push)
@@ -115,20 +111,28 @@ def _line_search(potential: Potential, place: Place, direction: Floats, push: Fl
     return None
 
 
-def _retract(potential: Potential, moved: Points, push: Floats) -> Points | None:
-    """Return ``moved`` shifted along ``push`` (3 f, h) until all that is held is what it should be."""
+def _retract(potential: Potential, moved: Points, push: Floats) -> Place | None:
+    """Return the place ``moved`` shifted along ``push`` (3 f, h) until all is held as it should be."""
     for _ in range(12):
-        away, slopes = potential.held(moved)
-        if (np.abs(away) < potential.tolerance).all():
-            return moved
-        moved = moved - (push @ small_solve(slopes @ push, away)).reshape(-1, 3)
+        place = potential.at(moved)
+        away = np.abs(place.held)
+        if (away < potential.tolerance).all():
+            return place
+        moved = moved - (push @ small_solve(place.slopes @ push, place.held)).reshape(-1, 3)
         if not np.isfinite(moved).all():
             return None
-    return moved if (np.abs(away) < 1e3 * potential.tolerance).all() else None
+    return place if (away < 1e3 * potential.tolerance).all() else None
 
 
 def small_solve(matrix: Floats, right: Floats) -> Floats:
     """Solve the small system of what is held; least multipliers where they do not matter."""
+    if len(right) == 2:
+        # By hand: the two breasts are the rule, and LAPACK's way to a 2 x 2 system is long.
+        (a, b), (c, d) = matrix.tolist()
+        whole, mixed = a * d, b * c
+        if abs(whole - mixed) > 1e-12 * max(abs(whole), abs(mixed)):
+            p, q = right.tolist()
+            return np.asarray(np.array([d * p - b * q, a * q - c * p]) / (whole - mixed))
     try:
         return np.asarray(np.linalg.solve(matrix, right))
     except np.linalg.LinAlgError:

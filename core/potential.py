@@ -52,7 +52,7 @@ class Potential:
         together = model.volume.closed or model.mechanics.volume_of == "both"
         self.sides = np.ones((1, 2)) if together else np.eye(2)
         self.area = abs(model.volume.rest_volume) ** (2.0 / 3.0)
-        volumes = model.volume.side_volumes(model.tensegric.rest) + (0.0 if excess is None else excess)
+        volumes = model.rest_sides + (0.0 if excess is None else excess)
         self.wanted = np.concatenate(
             [self.sides @ volumes / self.area, model.sums(self.natural)[self.held_lines]]
         )
@@ -60,31 +60,21 @@ class Potential:
             [np.full(len(self.sides), self.area**0.5), 10.0 * self.wanted[len(self.sides) :]]
         )
 
-    def energy(self, moved: Points) -> float:
+    def energy(self, place: Place) -> float:
         """Return the energy above that of the slack rest shape."""
-        _, lengths = self.model.segments.spans(moved)
-        longer = lengths - self.natural
-        return self.model.tensegric.energy(moved) + 0.5 * float(self.tape @ (longer * longer))
-
-    def held(self, moved: Points) -> tuple[Floats, Floats]:
-        """Return what is held less what is wanted, and its derivatives, shapes (h,) and (h, 3 f)."""
-        volumes, gradients = self.model.volume.measure(self.model.tensegric.expand(moved))
-        spans, lengths = (
-            self.model.segments.spans(moved) if len(self.held_lines) else (_NO_SPANS, _NO_LENGTHS)
-        )
-        return self._held(volumes, gradients, spans, lengths)
+        longer = place.lengths - self.natural
+        return self.model.tensegric.energy(place.moved) + 0.5 * float(self.tape @ (longer * longer))
 
     def _held(
         self, volumes: Floats, gradients: Floats, spans: Points, lengths: Floats
     ) -> tuple[Floats, Floats]:
-        values = [self.sides @ volumes / self.area]
-        slopes = [self.sides @ gradients.reshape(2, -1) / self.area]
+        values, slopes = self.sides @ volumes / self.area, self.sides @ gradients.reshape(2, -1) / self.area
         if len(self.held_lines):
-            values.append(self.model.sums(lengths)[self.held_lines])
             u = spans / lengths[:, None]
             each = [np.where(self.model.owner[:, None] == line, u, 0.0) for line in self.held_lines]
-            slopes += [self.model.segments.sum(of_line).reshape(1, -1) for of_line in each]
-        return np.concatenate(values) - self.wanted, np.concatenate(slopes)
+            values = np.concatenate([values, self.model.sums(lengths)[self.held_lines]])
+            slopes = np.concatenate([slopes, *(self.model.segments.sum(u).reshape(1, -1) for u in each)])
+        return values - self.wanted, slopes
 
     def at(self, moved: Points) -> Place:
         """Return all first-order figures at displacements of the free points, shape (f, 3) [mm]."""
@@ -139,6 +129,3 @@ class Potential:
         push = -self.pressures(multipliers) if curved else np.zeros(2)
         parts += [blocks.ravel(), push[0] * centred, push[1] * centred]
         return np.asarray(layout.constant + layout.changing @ np.concatenate(parts))
-
-
-_NO_SPANS, _NO_LENGTHS = np.empty((0, 3)), np.empty(0)

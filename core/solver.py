@@ -82,7 +82,7 @@ def record(model: ConstrainedModel, state: State, step: float, watch: Watch | No
         change / model.volume.rest_volume,
         change / 1000.0,
         step,
-        tuple(line.length(points) for line in model.lines),
+        model.line_lengths(points),
         watch(points) if watch else None,
     )
 

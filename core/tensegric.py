@@ -152,8 +152,12 @@ class TensegricModel:
     def expand(self, moved: Points) -> Points:
         """Return all control points, shape (n, 3) [mm], the free ones displaced by ``moved`` (f, 3)."""
         points = self.rest.copy()
-        points[self.free] += moved
+        points[self.free] = self._rest_free + moved
         return points
+
+    @cached_property
+    def _rest_free(self) -> Points:
+        return self.rest[self.free]
 
 
 def _isotropic(matrix: sparse.coo_array) -> Entries:

@@ -45,7 +45,10 @@ class VolumeMeasure:
 
     def side_volumes(self, points: Points) -> Floats:
         """Return the moving triangles' volume on the subject's left and right, shape (2,) [mm^3]."""
-        return self.measure(points)[0]
+        places = (points - self.centre).T
+        count = len(self.faces)
+        areas = _crossed(*(places.take(corner[:count], axis=1) for corner in (self._second, self._third)))
+        return np.asarray(self._sides @ (places.take(self._second[-count:], axis=1) * areas).sum(axis=0))
 
     def gradient(self, points: Points) -> Points:
         """Return dV/dx at the free points, shape (f, 3) [mm^2]: the direction of the volume force."""
@@ -58,19 +61,20 @@ class VolumeMeasure:
     def measure(self, points: Points) -> tuple[Floats, Floats]:
         """Return ``side_volumes`` and ``side_gradients`` of control points, shape (n, 3) [mm], at once."""
         places = (points - self.centre).T
-        second, third = self._others
-        bx, by, bz = places[:, second]
-        cx, cy, cz = places[:, third]
-        # Axis by axis: for some hundred triangles several times faster than a product of vectors.
-        areas = np.array([by * cz - bz * cy, bz * cx - bx * cz, bx * cy - by * cx]) / 6.0
-        each = np.einsum("am,am->m", places[:, self.faces[:, 0]], areas[:, 0])
-        sums = areas.reshape(3, -1) @ self.gather
+        areas = _crossed(places.take(self._second, axis=1), places.take(self._third, axis=1))
+        count = len(self.faces)
+        each = (places.take(self._second[-count:], axis=1) * areas[:, :count]).sum(axis=0)
+        sums = areas @ self.gather
         return self._sides @ each, np.asarray(sums.T.reshape(2, self.free_count, 3))
 
     @cached_property
-    def _others(self) -> tuple[Indices, Indices]:
-        """The next and the last but one corner of every corner, shape (3, m)."""
-        return np.ascontiguousarray(self.faces.T[[1, 2, 0]]), np.ascontiguousarray(self.faces.T[[2, 0, 1]])
+    def _second(self) -> Indices:
+        """The corner after each corner, shape (3 m,): first those after all first corners."""
+        return np.ascontiguousarray(self.faces.T[[1, 2, 0]].ravel())
+
+    @cached_property
+    def _third(self) -> Indices:
+        return np.ascontiguousarray(self.faces.T[[2, 0, 1]].ravel())
 
     @cached_property
     def _sides(self) -> Floats:
@@ -89,6 +93,16 @@ class VolumeMeasure:
             _curvature(self.faces[~self.left], place, count),
         ]
         return joined(sides, 2 * count)
+
+
+def _crossed(b: Points, c: Points) -> Points:
+    """Return a sixth of the cross products of the columns, shape (3, k), axis by axis, which is fast."""
+    areas = np.empty_like(b)
+    for axis, (i, j) in enumerate(((1, 2), (2, 0), (0, 1))):
+        np.multiply(b[i], c[j], out=areas[axis])
+        areas[axis] -= b[j] * c[i]
+    areas *= 1.0 / 6.0
+    return areas
 
 
 def volume_measure(mesh: Mesh, free: Indices, left: Flags | None = None) -> VolumeMeasure:
