@@ -66,8 +66,9 @@ def smooth_step(t: Floats) -> Floats:
 def _flooded(body: Mesh, control: ControlMesh, fade: float) -> Floats:
     around = _near_patch(body.vertices, control.mesh)
     graph = _edge_graph(body, around)
-    at = np.asarray(cKDTree(body.vertices[around]).query(control.mesh.vertices)[1], dtype=np.int64)
-    fence = _fence(graph, at[control.border], control.mesh.vertices[control.border])
+    tree = cKDTree(body.vertices[around])
+    at = np.asarray(tree.query(control.mesh.vertices)[1], dtype=np.int64)
+    fence = _fence(graph, tree, at[control.border], control.mesh.vertices[control.border])
     region = _flood(graph, fence, at[list(control.bust_points)])
     inner = np.setdiff1d(at, at[control.border])
     if region[inner].mean() < COVERED:
@@ -85,47 +86,60 @@ def _flooded(body: Mesh, control: ControlMesh, fade: float) -> Floats:
 
 def _near_patch(points: Points, control: Mesh) -> Indices:
     """Return the points that may be within ``FAR`` of the control mesh, and some more, shape (k,)."""
-    away, _ = cKDTree(centroids(control)).query(points)
-    return np.flatnonzero(away <= FAR + corner_reach(control).max())
+    reach = FAR + corner_reach(control).max()
+    low, high = control.vertices.min(axis=0) - reach, control.vertices.max(axis=0) + reach
+    x, y, z = ((low[axis] <= points[:, axis]) & (points[:, axis] <= high[axis]) for axis in range(3))
+    in_box = np.flatnonzero(x & y & z)
+    away, _ = cKDTree(centroids(control)).query(points[in_box], distance_upper_bound=reach)
+    return np.asarray(in_box[np.isfinite(away)])
 
 
 def _edge_graph(body: Mesh, members: Indices) -> sparse.csr_array:
     """Return the edges among ``members``, shape (k,), with their lengths [mm], shape (k, k), symmetric."""
-    place = np.full(len(body.vertices), -1)
+    place = np.full(len(body.vertices), -1, dtype=np.int32)
     place[members] = np.arange(len(members))
-    faces = place[body.faces]
-    faces = faces[(faces >= 0).all(axis=1)]
+    faces = place.take(body.faces)
+    faces = faces[(faces[:, 0] >= 0) & (faces[:, 1] >= 0) & (faces[:, 2] >= 0)]
     start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
-    joined = sparse.coo_array((np.ones(len(start)), (start, end)), shape=(len(members),) * 2).tocsr()
-    graph = (joined + joined.T).tocoo()
-    ends = body.vertices[members[graph.row]], body.vertices[members[graph.col]]
-    length = np.linalg.norm(ends[0] - ends[1], axis=1)
-    return sparse.csr_array((length, (graph.row, graph.col)), shape=graph.shape)
+    one_way = sparse.coo_array((np.ones(len(start), dtype=np.int8), (start, end)), shape=(len(members),) * 2)
+    graph = (one_way.tocsr() + one_way.T.tocsr()).tocoo()
+    x, y, z = (column.take(graph.row) - column.take(graph.col) for column in body.vertices[members].T)
+    return sparse.csr_array((np.sqrt(x * x + y * y + z * z), (graph.row, graph.col)), shape=graph.shape)
 
 
-def _fence(graph: sparse.csr_array, stops: Indices, corners: Points) -> Indices:
+def _fence(graph: sparse.csr_array, tree: cKDTree, stops: Indices, corners: Points) -> Indices:
     """Return the vertices on the shortest paths from stop to stop, once round, ascending."""
     straight = np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1)
     vertices = set(stops.tolist())
-    for start, end, chord in zip(stops.tolist(), np.roll(stops, -1).tolist(), straight, strict=True):
+    for start, end, chord in zip(stops.tolist(), np.roll(stops, -1).tolist(), straight.tolist(), strict=True):
         limit = DETOUR * (chord + CLOSE)
-        _, before = dijkstra(graph, indices=start, limit=limit, return_predecessors=True)
-        step = end
-        while step != start:
+        # No way from start to end that is short enough leaves this ball.
+        middle = 0.5 * (tree.data[start] + tree.data[end])
+        members = np.array(sorted({start, end, *tree.query_ball_point(middle, 0.5 * limit)}))
+        at = int(np.searchsorted(members, start))
+        near = graph[members][:, members]
+        _, before = dijkstra(near, indices=at, limit=limit, return_predecessors=True)
+        step = int(np.searchsorted(members, end))
+        while step != at:
             step = int(before[step])
             if step < 0:
                 raise _FenceError("The border of the patch meets a hole in the scan.")
-            vertices.add(step)
+            vertices.add(int(members[step]))
     return np.array(sorted(vertices), dtype=np.int64)
 
 
 def _flood(graph: sparse.csr_array, fence: Indices, seeds: Indices) -> Flags:
     """Tell which vertices the seeds reach without crossing the fence, shape (k,)."""
-    ground = np.setdiff1d(np.arange(graph.shape[0]), fence)
-    _, label = connected_components(graph[ground][:, ground], directed=False)
-    piece = np.full(graph.shape[0], -1)
-    piece[ground] = label
-    return np.asarray((piece >= 0) & np.isin(piece, piece[seeds]))
+    open_ground = np.ones(graph.shape[0], dtype=bool)
+    open_ground[fence] = False
+    ground = np.flatnonzero(open_ground)
+    count, label = connected_components(graph[ground][:, ground], directed=False)
+    reached = np.zeros(count, dtype=bool)
+    place = np.cumsum(open_ground) - 1
+    reached[label[place[seeds[open_ground[seeds]]]]] = True
+    region = np.zeros(graph.shape[0], dtype=bool)
+    region[ground] = reached[label]
+    return region
 
 
 def _touches_rest(body: Mesh, around: Indices, region: Flags) -> bool:
@@ -134,7 +148,8 @@ def _touches_rest(body: Mesh, around: Indices, region: Flags) -> bool:
     beyond[around] = False
     flooded = np.zeros(len(body.vertices), dtype=bool)
     flooded[around[region]] = True
-    return bool((beyond[body.faces].any(axis=1) & flooded[body.faces].any(axis=1)).any())
+    faces = body.faces[flooded.take(body.faces).any(axis=1)]
+    return bool(beyond[faces].any())
 
 
 def _by_distance(body: Mesh, control: ControlMesh, fade: float) -> Floats:
