@@ -118,7 +118,7 @@ def _fence(graph: sparse.csr_array, tree: cKDTree, stops: Indices, corners: Poin
         members = np.array(sorted({start, end, *tree.query_ball_point(middle, 0.5 * limit)}))
         at = int(np.searchsorted(members, start))
         near = graph[members][:, members]
-        _, before = dijkstra(near, indices=at, limit=limit, return_predecessors=True)
+        _, (before,) = dijkstra(near, indices=[at], limit=limit, return_predecessors=True)
         step = int(np.searchsorted(members, end))
         while step != at:
             step = int(before[step])
