@@ -39,7 +39,7 @@ bench: setup  ## measure the speed of the turn and of the deformation
 lock:  ## pin every dependency again (needs uv, which nothing else needs)
 	@[ -n "$(uv)" ] || { echo "make lock needs uv: python3 -m pip install uv"; exit 1; }
 	$(uv) pip compile --quiet --universal --fork-strategy fewest --python-version 3.11 --generate-hashes \
-		--no-emit-index-url --custom-compile-command "make lock" --extra dev --output-file requirements.lock pyproject.toml
+		--no-emit-index-url --custom-compile-command "make lock" --extra dev --extra fast --output-file requirements.lock pyproject.toml
 
 docs-pictures: setup-test  ## draw the pictures of the documentation again
 	@$(python) packaging/docs_pictures.py
