@@ -1,0 +1,88 @@
+"""Small models with chosen mechanics, and plain computations of what the core vectorises."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+from shapes import torso
+
+from core.mechanics import Mechanics
+from core.model import ConstrainedModel, constrained_model
+from core.potential import Potential
+from core.solver import State, Targets, iterate
+
+LAWS = (
+    Mechanics(),
+    Mechanics(member_law="prestressed", prestress=0.5),
+    Mechanics(member_law="co-rotated"),
+)
+"""The three member laws, all else as by default."""
+
+
+def law_of(mechanics: Mechanics) -> str:
+    """The words that tell a choice of mechanics from the default one."""
+    return "-".join(str(v) for v in vars(mechanics).values() if v not in vars(Mechanics()).values()) or "A"
+
+
+@cache
+def small(mechanics: Mechanics | None = None, *, worn: tuple[str, ...] | None = None) -> ConstrainedModel:
+    """A skew torso of which two rows of seven points are free, with its mid-bust and full-bust lines."""
+    control = torso(skew=0.3)
+    few = (control.row >= 2) & (control.row <= 3) & (np.abs(control.column) <= 3)
+    return constrained_model(replace(control, fixed=~few), worn=worn, mechanics=mechanics)
+
+
+def cable_force(model: ConstrainedModel, points: np.ndarray) -> np.ndarray:
+    """The force of the cables on all points, cable by cable, for the two laws that know no cells."""
+    tensegric, mechanics = model.tensegric, model.mechanics
+    force = np.zeros_like(points)
+    for (i, j), q in zip(tensegric.cables, tensegric.density, strict=True):
+        span, rest = points[i] - points[j], tensegric.rest[i] - tensegric.rest[j]
+        if mechanics.member_law == "force-density":
+            pull = q * (span - rest)
+        else:
+            natural = (1.0 - mechanics.prestress) * np.linalg.norm(rest)
+            here, there = np.linalg.norm(span), np.linalg.norm(rest)
+            pull = q * ((here - natural) * span / here - (there - natural) * rest / there)
+        force[i] -= pull
+        force[j] += pull
+    return force
+
+
+def line_force(model: ConstrainedModel, points: np.ndarray, ratios: tuple[float, ...]) -> np.ndarray:
+    """The force of the worn lines on all points, segment by segment, after Hooke."""
+    force = np.zeros_like(points)
+    for (i, j), k, line in zip(model.segments.pairs, model.segments.stiffness, model.owner, strict=True):
+        rest = np.linalg.norm(model.tensegric.rest[i] - model.tensegric.rest[j])
+        span = points[i] - points[j]
+        length = np.linalg.norm(span)
+        pull = k * (length - ratios[line] * rest) * span / length
+        force[i] -= pull
+        force[j] += pull
+    return force
+
+
+def volume_slopes(model: ConstrainedModel, points: np.ndarray) -> np.ndarray:
+    """The derivatives of the left and of the right volume at all points, triangle by triangle."""
+    slopes = np.zeros((2, *points.shape))
+    centred = points - model.volume.centre
+    for corners, left in zip(model.volume.faces, model.volume.left, strict=True):
+        for turn in range(3):
+            i, j, k = np.roll(corners, turn)
+            slopes[0 if left else 1, i] += np.cross(centred[j], centred[k]) / 6.0
+    return slopes
+
+
+def energy_of(potential: Potential, moved: np.ndarray) -> float:
+    """The energy for displacements of the free points."""
+    return potential.energy(potential.at(moved))
+
+
+def settled(model: ConstrainedModel, targets: Targets, turns: int = 4000, step: float = 1e-11) -> State:
+    """Where turns come to rest; they must, in so many turns."""
+    for state, measured in iterate(model, lambda: targets, turns=turns):
+        if measured.step < step and abs(measured.error) < 1e-3:
+            return state
+    raise AssertionError(f"still moves by {measured.step:.1e} mm a turn")
