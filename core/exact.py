@@ -1,7 +1,8 @@
 """The exact answer that turns aim at: balance at exactly the wanted volumes and lengths (ours).
 
 Newton steps lead there from rest, so that the answer depends on the design alone and not on the way there. If
-they fail, the lengths are walked from rest in strides; under sliding lines turns are the last resort.
+they fail, the lengths are walked from rest in strides. Under sliding lines they always are: no energy tells
+one balance from another there, and walking keeps to the one that turns come to, which are the last resort.
 """
 
 from __future__ import annotations
@@ -21,8 +22,9 @@ from core.solver import Targets, at_rest, iterate
 NEWTON_LIMIT = 200
 """Newton steps after which the search is given up; half a dozen are the rule."""
 
+_STRIDE = 0.05
 _STRIDE_STEPS = 20
-_LEAST_STRIDE = 1.0 / 256.0
+_LEAST_STRIDE = 0.0005
 _TURNS = 3000
 
 
@@ -56,19 +58,22 @@ def newton(
     """Yield the iterates on the way to the exact balance, the start included; see ``solve_exact``."""
     potential = Potential(model, ratios, excess)
     start = balance_at(potential, at_rest(model).moved) if near is None else near
-    last = start
-    for last in _steps(potential, start, min(limit, _first_try(model))):
-        yield last
-    if last.found or last.steps >= limit:
-        return
-    walked = _walk(model, ratios, excess, limit - last.steps)
-    if not walked.found and _slides(model):
-        walked = _turned(potential, ratios)
-    yield replace(walked, steps=last.steps + walked.steps)
+    last = replace(start, steps=0)
+    if near is not None or not _slides(model):
+        for last in _steps(potential, start, min(limit, _most_steps(model))):
+            yield last
+        if last.found or last.steps >= limit:
+            return
+    done = last.steps
+    for last in _walk(model, ratios, excess, limit - done):
+        yield replace(last, steps=done + last.steps)
+    if not last.found and _slides(model) and done + last.steps < limit:
+        turned = _turned(potential, ratios)
+        yield replace(turned, steps=done + last.steps + turned.steps)
 
 
-def _first_try(model: ConstrainedModel) -> int:
-    return 2 * _STRIDE_STEPS if _slides(model) else NEWTON_LIMIT
+def _most_steps(model: ConstrainedModel) -> int:
+    return _STRIDE_STEPS if _slides(model) else NEWTON_LIMIT
 
 
 def _slides(model: ConstrainedModel) -> bool:
@@ -80,21 +85,31 @@ def _steps(potential: Potential, start: Balance, limit: int) -> Iterator[Balance
     return steps(potential, start, limit)
 
 
-def _walk(model: ConstrainedModel, ratios: tuple[float, ...], excess: Floats | None, limit: int) -> Balance:
-    """Return the balance that the lengths lead to on a straight way from rest, as far as that goes."""
-    done, stride, steps = 0.0, 0.25, 0
+def _walk(
+    model: ConstrainedModel, ratios: tuple[float, ...], excess: Floats | None, limit: int
+) -> Iterator[Balance]:
+    """Yield the iterates of a walk from rest to ``ratios`` in strides, the last one where it breaks off.
+
+    Each stride ends in a balance, so the walk keeps to the branch that leads there from rest.
+    """
+    way = max(abs(ratio - 1.0) for ratio in ratios)
+    done, stride, steps = 0.0, min(1.0, _STRIDE / max(way, 1e-9)), 0
     last = balance_at(Potential(model, ratios), at_rest(model).moved)
-    while done < 1.0 and steps < limit and stride > _LEAST_STRIDE:
+    while done < 1.0 and steps < limit and stride * way > _LEAST_STRIDE:
         share = min(done + stride, 1.0)
         between = tuple(1.0 + share * (ratio - 1.0) for ratio in ratios)
         potential = Potential(model, between, None if excess is None else share * excess)
-        *_, found = _steps(potential, last, _STRIDE_STEPS)
+        found = last
+        for found in _steps(potential, last, min(_STRIDE_STEPS, limit - steps)):
+            if found.steps:
+                yield replace(found, steps=steps + found.steps)
         steps += found.steps
         if found.found:
             done, last, stride = share, found, 1.5 * stride
         else:
             stride /= 2.0
-    return replace(last, steps=steps, residual=last.residual if done >= 1.0 else np.inf)
+    if done < 1.0:
+        yield replace(last, steps=steps, residual=np.inf)
 
 
 def _turned(potential: Potential, ratios: tuple[float, ...]) -> Balance:
