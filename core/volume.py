@@ -26,8 +26,8 @@ class VolumeMeasure:
     The border is fixed, so a volume *difference* does not depend on the centre; ``rest_volume`` [mm^3] and
     with it every percentage does. ``faces`` (m, 3) are the triangles that can move, ``left`` (m,) those of
     the subject's left breast; ``still_volume`` [mm^3] is the share of all other triangles. ``closed`` tells
-    that there is no border, and no sides that could be told apart. ``gather`` (3 m, 2 f) sums what
-    corners of the left and of the right triangles get at the free points.
+    that there is no border, and no sides that could be told apart. ``gather`` (3 m, 2 f) sums a
+    sixth of what corners of the left and of the right triangles get at the free points.
     """
 
     centre: Floats
@@ -45,10 +45,9 @@ class VolumeMeasure:
 
     def side_volumes(self, points: Points) -> Floats:
         """Return the moving triangles' volume on the subject's left and right, shape (2,) [mm^3]."""
-        places = (points - self.centre).T
-        count = len(self.faces)
-        areas = _crossed(*(places.take(corner[:count], axis=1) for corner in (self._second, self._third)))
-        return np.asarray(self._sides @ (places.take(self._second[-count:], axis=1) * areas).sum(axis=0))
+        corners = (points - self.centre).ravel().take(self._cycle[:, :3])
+        areas = corners[1:4, 1] * corners[2:5, 2] - corners[2:5, 1] * corners[1:4, 2]
+        return np.asarray(self._sides @ (corners[:3, 0] * areas).sum(axis=0))
 
     def gradient(self, points: Points) -> Points:
         """Return dV/dx at the free points, shape (f, 3) [mm^2]: the direction of the volume force."""
@@ -60,25 +59,23 @@ class VolumeMeasure:
 
     def measure(self, points: Points) -> tuple[Floats, Floats]:
         """Return ``side_volumes`` and ``side_gradients`` of control points, shape (n, 3) [mm], at once."""
-        places = (points - self.centre).T
-        areas = _crossed(places.take(self._second, axis=1), places.take(self._third, axis=1))
-        count = len(self.faces)
-        each = (places.take(self._second[-count:], axis=1) * areas[:, :count]).sum(axis=0)
-        sums = areas @ self.gather
+        corners = (points - self.centre).ravel().take(self._cycle)
+        # What stands one and two further on in both axes and corners makes the cross products of all corners.
+        areas = corners[1:4, 1:4] * corners[2:5, 2:5]
+        areas -= corners[2:5, 1:4] * corners[1:4, 2:5]
+        each = (corners[:3, 0] * areas[:, 0]).sum(axis=0)
+        sums = areas.reshape(3, -1) @ self.gather
         return self._sides @ each, np.asarray(sums.T.reshape(2, self.free_count, 3))
 
     @cached_property
-    def _second(self) -> Indices:
-        """The corner after each corner, shape (3 m,): first those after all first corners."""
-        return np.ascontiguousarray(self.faces.T[[1, 2, 0]].ravel())
-
-    @cached_property
-    def _third(self) -> Indices:
-        return np.ascontiguousarray(self.faces.T[[2, 0, 1]].ravel())
+    def _cycle(self) -> Indices:
+        """Where x, y, z, x, y of the corners 0, 1, 2, 0, 1 stand among all coordinates, shape (5, 5, m)."""
+        round_ = np.array([0, 1, 2, 0, 1])
+        return np.ascontiguousarray(3 * self.faces.T[round_][None] + round_[:, None, None])
 
     @cached_property
     def _sides(self) -> Floats:
-        return np.array([self.left, ~self.left], dtype=np.float64)
+        return np.array([self.left, ~self.left]) / 6.0
 
     def curvature(self, place: Indices) -> Entries:
         """Return where the second derivative of both side volumes lies.
@@ -93,16 +90,6 @@ class VolumeMeasure:
             _curvature(self.faces[~self.left], place, count),
         ]
         return joined(sides, 2 * count)
-
-
-def _crossed(b: Points, c: Points) -> Points:
-    """Return a sixth of the cross products of the columns, shape (3, k), axis by axis, which is fast."""
-    areas = np.empty_like(b)
-    for axis, (i, j) in enumerate(((1, 2), (2, 0), (0, 1))):
-        np.multiply(b[i], c[j], out=areas[axis])
-        areas[axis] -= b[j] * c[i]
-    areas *= 1.0 / 6.0
-    return areas
 
 
 def volume_measure(mesh: Mesh, free: Indices, left: Flags | None = None) -> VolumeMeasure:
@@ -125,7 +112,9 @@ def _gather(faces: Faces, left: Flags, place: Indices, free_count: int) -> Opera
     at = place[faces.T] + np.where(left, 0, free_count)
     moves = np.flatnonzero((place[faces.T] >= 0).ravel())
     where = (moves, at.ravel()[moves])
-    return compact(sparse.csr_array((np.ones(len(moves)), where), shape=(faces.size, 2 * free_count)))
+    return compact(
+        sparse.csr_array((np.full(len(moves), 1.0 / 6.0), where), shape=(faces.size, 2 * free_count))
+    )
 
 
 def _curvature(faces: Faces, place: Indices, offset: int) -> Entries:
