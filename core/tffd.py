@@ -216,6 +216,19 @@ def _sigma(control: Mesh) -> float:
     return GAUSS_WIDTH * float(np.median(sizes)) if len(sizes) else 0.0
 
 
+def uncollared(control: Mesh, fixed: Flags) -> Indices:
+    """Return the triangles of the outermost ring of ``control`` that can move, shape (t,); best none (ours).
+
+    ``fixed`` (n,) tells the control points that stay. The body at the border follows the last triangles far
+    beyond them: where those turn, parts that should be still move by millimetres. A closed mesh has no
+    border and so no such triangle.
+    """
+    outer = np.zeros(len(control.vertices), dtype=bool)
+    for loop in control.boundary_loops:
+        outer[loop] = True
+    return np.flatnonzero(outer[control.faces].any(axis=1) & ~fixed[control.faces].all(axis=1))
+
+
 def deform_moving(binding: Binding, control_points: Points) -> Points:
     """Return the places of ``binding.moving`` for ``control_points``, shapes (k, 3) and (n, 3) [mm]."""
     return binding.operator.added(binding.change(control_points), binding.rest_moving)

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from core import kernels
 from core.mesh import Mesh
-from core.tffd import bind, deform, deform_moving
+from core.tffd import bind, deform, deform_moving, uncollared
 
 BOTH = pytest.mark.parametrize("weights", ["paper", "smooth"])
 
@@ -30,6 +31,19 @@ TRIANGLE = Mesh(np.array([[0.0, 0, 0], [4, 0, 0], [0, 4, 0]]), np.array([[0, 1, 
 CONTROL = hill(7, 6)
 BODY = hill(41, 37)
 FULL = np.ones(len(BODY.vertices))
+RING = (np.abs(CONTROL.vertices[:, :2]) > 99.0).any(axis=1)
+
+
+@pytest.fixture
+def form(request, monkeypatch):
+    """Compute in one form of the loops: as defined, or compiled where numba is installed."""
+    monkeypatch.setattr(kernels, "_forms", kernels._Forms())
+    if request.param == "compiled":
+        pytest.importorskip("numba")
+        assert kernels.warm(), kernels.state()
+
+
+FORMS = pytest.mark.parametrize("form", ["defined", "compiled"], indirect=True)
 
 
 def shaken(control: Mesh, size: float = 5.0) -> np.ndarray:
@@ -76,22 +90,65 @@ def test_the_smooth_weights_by_hand():
 
 
 @BOTH
-def test_rest_is_kept_bit_for_bit(weights):
+@FORMS
+@pytest.mark.parametrize("scaled", [False, True])
+@pytest.mark.parametrize("single", [False, True])
+def test_rest_is_kept_bit_for_bit(weights, form, scaled, single):
     fade = np.random.default_rng(1).random(len(BODY.vertices))
-    binding = bind(BODY, CONTROL, fade, weights, scaled_normals=True)
-    assert np.array_equal(deform(binding, CONTROL.vertices.copy()), BODY.vertices)
+    for fixed in (None, RING):
+        binding = bind(BODY, CONTROL, fade, weights, scaled_normals=scaled, fixed=fixed, single=single)
+        assert np.array_equal(deform(binding, CONTROL.vertices.copy()), BODY.vertices)
 
 
 @BOTH
-def test_a_rigid_motion_is_followed(weights):
+@FORMS
+@pytest.mark.parametrize("scaled", [False, True])
+@pytest.mark.parametrize(("single", "error"), [(False, 1e-9), (True, 1e-3)])
+def test_a_rigid_motion_is_followed(weights, form, scaled, single, error):
+    """In single precision to a millionth of the way, here up to 900 mm."""
     turn = Rotation.from_rotvec([0.4, -1.1, 0.7]).as_matrix().T
     shift = np.array([120.0, -35.0, 800.0])
-    moved = deform(bind(BODY, CONTROL, FULL, weights), CONTROL.vertices @ turn + shift)
-    assert np.abs(moved - (BODY.vertices @ turn + shift)).max() < 1e-9
+    binding = bind(BODY, CONTROL, FULL, weights, scaled_normals=scaled, single=single)
+    moved = deform(binding, CONTROL.vertices @ turn + shift)
+    assert np.abs(moved - (BODY.vertices @ turn + shift)).max() < error
 
 
 @BOTH
-def test_a_similarity_is_followed_with_scaled_normals_only(weights):
+@FORMS
+def test_single_precision_is_exact_to_a_ten_thousandth(weights, form):
+    """For motions as large as a garment makes them."""
+    double, single = (bind(BODY, CONTROL, FULL, weights, fixed=RING, single=s) for s in (False, True))
+    moved = np.where(RING[:, None], CONTROL.vertices, shaken(CONTROL, 20.0))
+    assert single.operator.weights.nbytes < 0.51 * double.operator.weights.nbytes
+    assert np.abs(deform(single, moved) - deform(double, moved)).max() < 1e-4
+
+
+@BOTH
+def test_what_cannot_change_is_left_out_and_changes_nothing(weights):
+    moved = np.where(RING[:, None], CONTROL.vertices, shaken(CONTROL))
+    whole, part = bind(BODY, CONTROL, FULL, weights), bind(BODY, CONTROL, FULL, weights, fixed=RING)
+    assert np.abs(deform(part, moved) - deform(whole, moved)).max() < 1e-11
+    assert np.array_equal(part.points, np.flatnonzero(~RING))
+    assert np.array_equal(part.triangles, np.flatnonzero(~RING[CONTROL.faces].all(axis=1)))
+    assert part.operator.columns.max() < len(part.points) + len(part.triangles)
+    assert part.operator.weights.size < whole.operator.weights.size
+
+
+@BOTH
+def test_a_few_rows_as_a_matrix_and_all_of_them_elsewhere(weights):
+    binding = bind(BODY, CONTROL, FULL, weights, fixed=RING)
+    moved, rows = shaken(CONTROL), np.array([700, 3, 41])
+    ours = binding.rest_moving[rows] + binding.operator.of_rows(rows) @ binding.change(moved)
+    assert np.abs(ours - deform_moving(binding, moved)[rows]).max() < 1e-11
+    doubled = np.repeat(BODY.vertices, 2, axis=0)
+    spread = binding.operator.onto(2 * np.arange(len(BODY.vertices))).added(binding.change(moved), doubled)
+    assert np.array_equal(spread[::2], deform(binding, moved))
+    assert np.array_equal(spread[1::2], BODY.vertices)
+
+
+@BOTH
+@FORMS
+def test_a_similarity_is_followed_with_scaled_normals_only(weights, form):
     scaled = deform(bind(BODY, CONTROL, FULL, weights, scaled_normals=True), 1.3 * CONTROL.vertices)
     assert np.abs(scaled - 1.3 * BODY.vertices).max() < 1e-9
     plain = deform(bind(BODY, CONTROL, FULL, weights), 1.3 * CONTROL.vertices)
@@ -183,3 +240,15 @@ def test_the_smooth_weights_end_without_a_step():
     motion = deform(bind(body, CONTROL, np.ones(20001), "smooth"), shaken(CONTROL)) - line
     # A step shows twice in the second differences; dropping weights of 1e-3 unlowered would make 0.014 mm.
     assert np.abs(np.diff(motion, 2, axis=0)).max() < 1e-3
+
+
+def test_the_outermost_ring_must_not_move():
+    grid = np.abs(CONTROL.vertices[:, :2])
+    two_rings = (grid[:, 0] > 66.0) | (grid[:, 1] > 59.0)
+    assert len(uncollared(CONTROL, two_rings)) == 0
+    # The triangles of the outer cells (6 x 5 of them, 4 x 3 within), but for those fixed at the corners.
+    outer = np.array([RING[face].any() for face in CONTROL.faces])
+    assert np.array_equal(uncollared(CONTROL, RING), np.flatnonzero(outer & ~RING[CONTROL.faces].all(axis=1)))
+    assert uncollared(CONTROL, two_rings & (np.arange(42) != 8)).tolist() != []
+    closed = Mesh(np.eye(4, 3), np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]))
+    assert len(uncollared(closed, np.zeros(4, dtype=bool))) == 0
