@@ -46,16 +46,23 @@ class Exact:
 
 
 class VerdictView(Protocol):
-    """What the strip says of a run: a state of the chip, up to three (label, value) pairs, turns, seconds."""
+    """What the strip says of a run: a state of the chip, up to three (label, value) pairs, what to do.
+
+    Then turns, seconds, and whether the run is still on its way.
+    """
 
     @property
     def state(self) -> str: ...
     @property
     def numbers(self) -> list[tuple[str, str]]: ...
     @property
+    def hint(self) -> str: ...
+    @property
     def turns(self) -> int: ...
     @property
     def seconds(self) -> float: ...
+    @property
+    def settling(self) -> bool: ...
 
 
 class Strip(QWidget):
@@ -66,7 +73,7 @@ class Strip(QWidget):
 
     def __init__(self) -> None:
         super().__init__()
-        self._state = "stale"
+        self._state, self._settling = "stale", False
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
         self.chip, self._small_chip = VerdictChip(), VerdictChip(small=True)
         self.error_plot = LivePlot(tr("Volume error"), "%", 0.4, TOLERANCE_PERCENT)
@@ -92,9 +99,9 @@ class Strip(QWidget):
 
     def set_run(self, tracks: Mapping[str, Track], main: str, exact: Exact | None) -> None:
         """Draw the runs by control; ``main`` is the one on the body, and may be ``"exact"``."""
-        strong = "warning" if self._state in ("vibrating", "diverged") else "main"
+        strong = "warning" if self._state in ("vibrating", "diverging") else "main"
         roles = {name: strong if name == main else "ghost" for name in tracks}
-        refit = self._state != "settling"
+        refit = not self._settling
         is_main = main == "exact"
         for plot, quantity in ((self.error_plot, "error_percent"), (self.apex_plot, "apex_mm")):
             curves = [
@@ -107,7 +114,7 @@ class Strip(QWidget):
 
     def set_verdict(self, verdict: VerdictView) -> None:
         """Show how the run stands; call it before ``set_run``, which takes its colour from it."""
-        self._state = verdict.state
+        self._state, self._settling = verdict.state, verdict.settling
         self.chip.set_state(verdict.state)
         self._small_chip.set_state(verdict.state)
         count = tr("{turns} turns · {seconds} s")
@@ -115,10 +122,13 @@ class Strip(QWidget):
         self._turns.setText(turns)
         pairs = verdict.numbers[: len(self._pairs)]
         for place, (name, value) in enumerate(self._pairs):
-            name.setText(pairs[place][0] if place < len(pairs) else "")
-            value.setText(pairs[place][1] if place < len(pairs) else "")
+            pair = pairs[place] if place < len(pairs) else ("", "")
+            for each, text in zip((name, value), pair, strict=True):
+                each.setText(text)
+                each.setVisible(bool(text))
+        self._hint.setText(verdict.hint)
         said = "   ".join(f"{name} {value}" for name, value in pairs[:2])
-        self._said.setText(f"{turns}     {said}")
+        self._said.setText(f"{turns}     {said}     {verdict.hint}")
 
     def set_control(self, control: str) -> None:
         """Show which of ``CONTROLS`` is on; nothing is emitted."""
@@ -179,6 +189,10 @@ class Strip(QWidget):
             grid.addWidget(value, place, 1)
             self._pairs.append((name, value))
         column.addLayout(grid)
+        self._hint = sentence("", "secondary")
+        self._hint.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        column.addSpacing(4)
+        column.addWidget(self._hint)
         column.addStretch(1)
         titles = (tr("Adaptive"), tr("Conventional"), tr("None"), tr("Exact"))
         self._segment = Segment(tuple(zip(CONTROLS, titles, strict=True)), small=True)

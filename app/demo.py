@@ -26,5 +26,5 @@ def run_demo(out: Path) -> int:
     print(f"  {out / 'body.ply'}: the deformed body")
     print(f"  {out / 'turns.csv'}, {out / 'report.json'}: every turn, and the figures at the end")
     last = solution.last
-    print(f"{solution.verdict.state} after {last.turn} turns, volume error {last.error_ml:+.2f} ml")
+    print(f"{solution.verdict.words} after {last.turn} turns, volume error {last.error_ml:+.2f} ml")
     return 0

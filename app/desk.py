@@ -272,8 +272,10 @@ class Desk(QObject):
         strip.set_verdict(strip_verdict(frame))
         strip.set_run(tracks(frame), main, exact_answer(frame))
         self._window.result.set_rows(measure_views(frame))
-        self._window.rail.set_state("result", "done" if frame.verdict.state == "settled" else "available")
-        self._window.rail.set_state("lines", "done" if frame.verdict.state == "settled" else "available")
+        state = frame.verdict.state
+        bad, reached = state in ("folded", "overstrained"), "done" if state == "settled" else "available"
+        self._window.rail.set_state("lines", "look" if bad else reached, int(bad))
+        self._window.rail.set_state("result", reached)
 
 
 def png_of(image: QImage) -> bytes:

@@ -19,6 +19,7 @@ from core.design import Design
 from core.landmarks import Landmarks
 from core.live import Frame
 from core.pipeline import Stages
+from core.report import blamed_line
 from core.solver import Marks
 
 LINE_COLOURS = {"full-bust": "#0A5F73", "mid-bust": "#E5536B", "under-bust": "#5A3F94"}
@@ -117,13 +118,23 @@ class StripVerdict:
 
     state: str
     numbers: list[tuple[str, str]]
+    hint: str
     turns: int
     seconds: float
+    settling: bool
 
 
 def strip_verdict(frame: Frame) -> StripVerdict:
     """Return how the run of a frame stands, with the figures that matter then."""
-    return StripVerdict(frame.verdict.state, _headline(frame), frame.verdict.turns, frame.seconds)
+    verdict = frame.verdict
+    return StripVerdict(
+        verdict.state,
+        _headline(frame),
+        _hint(frame),
+        verdict.turns,
+        frame.seconds,
+        verdict.motion == "settling",
+    )
 
 
 def _headline(frame: Frame) -> list[tuple[str, str]]:
@@ -137,10 +148,26 @@ def _headline(frame: Frame) -> list[tuple[str, str]]:
             (tr("Growth per turn"), f"{number(100.0 * (verdict.growth - 1.0), 1, signed=True)} %"),
         ]
     percent = number(1e5 * frame.error_ml / volume, 2, signed=True)
-    return [
-        (tr("Volume error"), f"{percent} % · {number(frame.error_ml, 1, signed=True)} ml"),
-        (tr("Lift of apex"), f"{number(lift, 1, signed=True)} mm"),
-    ]
+    kept = (tr("Volume error"), f"{percent} % · {number(frame.error_ml, 1, signed=True)} ml")
+    if verdict.condition and verdict.state == "folded":
+        return [kept, (tr("Turned skin"), f"{number(verdict.condition.largest_turn, 0)}°")]
+    if verdict.condition and verdict.state == "overstrained":
+        low, high = (number(100.0 * r, 0) for r in (verdict.condition.shortest, verdict.condition.longest))
+        return [kept, (tr("Strained skin"), tr("{low} to {high} %").format(low=low, high=high))]
+    return [kept, (tr("Lift of apex"), f"{number(lift, 1, signed=True)} mm")]
+
+
+def _hint(frame: Frame) -> str:
+    """Return what to do about a shape that is no body any more."""
+    what = {
+        "folded": tr("The skin folds over: this is no body any more."),
+        "overstrained": tr("The skin strains by more than 30 %: hardly a body."),
+    }.get(frame.verdict.state, "")
+    line = blamed_line(frame.stages)
+    if not what or line is None:
+        return what
+    wish = tr("Set {line} longer.") if line.ratio < 1.0 else tr("Set {line} shorter.")
+    return f"{what} {wish.format(line=line_title(line.name))}"
 
 
 def landmark_views(landmarks: Landmarks) -> list[LandmarkView]:

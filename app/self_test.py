@@ -30,7 +30,7 @@ def run_self_test() -> int:
         opened = _part("opens the sample", lambda: _settled(solver, design))
         moved_design = design.with_line("mid-bust", 0.93)
         moved = _part("moves a line and settles", lambda: _settled(solver, moved_design))
-        _check(moved.verdict.state == "settled", f"the solution is {moved.verdict.state}")
+        _check(moved.verdict.words == "settled", f"the solution is {moved.verdict.words}")
         _check(abs(moved.error_ml) < 1.0, f"the volume is off by {moved.error_ml:.2f} ml")
         _check(bool(np.abs(moved.points - opened.points).max() > 1.0), "the body did not follow the line")
         path = Path(folder) / "self-test.busk"

@@ -15,7 +15,9 @@ TONES = {
     "settled": ("ok", "check-circle"),
     "settling": ("info", "arc"),
     "vibrating": ("warn", "wave"),
-    "diverged": ("bad", "arrow-up-right"),
+    "diverging": ("bad", "arrow-up-right"),
+    "folded": ("bad", "folded"),
+    "overstrained": ("warn", "overstrained"),
     "stale": ("plain", "clock-counter-clockwise"),
     "paused": ("plain", "pause"),
 }
@@ -33,7 +35,9 @@ def state_title(state: str) -> str:
         "settled": tr("Settled"),
         "settling": tr("Settling"),
         "vibrating": tr("Vibrating"),
-        "diverged": tr("Diverging"),
+        "diverging": tr("Diverging"),
+        "folded": tr("Folded"),
+        "overstrained": tr("Overstrained"),
         "stale": tr("Stale"),
         "paused": tr("Paused"),
     }[state]

@@ -6,6 +6,7 @@ is read off the control mesh itself (ours, beyond the paper).
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -38,6 +39,11 @@ class Condition:
     triangle: int = -1
     short_edge: int = -1
     long_edge: int = -1
+
+    @property
+    def largest_turn(self) -> float:
+        """The angle by which the worst triangle has turned [degrees]."""
+        return math.degrees(math.acos(min(max(self.turned, -1.0), 1.0)))
 
     @property
     def folded(self) -> bool:

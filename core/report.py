@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import csv
 import json
+import math
 import os
 import platform
 from collections.abc import Sequence
+from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from core import __version__
-from core.design import to_json
-from core.export import write_mesh
+from core.condition import Condition
+from core.design import WornLine, to_json
+from core.export import write_control_points, write_mesh
 from core.lines import Line
 from core.pipeline import Stages
 from core.project import whole_file
@@ -21,16 +24,18 @@ from core.solution import Solution
 from core.solver import Record
 
 _LIBRARIES = ("numpy", "scipy", "trimesh")
+_SETTINGS = ("template", "line_height", "weights", "scaled_normals", "dense_volume")
 
 
 def write_solution(solution: Solution, folder: Path) -> dict[str, Any]:
-    """Write body.ply, control.ply, turns.csv and report.json to ``folder``, and return the report.
+    """Write body.ply, control.ply, control.csv, turns.csv and report.json, and return the report.
 
     Raises UserError if something cannot be written.
     """
     stages = solution.stages
     write_mesh(folder / "body.ply", solution.body)
     write_mesh(folder / "control.ply", stages.control.mesh.moved(solution.control_points))
+    write_control_points(folder / "control.csv", stages.control)
     write_turns(folder / "turns.csv", solution.records, stages.model.lines)
     figures = report(solution)
     with whole_file((folder / "report.json").absolute()) as partial:
@@ -62,30 +67,26 @@ def write_turns(path: str | os.PathLike[str], records: Sequence[Record], lines: 
 def report(solution: Solution) -> dict[str, Any]:
     """Return the final figures of a solution, with definitions, versions and seconds, ready for JSON."""
     stages, last, verdict = solution.stages, solution.last, solution.verdict
-    volume = stages.model.volume.rest_volume
     return {
         "state": verdict.state,
+        "motion": verdict.motion,
         "turns": last.turn,
+        "control_points": len(stages.control.row),
         "volume_control": stages.design.volume,
-        "volume": {
-            "rest_ml": volume / 1000.0,
-            "error_percent": 100.0 * last.error,
-            "error_ml": last.error_ml,
-            "definition": "between the control mesh and the fan from the centre of its border; "
-            "error = (volume - rest volume) / rest volume",
-        },
+        "volume": _volume_report(solution),
         "vibration": {
             "period_turns": verdict.period,
             "amplitude_percent": 100.0 * verdict.amplitude,
             "growth_per_turn": verdict.growth,
         },
+        "condition": _condition_report(verdict.condition),
         "lines": {
             line.name: _line_report(line, stages, reached)
             for line, reached in zip(stages.model.lines, last.lengths, strict=True)
         },
         "marks": {"rest": _marks(solution.rest), "final": _marks(last)},
         "settings": _settings(stages),
-        "notes": notes(stages),
+        "notes": [*shape_warnings(solution), *notes(stages)],
         "seconds": {
             **{name: round(seconds, 4) for name, seconds in stages.seconds.items()},
             "solve": round(solution.seconds, 4),
@@ -99,13 +100,41 @@ def report(solution: Solution) -> dict[str, Any]:
     }
 
 
+def _volume_report(solution: Solution) -> dict[str, Any]:
+    rest, last = solution.stages.model.volume.rest_volume / 1000.0, solution.last
+    return {
+        "rest_ml": rest,
+        "error_percent": 100.0 * last.error,
+        "error_ml": last.error_ml,
+        "body_change_percent": 100.0 * solution.body_change / rest,
+        "body_change_ml": solution.body_change,
+        "definition": "rest_ml: between the control mesh and the fan from the centre of its border; "
+        "error = (volume - rest volume) / rest volume; body_change: what the reshaped scan itself gained, "
+        "in percent of the same rest volume",
+    }
+
+
+def _condition_report(condition: Condition | None) -> dict[str, Any]:
+    if condition is None:
+        return {}
+    return {
+        "folded": condition.folded,
+        "inverted": condition.inverted,
+        "overstrained": condition.overstrained,
+        "strained": condition.strained,
+        "largest_turn_degrees": condition.largest_turn,
+        "shortest_edge_percent": 100.0 * condition.shortest,
+        "longest_edge_percent": 100.0 * condition.longest,
+        "definition": "of the control mesh: the largest angle between a triangle's normal and its normal at "
+        "rest, and edge lengths over rest lengths; folded from 78 degrees on, strained outside 80 to 120 %, "
+        "overstrained outside 70 to 130 %",
+    }
+
+
 def _settings(stages: Stages) -> dict[str, Any]:
     return {
-        "template": stages.design.template,
-        "line_height": stages.design.line_height,
-        "line_stiffness": stages.design.line_stiffness,
-        "line_contact": stages.design.line_contact,
-        "weights": stages.design.weights,
+        **{key: getattr(stages.design, key) for key in _SETTINGS},
+        **asdict(stages.design.mechanics),
         "gain": stages.gain,
         "gain_limit_at_rest": stages.gain_limit,
     }
@@ -120,6 +149,28 @@ def notes(stages: Stages) -> list[str]:
         "Lengths are those of the front part of a line, side to side; the back does not change.",
         "Not modelled: sliding of the garment on the skin, gravity, stiffness of real tape and real tissue.",
     ]
+
+
+def shape_warnings(solution: Solution) -> list[str]:
+    """Return in a sentence what is wrong with a folded or overstrained shape, and what to do then."""
+    condition, state = solution.verdict.condition, solution.verdict.state
+    if condition is None or state not in ("folded", "overstrained"):
+        return []
+    if state == "folded":
+        what = f"a triangle of the control mesh has turned by {condition.largest_turn:.0f} degrees"
+    else:
+        low, high = 100.0 * condition.shortest, 100.0 * condition.longest
+        what = f"edges of the control mesh have {low:.0f} to {high:.0f} % of their rest lengths"
+    line = blamed_line(solution.stages)
+    wish = f" Set {line.name} {'longer' if line.ratio < 1.0 else 'shorter'}." if line else ""
+    return [f"The shape is {state}: {what}. It does not tell how a body would look.{wish}"]
+
+
+def blamed_line(stages: Stages) -> WornLine | None:
+    """Return the worn line that is set furthest from its rest length, among those that move anything."""
+    moving = {line.name for line in stages.model.lines if line.constrains}
+    worn = (line for line in stages.design.lines if line.name in moving and line.ratio != 1.0)
+    return max(worn, key=lambda line: abs(math.log(line.ratio)), default=None)
 
 
 def still_lines(stages: Stages) -> list[str]:

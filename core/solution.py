@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
+from core.comparison import judge_balance, shape_of
 from core.exact import NEWTON_LIMIT, newton
 from core.mesh import Mesh, Points
+from core.moving import volume_change
 from core.pipeline import Stages, targets_of
 from core.solver import Record, State, at_rest, iterate, record
 from core.tffd import deform
@@ -40,10 +43,15 @@ class Solution:
         """The control points at the end, shape (n, 3) [mm]."""
         return self.stages.model.tensegric.expand(self.state.moved)
 
-    @property
+    @cached_property
     def body(self) -> Mesh:
         """The reshaped body."""
         return self.stages.body.mesh.moved(deform(self.stages.binding, self.control_points))
+
+    @cached_property
+    def body_change(self) -> float:
+        """The volume that the body has gained [ml]."""
+        return volume_change(self.stages.body.mesh, self.body.vertices) / 1000.0
 
 
 def run(stages: Stages, turns: int | None = None) -> Solution:
@@ -56,6 +64,8 @@ def run(stages: Stages, turns: int | None = None) -> Solution:
     rest = record(stages.model, at_rest(stages.model), 0.0, stages.watch)
     solve = _run_exact if stages.design.volume == "exact" else _run_turns
     records, state, verdict = solve(stages, rest, turns)
+    condition = shape_of(stages.model).condition(stages.model.tensegric.expand(state.moved))
+    verdict = replace(verdict, condition=condition)
     return Solution(stages, rest, tuple(records), state, verdict, time.perf_counter() - start)
 
 
@@ -67,7 +77,7 @@ def _run_turns(stages: Stages, rest: Record, turns: int | None) -> tuple[list[Re
     for now, measured in iterate(stages.model, lambda: targets, turns=most, watch=stages.watch):
         state = now
         records.append(measured)
-        if turns is None and judge(records).state in ("settled", "diverged"):
+        if turns is None and judge(records).motion in ("settled", "diverging"):
             break
     return records, state, judge(records)
 
@@ -81,7 +91,4 @@ def _run_exact(stages: Stages, rest: Record, turns: int | None) -> tuple[list[Re
             step = float(((balance.state.moved - before.moved) ** 2).sum(axis=1).max() ** 0.5)
             records.append(record(stages.model, balance.state, step, stages.watch))
         before = balance.state
-    verdict = Verdict(
-        "settled" if balance.found else "settling", balance.steps, (records or [rest])[-1].error
-    )
-    return records, balance.state, verdict
+    return records, balance.state, judge_balance(stages.model, balance)

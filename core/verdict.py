@@ -1,68 +1,168 @@
-"""Whether a run settles, vibrates or diverges: a small pure function of its records.
+"""How a run stands: a small pure function of its records and of the condition of its control mesh.
 
-Paper section 5 names the cases; the figures are ours.
+Paper section 5 names the cases; the rules and figures are ours.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from core.mesh import Floats
+from core.condition import Condition
+from core.mesh import Floats, Indices
 from core.solver import Record
+
+MOTIONS = ("settled", "settling", "vibrating", "diverging")
+"""What a run can do."""
+
+STATES = (*MOTIONS, "folded", "overstrained")
+"""What can be said of a run in one word."""
 
 SETTLED_STEP = 0.002
 """A run has settled when no control point moved further than this in each of the last turns [mm]."""
 
 _QUIET_TURNS = 5
-_WINDOW = 12
-_RIPPLE = 1e-4
 _DIVERGED = 0.5
 _FADING = 0.99
+
+_RIPPLE = 1e-4
+_LEAST = 26  # turns without which no swing is judged
+_LOOK_BACK = 120  # turns: room for a swing of 40 turns to show twice
+_LAGS = (1, 2, 4, 8, 16)  # together they see periods from 2 to 40
+_WINDOW = 12  # turns over which a quick swing is measured; over twice as many its growth
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """How a run stands: ``state`` is settled, settling, vibrating or diverged.
+    """How a run stands: ``motion`` is one of MOTIONS, ``condition`` that of the control mesh, if known.
 
-    ``period`` [turns], ``amplitude`` [1] (half the swing of the volume error) and ``growth`` per turn [1]
-    describe the flip-flop if there is one, else they are 0, 0 and 1; ``error`` [1] is the mean volume error
-    of the last turns.
+    ``error`` [1] is the mean volume error of the last turns. ``period`` [turns], ``amplitude`` [1] (half the
+    swing of the volume error, 0 if only the shape swings) and ``growth`` per turn [1] describe a vibration;
+    without one they are 0, 0 and 1.
     """
 
-    state: str
+    motion: str
     turns: int
     error: float
     period: float = 0.0
     amplitude: float = 0.0
     growth: float = 1.0
+    condition: Condition | None = None
+
+    @property
+    def state(self) -> str:
+        """The one word of STATES to say.
+
+        A run that vibrates or diverges has no shape to speak of; else a fold weighs more than strain, and
+        both more than whether it has come to rest.
+        """
+        if self.condition is None or self.motion in ("vibrating", "diverging"):
+            return self.motion
+        if self.condition.folded:
+            return "folded"
+        return "overstrained" if self.condition.overstrained else self.motion
+
+    @property
+    def words(self) -> str:
+        """The state, after the motion if that is another: "settled but folded"."""
+        return self.motion if self.state == self.motion else f"{self.motion} but {self.state}"
 
 
-def judge(records: Sequence[Record]) -> Verdict:
-    """Judge a run by its records so far."""
+def judge(records: Sequence[Record], condition: Condition | None = None) -> Verdict:
+    """Judge a run by its records so far, and by the condition of its control mesh if that is known."""
     if not records:
-        return Verdict("settling", 0, 0.0)
-    last = records[-1]
-    errors = np.array([record.error for record in records[-2 * _WINDOW - 2 :]])
+        return Verdict("settling", 0, 0.0, condition=condition)
+    last, recent = records[-1], records[-_LOOK_BACK:]
+    errors = np.array([record.error for record in recent])
     if not np.isfinite(errors).all() or abs(last.error) > _DIVERGED:
-        return Verdict("diverged", last.turn, last.error)
-    if len(records) >= _QUIET_TURNS and max(r.step for r in records[-_QUIET_TURNS:]) < SETTLED_STEP:
-        return Verdict("settled", last.turn, last.error)
-    return _judge_ripple(errors, last.turn)
+        return Verdict("diverging", last.turn, last.error, condition=condition)
+    if len(recent) >= _QUIET_TURNS and max(record.step for record in recent[-_QUIET_TURNS:]) < SETTLED_STEP:
+        return Verdict("settled", last.turn, last.error, condition=condition)
+    swing = _strongest_swing(errors) or _shape_swing(recent)
+    if swing is None:
+        return Verdict("settling", last.turn, float(errors[-2:].mean()), condition=condition)
+    mean = float(errors[-swing.window :].mean())
+    return Verdict("vibrating", last.turn, mean, swing.period, swing.amplitude, swing.growth, condition)
 
 
-def _judge_ripple(errors: Floats, turns: int) -> Verdict:
-    mean = float(errors[-2:].mean())
-    # A flip-flop shows as a second difference of alternating sign; a smooth approach has almost none.
-    swing = (errors[:-2] - 2.0 * errors[1:-1] + errors[2:]) / 4.0
-    if len(swing) < 2 * _WINDOW:
-        return Verdict("settling", turns, mean)
-    recent, earlier = swing[-_WINDOW:], swing[:_WINDOW]
-    amplitude = float(np.abs(recent).mean())
-    flips = int(np.count_nonzero(recent[1:] * recent[:-1] < 0.0))
-    growth = float((amplitude / max(float(np.abs(earlier).mean()), 1e-300)) ** (1.0 / _WINDOW))
-    if amplitude < _RIPPLE or flips < _WINDOW // 2 or growth < _FADING:
-        return Verdict("settling", turns, mean)
-    return Verdict("vibrating", turns, mean, 2.0 * (_WINDOW - 1) / flips, amplitude, growth)
+@dataclass(frozen=True)
+class _Swing:
+    """How a course swings: period [turns], half the swing, growth per turn, turns it was measured over."""
+
+    period: float
+    amplitude: float
+    growth: float
+    window: int
+
+
+def _strongest_swing(course: Floats) -> _Swing | None:
+    """Return the largest swing of a course (n,) [1] that does not fade, or None."""
+    ups = course[1:] > course[:-1]
+    turned = int(np.count_nonzero(ups[1:] != ups[:-1]))
+    if len(course) < _LEAST or turned < 3:
+        return None
+    late = course[-3 * _WINDOW :]
+    room = 0.25 * float(late.max() - late.min())
+    strongest = None
+    for lag in _LAGS:
+        swing = _swing(course, lag)
+        if swing and swing.growth >= _FADING and (not strongest or swing.amplitude > strongest.amplitude):
+            strongest = swing
+            if swing.amplitude > room:  # no other can be much larger
+                break
+    return strongest if strongest and strongest.amplitude >= _RIPPLE else None
+
+
+def _swing(course: Floats, lag: int) -> _Swing | None:
+    """Return the swing of about 2 x ``lag`` turns in a course, if there is one.
+
+    Second differences over half a period show a swing in full and a straight drift not at all; a smooth
+    approach leaves little, and that of one sign.
+    """
+    bend = course[: -2 * lag] + course[2 * lag :] - 2.0 * course[lag:-lag]
+    turns = _sign_changes(bend)
+    if len(turns) < 4:  # a single pulse bends three times
+        return None
+    periods = min((len(turns) - 1) // 2, _WINDOW)
+    turns = turns[-1 - 2 * periods :]
+    period = float(turns[-1] - turns[0]) / periods
+    longest = max(int((turns[1:] - turns[:-1]).max()), len(bend) - int(turns[-1]))
+    whole = int(len(bend) / 2.0 / period)
+    if not 1.4 * lag <= period <= 4.0 * lag or whole < 1 or longest > 0.75 * period + 1.0:
+        return None
+    window, long = (round(period * min(whole, math.ceil(n / period))) for n in (_WINDOW, 2 * _WINDOW))
+    recent, earlier = _size(bend[-long:], period), _size(bend[-2 * long : -long], period)
+    growth = (recent / max(earlier, 0.01 * _RIPPLE)) ** (1.0 / long)
+    gain = 4.0 * math.sin(math.pi * lag / period) ** 2
+    return _Swing(period, _size(bend[-window:], period) / gain, growth, window)
+
+
+def _sign_changes(bend: Floats) -> Indices:
+    """Return where ``bend`` takes the other sign, but for what is too small to matter."""
+    large = (np.abs(bend) > _RIPPLE).nonzero()[0]
+    up = bend[large] > 0.0
+    return np.asarray(large[1:][up[1:] != up[:-1]])
+
+
+def _size(bend: Floats, period: float) -> float:
+    """Return half the swing over whole periods: a flip-flop is always at its crest, a wave is a sine."""
+    swing = bend - bend.sum() / len(bend)
+    if period < 2.05:
+        return float(np.abs(swing).sum()) / len(bend)
+    return math.sqrt(2.0 * float(swing @ swing) / len(bend))
+
+
+def _shape_swing(records: Sequence[Record]) -> _Swing | None:
+    """Return the swing of the line that moves most, in parts of its length, unless the moves fade."""
+    if len(records) < _LEAST or not records[-1].lengths:
+        return None
+    earlier, later = (max(r.step for r in part) for part in (records[-24:-12], records[-12:]))
+    if later < _FADING**12 * earlier:
+        return None
+    lengths = np.array([record.lengths for record in records])
+    course = lengths[:, int(np.ptp(lengths[-24:], axis=0).argmax())]
+    swing = _strongest_swing(course / course.mean())
+    return swing and _Swing(swing.period, 0.0, swing.growth, swing.window)

@@ -61,6 +61,8 @@ class Said:
     numbers: list[tuple[str, str]]
     turns: int
     seconds: float
+    hint: str = ""
+    settling: bool = False
 
 
 def invented_tracks() -> dict[str, Track]:

@@ -58,7 +58,7 @@ def test_everything_rests_in_the_end_near_the_exact_answer():
     comparison = Comparison(MODEL, targets(0.97))
     turns = finish(comparison)
     assert turns <= MOST_TURNS
-    assert comparison.verdict.state == "settled"
+    assert comparison.verdict.motion == "settled"
     np.testing.assert_allclose(
         comparison.runs["adaptive"].state.moved, comparison.exact.state.moved, atol=0.1
     )
@@ -74,7 +74,7 @@ def test_what_is_shown_is_the_chosen_run_or_the_exact_answer():
     comparison.retarget(MODEL, targets(0.9, "exact"))
     assert comparison.main is None
     assert comparison.shown is comparison.exact.state
-    assert comparison.verdict.state == "settled"
+    assert comparison.verdict.motion == "settled"
 
 
 def test_new_lengths_go_on_warm_and_lose_no_record():
@@ -105,11 +105,11 @@ def test_the_exact_answer_does_not_depend_on_the_way_there():
 def test_the_verdict_counts_only_what_came_after_the_change():
     comparison = Comparison(MODEL, targets(0.97))
     finish(comparison)
-    assert comparison.verdict.state == "settled"
+    assert comparison.verdict.motion == "settled"
     comparison.retarget(MODEL, targets(0.8))
-    assert comparison.verdict.state == "settling"
+    assert comparison.verdict.motion == "settling"
     finish(comparison)
-    assert comparison.verdict.state == "settled"
+    assert comparison.verdict.motion == "settled"
 
 
 def test_fresh_begins_new_records_from_where_the_body_is():
@@ -122,7 +122,7 @@ def test_fresh_begins_new_records_from_where_the_body_is():
     np.testing.assert_array_equal(run.state.moved, here)
     assert run.records[0].lengths[1] < MODEL.lines[1].rest_length
     finish(comparison)
-    assert comparison.verdict.state == "settled"
+    assert comparison.verdict.motion == "settled"
 
 
 def test_other_lines_may_be_worn_while_the_runs_go_on():
@@ -132,7 +132,7 @@ def test_other_lines_may_be_worn_while_the_runs_go_on():
     asked = Targets((1.0, 0.9, 0.95), "adaptive", CALM)
     comparison.retarget(both, asked)
     finish(comparison)
-    assert comparison.verdict.state == "settled"
+    assert comparison.verdict.motion == "settled"
     np.testing.assert_allclose(comparison.shown.moved, solve_exact(both, asked.ratios).state.moved, atol=0.2)
     bare = constrained_model(torso(), worn=[])
     comparison.retarget(bare, targets(1.0))
@@ -149,7 +149,7 @@ def test_a_slider_dragged_while_turns_are_made_ends_where_it_was_left():
     finish(comparison)
     turns = [measured.turn for measured in comparison.runs["adaptive"].records]
     assert turns == list(range(len(turns)))
-    assert comparison.verdict.state == "settled"
+    assert comparison.verdict.motion == "settled"
     np.testing.assert_allclose(
         comparison.shown.moved, solve_exact(MODEL, (1.0, 0.85, 1.0)).state.moved, atol=0.1
     )
@@ -158,7 +158,7 @@ def test_a_slider_dragged_while_turns_are_made_ends_where_it_was_left():
 def test_a_vibrating_run_is_watched_long_enough_and_then_left():
     comparison = Comparison(MODEL, targets(0.9, "conventional", 1.05 * gain_limit(MODEL)))
     assert finish(comparison) == MOST_TURNS
-    assert comparison.verdict.state == "vibrating"
+    assert comparison.verdict.motion == "vibrating"
     assert comparison.verdict.period == pytest.approx(2.0)
 
 
@@ -166,12 +166,12 @@ def test_a_vibrating_run_is_watched_long_enough_and_then_left():
 def test_a_run_that_diverged_starts_again_at_rest_once_the_gain_is_lowered(fresh):
     comparison = Comparison(MODEL, targets(0.9, "conventional", 9.0))
     finish(comparison)
-    assert comparison.verdict.state == "diverged"
+    assert comparison.verdict.motion == "diverging"
     records = len(comparison.runs["conventional"].records)
     comparison.retarget(MODEL, targets(0.9, "conventional"), fresh)
     assert np.abs(comparison.shown.moved).max() == 0.0
     finish(comparison)
-    assert comparison.verdict.state == "settled"
+    assert comparison.verdict.motion == "settled"
     turns = [measured.turn for measured in comparison.runs["conventional"].records]
     assert turns == list(range(len(turns)))
     assert fresh or len(turns) > records
@@ -180,8 +180,8 @@ def test_a_run_that_diverged_starts_again_at_rest_once_the_gain_is_lowered(fresh
 def test_one_diverged_run_does_not_disturb_the_others():
     comparison = Comparison(MODEL, targets(0.9, "adaptive", 9.0))
     finish(comparison)
-    assert comparison.runs["conventional"].verdict.state == "diverged"
-    assert comparison.verdict.state == "settled"
+    assert comparison.runs["conventional"].verdict.motion == "diverging"
+    assert comparison.verdict.motion == "settled"
 
 
 def test_body_marks_are_recorded_from_the_start():
@@ -193,5 +193,5 @@ def test_body_marks_are_recorded_from_the_start():
 
 def test_a_balance_that_was_not_found_is_no_answer():
     balance = solve_exact(MODEL, (1.0, 0.7, 1.0))
-    assert judge_balance(MODEL, balance).state == "settled"
-    assert judge_balance(MODEL, replace(balance, residual=1.0)).state == "settling"
+    assert judge_balance(MODEL, balance).motion == "settled"
+    assert judge_balance(MODEL, replace(balance, residual=1.0)).motion == "settling"

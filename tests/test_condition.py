@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 from shapes import fitted, octahedron, tent, tent_model, torso
 
-from core.condition import Condition, RestShape, condition, rest_shape
+from core.comparison import shape_of
+from core.condition import Condition, condition, rest_shape
 from core.exact import solve_exact
-from core.solver import constrained_model
+from core.mechanics import Mechanics
+from core.model import constrained_model
 
 SIDE = np.sqrt(41.0)  # from a corner of the tent to its tip
 
@@ -110,7 +112,7 @@ def test_a_model_tells_the_same_as_its_mesh():
     mesh, fixed = tent()
     model = tent_model()
     points = mesh.vertices + np.array(4 * [[0.0, 0.0, 0.0]] + [[0.5, 0.2, -0.4]])
-    of_model = RestShape(model.tensegric.rest, model.volume.faces, model.tensegric.cables)
+    of_model = shape_of(model)
     assert of_model.condition(points) == condition(mesh, points, fixed)
 
 
@@ -118,7 +120,7 @@ def test_a_model_tells_the_same_as_its_mesh():
 def test_short_lines_strain_a_body_and_shorter_ones_fold_it(sample):
     control = fitted(sample)
     shape = rest_shape(control.mesh, control.fixed)
-    stiff = constrained_model(control, worn=["mid-bust"], line_stiffness=500.0)
+    stiff = constrained_model(control, worn=["mid-bust"], mechanics=Mechanics(line_stiffness=500.0))
     found = []
     for ratio in (0.97, 0.8, 0.65):
         moved = solve_exact(stiff, (1.0, ratio, 1.0)).state.moved

@@ -46,7 +46,7 @@ def test_line_3_percent_shorter_keeps_the_volume_within_a_tenth_percent(built: B
     ]
     line = next(line for line in stages.model.lines if line.name == "mid-bust")
     assert reached / line.rest_length == pytest.approx(0.97, abs=5e-4)
-    assert solution.verdict.state == "settled"
+    assert solution.verdict.motion == "settled"
     assert abs(solution.last.error) < 1e-3
     assert abs(solution.last.error) < 1e-5  # and a hundred times better
 
@@ -78,9 +78,9 @@ def test_without_the_volume_constraint_the_line_only_suppresses_the_bust(built: 
 def test_the_model_vibrates_when_the_line_is_excessively_short(built: Built, sample: str) -> None:
     """Section 5: at the default gain, 0.97 of the limit at rest, only an excessive constraint vibrates."""
     stages = built(sample)
-    assert solved(stages, 0.97, "conventional").verdict.state == "settled"
+    assert solved(stages, 0.97, "conventional").verdict.motion == "settled"
     excessive = solved(stages, 0.6, "conventional").verdict
-    assert excessive.state == "vibrating"
+    assert excessive.motion == "vibrating"
     assert excessive.period == pytest.approx(2.0, abs=0.3)
     assert excessive.amplitude > 0.005
 
@@ -89,7 +89,7 @@ def test_the_model_vibrates_when_the_line_is_excessively_short(built: Built, sam
 @pytest.mark.parametrize("ratio", [0.97, 0.6])
 def test_no_vibration_without_the_volume_constraint(built: Built, sample: str, ratio: float) -> None:
     """Section 5."""
-    assert solved(built(sample), ratio, "none").verdict.state == "settled"
+    assert solved(built(sample), ratio, "none").verdict.motion == "settled"
 
 
 @pytest.mark.parametrize("sample", SAMPLES)

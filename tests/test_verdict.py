@@ -109,20 +109,20 @@ def test_a_new_vibration_after_a_calm_time_grows():
 def test_a_run_that_blew_up_diverged(bad):
     errors = np.append(0.001 * FLIP, bad)
     verdict = judge(course(errors))
-    assert verdict.state == "diverged"
+    assert verdict.state == "diverging"
     assert verdict.turns == 61
 
 
 def test_a_nan_is_not_forgiven_though_nothing_moves_any_more():
     errors = np.append(np.nan, np.zeros(8))
-    assert judge(course(errors, 0.0)).state == "diverged"
+    assert judge(course(errors, 0.0)).state == "diverging"
 
 
 def test_a_flip_flop_that_blows_up_vibrates_first_and_then_diverges():
     errors = 1e-3 * 1.12**TURNS * FLIP
     states = [judge(course(errors[:n])).state for n in range(1, 61)]
     assert states[30] == "vibrating"
-    assert states[-1] == "diverged"
+    assert states[-1] == "diverging"
     assert "settled" not in states
 
 
@@ -130,5 +130,5 @@ def test_a_flip_flop_that_blows_up_vibrates_first_and_then_diverges():
 @given(st.lists(st.floats(-0.5, 0.5), max_size=70), st.floats(0, 1))
 def test_any_course_gets_a_verdict(errors, step):
     verdict = judge(course(errors, step))
-    assert verdict.state in ("settled", "settling", "vibrating", "diverged")
+    assert verdict.state in ("settled", "settling", "vibrating", "diverging")
     assert verdict.turns == len(errors)
