@@ -19,8 +19,8 @@ FLOORS = {
     "anatomy": "scan_file repair symmetry stance upright body trunk relief landmarks torso template profiles "
     "fit_check laying control_mesh measure detect",
     "mechanics": "mechanics band springs cells tensegric lines volume patch tffd",
-    "solving": "condition layout sweep model solver gain potential newton sliding exact verdict comparison watch",
-    "document": "design project pipeline sphere live export solution report",
+    "solving": "condition layout sweep model solver gain potential newton sliding exact body_volume verdict comparison watch",
+    "document": "design own_lines project pipeline sphere live export solution report",
     "seeing": "camera scene_stage scene_body scene_bands scene_control scene",
     "wording": "display tokens words samples",
     "asking": "session",
@@ -29,7 +29,7 @@ FLOORS = {
     "panels.length_slider panels.number_field panels.line_row panels.lines panels.landmarks panels.rail "
     "housekeeping panels.result panels.scan panels.status panels.top_bar panels.view_tools",
     "roof": "present view_area actions recent dialogs application desk main_window window picture demo "
-    "self_test cli __main__",
+    "self_test settings cli __main__",
 }
 CORE = ("ground", "anatomy", "mechanics", "solving", "document")
 NUMBERS = {"numpy", "scipy"}
