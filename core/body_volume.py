@@ -40,11 +40,11 @@ def solve_body_exact(
     """
     excess, steps = np.zeros(2), 0
     for _ in range(_ROUNDS):
-        near = solve_exact(model, ratios, limit, excess=excess, near=near)
-        steps += near.steps
-        gained = change(model.tensegric.expand(near.state.moved))
+        last = near = solve_exact(model, ratios, limit, excess=excess, near=near)
+        steps += last.steps
+        gained = change(model.tensegric.expand(last.state.moved))
         lacking = gained if model.mechanics.volume_of == "each" else np.full(2, gained.sum() / 2.0)
-        if not near.found or np.abs(lacking).max() < PRECISION * abs(model.volume.rest_volume):
-            return replace(near, steps=steps)
+        if not last.found or np.abs(lacking).max() < PRECISION * abs(model.volume.rest_volume):
+            return replace(last, steps=steps)
         excess = excess - lacking
-    return replace(near, steps=steps, residual=np.inf)
+    return replace(last, steps=steps, residual=np.inf)

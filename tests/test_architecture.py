@@ -19,7 +19,8 @@ FLOORS = {
     "anatomy": "scan_file repair symmetry stance upright body trunk relief landmarks torso template profiles "
     "fit_check laying control_mesh measure detect",
     "mechanics": "mechanics band springs cells tensegric lines volume patch tffd",
-    "solving": "condition layout sweep model solver gain potential newton sliding exact body_volume verdict comparison watch",
+    "solving": "condition layout sweep model solver gain potential newton sliding exact body_volume "
+    "verdict comparison watch",
     "document": "design own_lines project pipeline sphere live export solution report",
     "seeing": "camera scene_stage scene_body scene_bands scene_control scene",
     "wording": "display tokens words samples",
