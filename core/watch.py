@@ -1,19 +1,27 @@
-"""What is watched on the body turn by turn: the heights of its bust points, and its foremost place."""
+"""What is watched on the moved body: the heights of its bust points, its foremost place and its girths."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial import ConvexHull, cKDTree
 
 from core.control_mesh import ControlMesh
 from core.landmarks import Landmarks
-from core.mesh import Flags, Indices, Points
+from core.mesh import Flags, Floats, Indices, Mesh, Points
+from core.moving import MovingFaces
+from core.sections import cut, hull_perimeter
 from core.solver import Marks
 from core.tffd import Binding
+from core.trunk import trunk_levels
 
 _SHARPNESS = 1.0  # [mm]
 _REACH = 30.0
 _CANDIDATES = 400
+
+_NEAR_LEVEL = 60.0
+"""No vertex of a body under a garment moves so far up or down [mm]."""
 
 
 class BodyWatch:
@@ -63,3 +71,54 @@ def _apex(places: Points) -> Points:
     """Return y and z of the apex, shape (2,) [mm]: a mean that favours what lies foremost."""
     weight = np.exp((places[:, 1].min() - places[:, 1]) / _SHARPNESS)
     return np.asarray(weight @ places[:, 1:] / weight.sum())
+
+
+class Tapes:
+    """Tapes laid level round the moved body, arms taken out, at the same heights all the time (ours).
+
+    Only edges of the moving faces are cut anew, those that lie within 60 mm of a level at rest; of the still
+    skin the corners of its convex outline are kept. Calling it with ``places`` of ``moving.vertices``, shape
+    (r, 3) [mm], gives the length of each tape, shape (k,) [mm], bridging the hollows.
+    """
+
+    def __init__(self, moving: MovingFaces, heights: Sequence[float]) -> None:
+        faces, still = moving.corners.T, _still(moving)
+        edges = Mesh(moving.rest, faces).edges.T
+        middle = moving.rest[edges, 2].mean(axis=0)
+        self._heights = [float(height) for height in heights]
+        self._edges = [edges[:, np.abs(middle - z) < _NEAR_LEVEL] for z in self._heights]
+        self._still = [_outline(still, moving.body, z) for z in self._heights]
+
+    def __call__(self, places: Points) -> Floats:
+        """Return the length of each tape, shape (k,) [mm]."""
+        levels = zip(self._heights, self._edges, self._still, strict=True)
+        return np.array(
+            [hull_perimeter(np.concatenate([still, _cut(places, edges, z)])) for z, edges, still in levels]
+        )
+
+
+def _still(moving: MovingFaces) -> Mesh:
+    moves = np.zeros(len(moving.body.vertices), dtype=bool)
+    moves[moving.vertices[moving.moving]] = True
+    return Mesh(moving.body.vertices, moving.body.faces[~moves[moving.body.faces].any(axis=1)])
+
+
+def _outline(still: Mesh, body: Mesh, z: float) -> Points:
+    """Return the corners of the convex outline of the trunk's still skin at a height, shape (h, 2) [mm]."""
+    points = cut(still, (0.0, 0.0, z), (0.0, 0.0, 1.0)).points[:, :2]
+    trunk = trunk_levels(body, z)[0].points[:, :2]
+    if not len(points) or not len(trunk):
+        return np.empty((0, 2))
+    away, _ = cKDTree(trunk).query(points)
+    kept = points[away < 1e-6]
+    return np.asarray(kept[ConvexHull(kept).vertices] if len(kept) > 3 else kept)
+
+
+def _cut(places: Points, edges: Indices, z: float) -> Points:
+    """Return where the edges, shape (2, e), cross a height, shape (c, 2) [mm]."""
+    start, end = edges
+    low, high = places[:, 2].take(start) - z, places[:, 2].take(end) - z
+    crossed = np.flatnonzero((low >= 0.0) != (high >= 0.0))
+    part = (low[crossed] / (low[crossed] - high[crossed]))[:, None]
+    a, b = places[start[crossed], :2], places[end[crossed], :2]
+    return np.asarray(a + part * (b - a))
