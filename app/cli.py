@@ -9,37 +9,27 @@ import os
 import re
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import NoReturn
 
+from app.settings import help_text, settings_of
 from core import __version__
 from core.design import Design, ScanSource
 from core.errors import LineError, UserError
 from core.lines import length_ratio
+from core.own_lines import HELP, own_line
 from core.project import is_project, open_project
+from core.template import read_template
+from core.volume import CONTROLS
 
 SETTLED, PIPE_CLOSED, BAD_INPUT, NOT_SETTLED = 0, 1, 2, 3
-
-
-def _number(text: str) -> float:
-    return float(text.replace(",", "."))
-
-
-SETTINGS: dict[str, Callable[[str], Any]] = {
-    "gain": _number,
-    "line_stiffness": _number,
-    "line_contact": str,
-    "line_height": _number,
-    "template": str,
-    "weights": str,
-}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run ``busk`` and return its exit code.
 
-    It is 0 for settled or done, 3 for not settled, 2 for bad input, with one sentence on stderr.
+    It is 0 for settled or done, 3 for not settled or folded, 2 for bad input, with one sentence on stderr.
     """
     try:
         code = _run(list(sys.argv[1:] if arguments is None else arguments))
@@ -93,32 +83,17 @@ def design_of(path: str, options: argparse.Namespace) -> Design:
     axes = {key: getattr(options, key) for key in ("unit", "up", "front") if getattr(options, key, None)}
     if axes:
         design = replace(design, scan=replace(design.scan, **axes))
-    return replace(design, **_settings(getattr(options, "settings", None) or []))
-
-
-def _settings(pairs: Sequence[str]) -> dict[str, Any]:
-    known = {field.name for field in fields(Design)}
-    values: dict[str, Any] = {}
-    for pair in pairs:
-        key, equals, value = pair.partition("=")
-        key = key.strip().replace("-", "_")
-        if not equals or key not in SETTINGS or key not in known:
-            raise UserError(
-                f"'{pair}' is no setting.", f"Write KEY=VALUE; the keys are: {', '.join(SETTINGS)}."
-            )
-        try:
-            values[key] = SETTINGS[key](value.strip())
-        except ValueError:
-            raise UserError(
-                f"The {key} '{value}' is not a number.", f"Write for example {key}=1.5."
-            ) from None
-    return values
+    settings = settings_of(getattr(options, "settings", None) or [])
+    design = replace(design.with_template(settings.pop("template", design.template)), **settings)
+    for text in getattr(options, "path", None) or []:
+        design = design.with_own_line(own_line(text, read_template(design.template)))
+    return design
 
 
 def solve(options: argparse.Namespace) -> int:
     """Solve a design with no window and write what came out."""
     from core.pipeline import build
-    from core.report import still_lines, write_solution
+    from core.report import shape_warnings, still_lines, write_solution
     from core.solution import run
 
     design = design_of(options.input, options)
@@ -127,7 +102,8 @@ def solve(options: argparse.Namespace) -> int:
     stages = build(design)
     for request in options.line or []:
         name, equals, text = request.partition("=")
-        line = next((line for line in stages.model.lines if line.name == name.strip().lower()), None)
+        named = (line for line in stages.model.lines if line.name.lower() == name.strip().lower())
+        line = next(named, None)
         if line is None or not equals:
             names = ", ".join(line.name for line in stages.model.lines)
             raise LineError(f"'{request}' names no line.", f"Write NAME=LENGTH; the lines are: {names}.")
@@ -135,20 +111,22 @@ def solve(options: argparse.Namespace) -> int:
     out = _folder(options.out)
     solution = run(build(design, stages), options.turns)
     figures = write_solution(solution, out)
-    for sentence in still_lines(solution.stages):
+    for sentence in [*still_lines(solution.stages), *shape_warnings(solution)]:
         print(f"busk: {sentence}", file=sys.stderr)
     for name, line in figures["lines"].items():
         if line["worn"]:
+            own = line["whole_band_rest_mm"] == line["rest_mm"]
             print(
-                f"{name}: set {line['set_mm']:.1f} mm of the front part ({line['set_percent']:.1f} %), "
-                f"reached {line['reached_mm']:.1f} mm; whole band {line['whole_band_reached_mm']:.1f} mm"
+                f"{name}: set {line['set_mm']:.1f} mm{'' if own else ' of the front part'} "
+                f"({line['set_percent']:.1f} %), reached {line['reached_mm']:.1f} mm"
+                + ("" if own else f"; whole band {line['whole_band_reached_mm']:.1f} mm")
             )
-    volume = figures["volume"]
+    volume, verdict = figures["volume"], solution.verdict
     print(
-        f"{solution.verdict.state} after {solution.last.turn} turns, volume error "
+        f"{verdict.words} after {solution.last.turn} turns, volume error "
         f"{volume['error_percent']:+.4f} % ({volume['error_ml']:+.2f} ml); written to {out}"
     )
-    return SETTLED if solution.verdict.state == "settled" else NOT_SETTLED
+    return SETTLED if verdict.motion == "settled" and verdict.state != "folded" else NOT_SETTLED
 
 
 def detect(options: argparse.Namespace) -> int:
@@ -190,6 +168,14 @@ def demo(options: argparse.Namespace) -> int:
     from app.demo import run_demo
 
     return run_demo(_folder(options.out))
+
+
+def figures(options: argparse.Namespace) -> int:
+    """Make the figures of the paper from the sample bodies and a sphere, with a page that judges them."""
+    from app.figures import make_figures
+
+    make_figures(_folder(options.out), options.only or ())
+    return SETTLED
 
 
 def self_test(options: argparse.Namespace) -> int:
@@ -235,7 +221,8 @@ def _parser(command: str) -> argparse.ArgumentParser:
         parser.add_argument("--up", help="the scan's axis that points up, like +z")
         parser.add_argument("--front", help="the scan's axis that the body faces, like -y")
     if command in ("solve", "picture"):
-        parser.add_argument("--settings", action="append", metavar="KEY=VALUE", help=", ".join(SETTINGS))
+        parser.add_argument("--settings", action="append", metavar="KEY=VALUE", help=help_text())
+        parser.add_argument("--path", action="append", metavar="NAME=POINTS", help=HELP)
     if command == "solve":
         parser.add_argument(
             "--line",
@@ -243,7 +230,7 @@ def _parser(command: str) -> argparse.ArgumentParser:
             metavar="NAME=LENGTH",
             help="97%% of the rest length, -20mm shorter, 400mm absolute; of the front part, side to side",
         )
-        parser.add_argument("--volume", choices=("adaptive", "conventional", "exact", "none"))
+        parser.add_argument("--volume", choices=CONTROLS)
         parser.add_argument(
             "--turns", type=_turns, metavar="N", help="exactly N turns; else until settled, at most 300"
         )
@@ -280,5 +267,6 @@ COMMANDS: dict[str, tuple[str, Callable[[argparse.Namespace], int]]] = {
     "detect": ("find the bust landmarks of a scan", detect),
     "picture": ("render a scan or project to a PNG file", picture),
     "demo": ("do the sample session off-screen and write what comes out", demo),
+    "figures": ("make the figures of the paper again, with their tables and a page", figures),
     "self-test": ("check this installation", self_test),
 }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -47,11 +48,28 @@ class WornLine:
 
 @dataclass(frozen=True)
 class OwnLine:
-    """A line of the designer's own through control points of the template, by number; "closed" goes round."""
+    """A line of the designer's own through control points of the template, by number; "closed" goes round.
+
+    Raises LineError if it has no name or does not go from point to point.
+    """
 
     name: str
     points: tuple[int, ...]
     closed: bool = False
+
+    def __post_init__(self) -> None:
+        if not self.name.strip():
+            raise LineError("A line has no name.", "Give each line a name of its own.")
+        if len(self.points) < (3 if self.closed else 2) or any(a == b for a, b in pairwise(self.path)):
+            raise LineError(
+                f"The line {self.name} does not go from point to point.",
+                "Name two control points at least, three if it is closed, and none twice in a row.",
+            )
+
+    @property
+    def path(self) -> tuple[int, ...]:
+        """The control points in order; a closed line ends with the one that it begins with."""
+        return self.points + self.points[:1] if self.closed else self.points
 
 
 @dataclass(frozen=True)
@@ -87,6 +105,20 @@ class Design:
     unknown: Mapping[str, Any] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
+        self._check_words()
+        self._check_numbers()
+        for line in self.lines:
+            if not RATIO_LIMITS[0] <= line.ratio <= RATIO_LIMITS[1]:
+                raise LineError(
+                    f"{line.name} cannot be set to {100 * line.ratio:.1f} % of its rest length.",
+                    f"Stay between {100 * RATIO_LIMITS[0]:.0f} and {100 * RATIO_LIMITS[1]:.0f} %.",
+                )
+        names = [line.name for line in self.own_lines]
+        for line in self.own_lines:
+            if names.count(line.name) > 1:
+                raise LineError(f"There are two lines '{line.name}'.", "Give each line a name of its own.")
+
+    def _check_words(self) -> None:
         for value, choices, what in (
             (self.template, TEMPLATES, "template"),
             (self.volume, CONTROLS, "volume control"),
@@ -95,6 +127,11 @@ class Design:
         ):
             if value not in choices:
                 raise UserError(f"There is no {what} '{value}'.", f"Choose one of: {', '.join(choices)}.")
+        for key in ("scaled_normals", "dense_volume"):
+            if not isinstance(getattr(self, key), bool):
+                raise UserError(f"The {key.replace('_', ' ')} can be on or off only.", "Write true or false.")
+
+    def _check_numbers(self) -> None:
         for number, low, high, what in (
             (self.line_height, 0.25, 0.75, "line height"),
             *((getattr(self, key), *limits, key.replace("_", " ")) for key, limits in RANGES.items()),
@@ -103,12 +140,6 @@ class Design:
             if not low <= number <= high:
                 raise UserError(
                     f"The {what} {number:g} is out of range.", f"It goes from {low:g} to {high:g}."
-                )
-        for line in self.lines:
-            if not RATIO_LIMITS[0] <= line.ratio <= RATIO_LIMITS[1]:
-                raise LineError(
-                    f"{line.name} cannot be set to {100 * line.ratio:.1f} % of its rest length.",
-                    f"Stay between {100 * RATIO_LIMITS[0]:.0f} and {100 * RATIO_LIMITS[1]:.0f} %.",
                 )
 
     @property
@@ -123,6 +154,28 @@ class Design:
     def worn(self) -> frozenset[str]:
         """Return the names of the lines that are worn."""
         return frozenset(line.name for line in self.lines)
+
+    def with_template(self, template: str) -> Design:
+        """Return the design with another template. Raises LineError if there are own lines.
+
+        Their control points are those of the template that they were drawn on.
+        """
+        if self.own_lines and template != self.template:
+            raise LineError(
+                f"Own lines belong to the control mesh of {self.template} polygons.",
+                "Keep it, or remove your own lines first.",
+            )
+        return replace(self, template=template)
+
+    def with_own_line(self, line: OwnLine) -> Design:
+        """Return the design with an own line, in the place of one of the same name if there is one."""
+        others = tuple(each for each in self.own_lines if each.name != line.name)
+        return replace(self, own_lines=(*others, line))
+
+    def without_own_line(self, name: str) -> Design:
+        """Return the design without an own line and its length."""
+        own = tuple(each for each in self.own_lines if each.name != name)
+        return replace(self.with_line(name, None), own_lines=own)
 
     def with_line(self, name: str, ratio: float | None) -> Design:
         """Return the design with a line at ``ratio``, or taken off (None)."""
@@ -163,5 +216,7 @@ def from_json(text: str) -> Design:
 
 
 def _own_line(values: Mapping[str, Any]) -> OwnLine:
-    points = tuple(int(point) for point in values["points"])
-    return OwnLine(str(values["name"]), points, bool(values.get("closed", False)))
+    points, closed = values["points"], values.get("closed", False)
+    if not isinstance(closed, bool) or not all(type(point) is int for point in points):
+        raise TypeError("points are numbers, closed is true or false")
+    return OwnLine(str(values["name"]), tuple(points), closed)

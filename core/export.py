@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import csv
 import os
 from pathlib import Path
 
 import trimesh
 
+from core.control_mesh import ControlMesh
 from core.errors import UserError
 from core.mesh import Mesh
 from core.project import whole_file
@@ -26,3 +28,18 @@ def write_mesh(path: str | os.PathLike[str], mesh: Mesh) -> None:
     data = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).export(file_type=kind)
     with whole_file(target) as partial:
         partial.write_bytes(data.encode() if isinstance(data, str) else data)
+
+
+def write_control_points(path: str | os.PathLike[str], control: ControlMesh) -> None:
+    """Write the control points at rest [mm] as CSV, with the number, row and column that name them in lines.
+
+    Raises UserError if the place cannot be written to.
+    """
+    target = Path(path).absolute()
+    with whole_file(target) as partial, open(partial, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["number", "row", "column", "x_mm", "y_mm", "z_mm", "free"])
+        for number, (place, fixed) in enumerate(zip(control.mesh.vertices, control.fixed, strict=True)):
+            figures = (f"{value:.3f}" for value in place)
+            at = control.row[number], control.column[number]
+            writer.writerow([number, *at, *figures, "no" if fixed else "yes"])

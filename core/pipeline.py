@@ -6,7 +6,6 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 from types import MappingProxyType
 from typing import Any, TypeVar
 
@@ -15,7 +14,7 @@ import numpy as np
 from core.body import Body, body_of
 from core.control_mesh import ControlMesh, back_length, fit_control_mesh
 from core.design import Design, OwnLine, ScanSource
-from core.errors import LineError
+from core.errors import FitError, LineError
 from core.gain import gain_limit
 from core.landmarks import Landmarks, find_landmarks
 from core.mechanics import Mechanics
@@ -26,7 +25,7 @@ from core.patch import Patch, patch_fade
 from core.project import ScanFile, read_scan_file
 from core.solver import Marks, Targets
 from core.template import read_template
-from core.tffd import Binding, Operator, Weights, bind
+from core.tffd import Binding, Operator, Weights, bind, uncollared
 from core.watch import BodyWatch
 
 GAIN_SHARE = 0.97
@@ -76,6 +75,11 @@ class Stages:
         """
         places = self._operator.added(self.binding.change(control_points), self.moving.rest)
         return places, self.moving.normals(places)
+
+    def body_change(self, control_points: Points) -> Floats:
+        """Return the volumes that the body's left and right have gained since rest, shape (2,) [mm^3]."""
+        places = self._operator.added(self.binding.change(control_points), self.moving.rest)
+        return self.moving.side_volume_changes(places)
 
     @cached_property
     def _operator(self) -> Operator:
@@ -159,6 +163,12 @@ def read_body(source: ScanSource) -> tuple[ScanFile, Body]:
 
 
 def _bind(body: Mesh, control: ControlMesh, fade: Floats, weights: Weights, scaled_normals: bool) -> Binding:
+    loose = len(uncollared(control.mesh, control.fixed))
+    if loose:
+        raise FitError(
+            f"{loose} triangles at the border of the control mesh can move.",
+            "Choose a template whose two outermost rings of points are fixed.",
+        )
     # Single precision is exact to 1e-4 mm here, far below what a scan resolves, and read in half the time.
     return bind(
         body,
@@ -174,25 +184,19 @@ def _bind(body: Mesh, control: ControlMesh, fade: Floats, weights: Weights, scal
 def with_own_lines(control: ControlMesh, own: tuple[OwnLine, ...]) -> ControlMesh:
     """Return the control mesh with the paths of ``own`` lines beside those of the template.
 
-    A closed path ends with the point that it begins with. Raises LineError if a line cannot be laid.
+    Raises LineError if a line cannot be laid.
     """
     paths = dict(control.paths)
     count = len(control.mesh.vertices)
     for line in own:
-        path = line.points + line.points[:1] if line.closed else line.points
-        if not line.name or line.name in paths:
+        if line.name in paths:
             raise LineError(f"There are two lines '{line.name}'.", "Give each line a name of its own.")
-        if len(path) < 2 or any(a == b for a, b in pairwise(path)):
-            raise LineError(
-                f"The line {line.name} does not go from point to point.",
-                "Name two control points at least, and none twice in a row.",
-            )
-        if not all(0 <= point < count for point in path):
+        if not all(0 <= point < count for point in line.points):
             raise LineError(
                 f"The line {line.name} names a control point that there is not.",
                 f"The control mesh has the points 0 to {count - 1}.",
             )
-        paths[line.name] = path
+        paths[line.name] = line.path
     return replace(control, paths=MappingProxyType(paths))
 
 

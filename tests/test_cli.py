@@ -14,7 +14,7 @@ import trimesh
 
 from app.cli import main
 from core import __version__
-from core.design import Design, ScanSource, WornLine
+from core.design import Design, OwnLine, ScanSource, WornLine
 from core.project import ScanFile, open_project, save_project
 
 TURN_COLUMNS = [
@@ -123,6 +123,19 @@ def test_settings_reach_the_solver(mannequin: Path, tmp_path: Path) -> None:
         (["--line", "mid-bust=20%"], "Stay between"),
         (["--settings", "colour=red"], "no setting"),
         (["--settings", "gain=high"], "not a number"),
+        (["--settings", "gain=11"], "It goes from 0 to 10"),
+        (["--settings", "member-law=soft"], "force-density, prestressed, co-rotated"),
+        (["--settings", "line_force=weak"], "implicit, explicit"),
+        (["--settings", "line_contact=wet"], "glued, sliding"),
+        (["--settings", "line_hold=tied"], "spring, held"),
+        (["--settings", "volume_of=left"], "each, both"),
+        (["--settings", "weights=even"], "smooth, paper"),
+        (["--settings", "template=200"], "168, 120"),
+        (["--settings", "scaled-normals=perhaps"], "yes, no"),
+        (["--settings", "firm_chest=rock"], "not a number"),
+        (["--path", "strap=r9c0,r3c0"], "no place 'r9c0'"),
+        (["--path", "mid-bust=r2c0,r3c0"], "two lines 'mid-bust'"),
+        (["--path", "strap=r2c0,r3c0", "--line", "sling=97%"], "full-bust, strap"),
     ],
 )
 def test_bad_requests_get_one_sentence(
@@ -233,3 +246,29 @@ def test_batch_commands_load_no_qt(mannequin: Path, tmp_path: Path) -> None:
         "sys.exit(code or any(name.startswith(('PySide6', 'pyvistaqt')) for name in sys.modules))"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False, capture_output=True).returncode == 0
+
+
+def test_an_own_line_is_worn_and_reported(mannequin: Path, tmp_path: Path) -> None:
+    strap = ["--path", "Strap=r2c3:r6c3", "--line", "STRAP=-4%", "--volume", "accumulating"]
+    assert main(["solve", str(mannequin), *strap, "--out", str(tmp_path)]) == 0
+    figures = json.loads((tmp_path / "report.json").read_text("utf-8"))
+    line = figures["lines"]["strap"]
+    assert line["worn"]
+    assert line["set_percent"] == pytest.approx(96.0)
+    assert line["whole_band_rest_mm"] == line["rest_mm"]
+    assert figures["marks"]["final"]["nipple_left_z_mm"] > figures["marks"]["rest"]["nipple_left_z_mm"] + 1.0
+    assert figures["design"]["own_lines"][0]["points"] == [35, 48, 61, 74, 87]
+    with open(tmp_path / "control.csv", encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert figures["control_points"] == len(rows) == 104
+    place = {(int(row["row"]), int(row["column"])): row for row in rows}
+    assert place[2, 3]["number"] == "35"
+    assert place[2, 3]["free"] == "yes"
+    assert place[6, 3]["free"] == "no"
+
+
+def test_a_project_with_own_lines_keeps_its_template(tmp_path: Path, mannequin: Path) -> None:
+    design = Design(ScanSource(str(mannequin)), own_lines=(OwnLine("strap", (35, 48)),))
+    save_project(tmp_path / "a.busk", design, ScanFile("mannequin.ply", mannequin.read_bytes()), None)
+    words = ["solve", str(tmp_path / "a.busk"), "--settings", "template=120", "--out", str(tmp_path)]
+    assert main(words) == 2

@@ -8,9 +8,20 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.design import FORMAT, TEMPLATES, WEIGHTS, Design, ScanSource, WornLine, from_json, to_json
+from core.design import (
+    FORMAT,
+    TEMPLATES,
+    WEIGHTS,
+    Design,
+    OwnLine,
+    ScanSource,
+    WornLine,
+    from_json,
+    to_json,
+)
 from core.errors import LineError, ProjectError, UserError
 from core.lines import RATIO_LIMITS
+from core.mechanics import CHOICES, RANGES
 from core.volume import CONTROLS
 
 PLAIN = Design(ScanSource("/scans/body.ply"))
@@ -30,6 +41,16 @@ sources = st.builds(
     up=st.none() | words,
     front=st.none() | words,
 )
+own_lines = st.lists(
+    st.builds(
+        OwnLine,
+        words.filter(str.strip),
+        st.lists(st.integers(0, 103), min_size=3, max_size=6, unique=True).map(tuple),
+        st.booleans(),
+    ),
+    max_size=3,
+    unique_by=lambda line: line.name,
+).map(tuple)
 designs = st.builds(
     Design,
     scan=sources,
@@ -38,8 +59,12 @@ designs = st.builds(
     lines=st.lists(st.builds(WornLine, words, st.floats(*RATIO_LIMITS)), max_size=4).map(tuple),
     volume=st.sampled_from(CONTROLS),
     gain=st.none() | st.floats(0.0, 10.0),
-    line_stiffness=st.floats(0.1, 500.0),
     weights=st.sampled_from(WEIGHTS),
+    scaled_normals=st.booleans(),
+    dense_volume=st.booleans(),
+    own_lines=own_lines,
+    **{key: st.sampled_from(choices) for key, choices in CHOICES.items()},
+    **{key: st.floats(*limits) for key, limits in RANGES.items()},
     unknown=st.dictionaries(words.filter(lambda word: word not in KNOWN), anything, max_size=3),
 )
 
@@ -123,7 +148,23 @@ def test_garbage_is_refused_in_a_sentence(text):
         ("template", ["168"]),
         ("volume", 1),
         ("weights", None),
-        ("line_contact", "sliding"),
+        ("line_contact", "slipping"),
+        ("line_hold", True),
+        ("member_law", "soft"),
+        ("line_force", None),
+        ("volume_of", "left"),
+        ("prestress", 0.0),
+        ("firm_chest", "on"),
+        ("scaled_normals", "yes"),
+        ("dense_volume", 1),
+        ("own_lines", {"name": "strap"}),
+        ("own_lines", [{"name": "strap"}]),
+        ("own_lines", [{"name": "", "points": [1, 2]}]),
+        ("own_lines", [{"name": "strap", "points": [1]}]),
+        ("own_lines", [{"name": "strap", "points": [1, 1]}]),
+        ("own_lines", [{"name": "strap", "points": [1.5, 2]}]),
+        ("own_lines", [{"name": "strap", "points": [1, 2, 3], "closed": "no"}]),
+        ("own_lines", [{"name": "strap", "points": [1, 2]}, {"name": "strap", "points": [2, 3]}]),
     ],
 )
 def test_values_of_the_wrong_kind_are_refused_in_a_sentence(key, value):
@@ -163,6 +204,10 @@ def test_a_line_out_of_range_is_refused(ratio):
         {"gain": float("nan")},
         {"template": "200"},
         {"volume": "magic"},
+        {"prestress": 0.09},
+        {"firm_chest": 1.1},
+        {"firm_chest": float("nan")},
+        {"own_lines": (OwnLine("a", (1, 2)), OwnLine("a", (3, 4)))},
     ],
 )
 def test_settings_out_of_range_are_refused(change):

@@ -1,0 +1,83 @@
+"""Settings as they are written on the command line: KEY=VALUE."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from core.design import TEMPLATES, WEIGHTS
+from core.errors import UserError
+from core.mechanics import CHOICES, RANGES
+
+WORDS = {**CHOICES, "weights": WEIGHTS, "template": TEMPLATES}
+"""Settings that are a word, and the words that each allows."""
+
+NUMBERS = (*RANGES, "gain", "line_height")
+"""Settings that are a number."""
+
+SWITCHES = ("scaled_normals", "dense_volume")
+"""Settings that are on or off."""
+
+_ON = dict.fromkeys(("yes", "on", "true", "1"), True) | dict.fromkeys(("no", "off", "false", "0"), False)
+_FIRM = {"yes": 0.1, "on": 0.1, "firm": 0.1, "no": 0.0, "off": 0.0, "free": 0.0}
+
+
+def settings_of(pairs: Sequence[str]) -> dict[str, Any]:
+    """Return the fields of a design that ``KEY=VALUE`` pairs name; hyphens and underscores mean the same.
+
+    Raises UserError with the right keys or words; ranges are the design's own business.
+    """
+    values: dict[str, Any] = {}
+    for pair in pairs:
+        key, equals, value = pair.partition("=")
+        key, value = key.strip().lower().replace("-", "_"), value.strip().lower()
+        if not equals or key not in _READERS:
+            raise UserError(
+                f"'{pair}' is no setting.", f"Write KEY=VALUE; the keys are: {', '.join(_READERS)}."
+            )
+        values[key] = _READERS[key](key, value)
+    return values
+
+
+def help_text() -> str:
+    """Return the keys with what each takes, for a command's help."""
+    numbers = f"{', '.join(NUMBERS)} (a number; firm_chest also on, off; gain also auto)"
+    words = [f"{key} ({', '.join(choices)})" for key, choices in WORDS.items()]
+    return ", ".join([numbers, *words, *(f"{key} (yes, no)" for key in SWITCHES)])
+
+
+def _word(key: str, value: str) -> str:
+    plain = value.replace("_", "-").replace(" ", "-")
+    if plain not in WORDS[key]:
+        raise UserError(f"The {key} cannot be '{value}'.", f"Choose one of: {', '.join(WORDS[key])}.")
+    return plain
+
+
+def _number(key: str, value: str) -> float:
+    try:
+        return float(value.replace(",", "."))
+    except ValueError:
+        raise UserError(f"The {key} '{value}' is not a number.", f"Write for example {key}=1.5.") from None
+
+
+def _gain(key: str, value: str) -> float | None:
+    return None if value == "auto" else _number(key, value)
+
+
+def _firm_chest(key: str, value: str) -> float:
+    return _FIRM[value] if value in _FIRM else _number(key, value)
+
+
+def _switch(key: str, value: str) -> bool:
+    if value not in _ON:
+        raise UserError(f"The {key} cannot be '{value}'.", "Choose one of: yes, no.")
+    return _ON[value]
+
+
+_READERS: dict[str, Callable[[str, str], Any]] = {
+    **dict.fromkeys(WORDS, _word),
+    **dict.fromkeys(NUMBERS, _number),
+    **dict.fromkeys(SWITCHES, _switch),
+    "gain": _gain,
+    "firm_chest": _firm_chest,
+}

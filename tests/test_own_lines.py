@@ -1,0 +1,118 @@
+"""Own lines: how they are written, where they lie, what they do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from core.design import Design, OwnLine, ScanSource, from_json, to_json
+from core.errors import LineError
+from core.exact import solve_exact
+from core.own_lines import own_line, place_of
+from core.pipeline import Stages, build, with_own_lines
+from core.template import read_template
+
+BIG, SMALL = read_template("168"), read_template("120")
+
+
+@pytest.mark.parametrize(
+    ("text", "points"),
+    [
+        ("strap=29,42", (29, 42)),
+        ("strap=r2c-3,r3c0", (2 * 13 + 3, 3 * 13 + 6)),
+        (" Strap = R2C+1 , r3c1", (2 * 13 + 7, 3 * 13 + 7)),
+        ("strap=r2c-1:r2c1", (31, 32, 33)),
+        ("strap=r2c1:r2c-1", (33, 32, 31)),
+        ("strap=r5c0:r3c0,40", (71, 58, 45, 40)),
+        ("strap=r2c\N{MINUS SIGN}3,r3c0", (29, 45)),
+    ],
+)
+def test_points_are_named_by_number_or_by_place(text: str, points: tuple[int, ...]) -> None:
+    assert own_line(text, BIG) == OwnLine("strap", points)
+
+
+def test_a_closed_line_ends_where_it_begins() -> None:
+    line = own_line("ring=r3c1:r3c3,r4c3:r4c1,closed", BIG)
+    assert line.closed
+    assert line.path[0] == line.path[-1] == line.points[0]
+    assert len(line.path) == len(line.points) + 1 == 7
+
+
+def test_places_and_numbers_say_the_same() -> None:
+    for template in (BIG, SMALL):
+        for point in range(len(template.row)):
+            other = 0 if point else 1
+            assert own_line(f"a={place_of(point, template)},{other}", template).points == (point, other)
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("strap", "is no line"),
+        ("=1,2", "is no line"),
+        ("strap=", "is no line"),
+        ("strap=closed", "is no line"),
+        ("strap=1,,2", "is no line"),
+        ("strap=1,104", "no control point of the template 168"),
+        ("strap=1,-2", "no control point"),
+        ("strap=r8c0,r3c0", "no place 'r8c0'"),
+        ("strap=r3c7,r3c0", "columns -6 to 6"),
+        ("strap=r2c0:r3c1", "along a row or a column"),
+        ("strap=r2c0:r2c0", "along a row or a column"),
+        ("strap=r2c0:r2c1:r2c2", "along a row or a column"),
+        ("strap=5", "from point to point"),
+        ("strap=5,5", "from point to point"),
+        ("strap=5,6,closed", "from point to point"),
+        ("strap=5,6,5,closed", "from point to point"),
+    ],
+)
+def test_what_is_no_line_is_refused_in_a_sentence(text: str, sentence: str) -> None:
+    with pytest.raises(LineError, match=sentence) as refused:
+        own_line(text, BIG)
+    assert refused.value.hint
+
+
+def test_own_lines_lie_beside_those_of_the_template(built: Callable[[str], Stages]) -> None:
+    control = built("mannequin").control
+    ring = OwnLine("ring", (45, 46, 59, 58), closed=True)
+    laid = with_own_lines(control, (OwnLine("strap", (48, 61, 74)), ring))
+    assert list(laid.paths) == [*control.paths, "strap", "ring"]
+    assert laid.paths["ring"] == (45, 46, 59, 58, 45)
+    for wrong in (OwnLine("mid-bust", (1, 2)), OwnLine("far", (1, 104)), OwnLine("far", (-1, 2))):
+        with pytest.raises(LineError):
+            with_own_lines(control, (wrong,))
+
+
+def test_a_strap_lifts_and_one_on_fixed_points_is_measured_only(built: Callable[[str], Stages]) -> None:
+    before = built("mannequin")
+    strap, edge = own_line("strap=r2c3:r6c3", BIG), own_line("edge=r6c-2:r6c2", BIG)
+    design = replace(before.design, lines=(), own_lines=(strap, edge))
+    stages = build(design.with_line("strap", 0.95).with_line("edge", 0.9), before)
+    assert stages.model.lines[-1].name == "edge"
+    assert not stages.model.lines[-1].constrains
+    assert stages.model.lines[-2].back_length == 0.0
+    answer = solve_exact(stages.model, (1.0, 1.0, 1.0, 0.95, 0.9))
+    points = stages.model.tensegric.expand(answer.state.moved)
+    rest = stages.control.mesh.vertices
+    assert stages.model.lines[-2].length(points) < 0.97 * stages.model.lines[-2].rest_length
+    left, right = (points[point, 2] - rest[point, 2] for point in stages.control.bust_points)
+    assert left > 2.0
+    assert abs(right) < 0.3
+    assert np.array_equal(points[list(edge.points)], rest[list(edge.points)])
+
+
+def test_own_lines_are_saved_and_keep_their_template() -> None:
+    design = Design(ScanSource("a.ply")).with_own_line(own_line("ring=r3c1:r3c3,r4c2,closed", BIG))
+    again = from_json(to_json(design.with_line("ring", 0.9)))
+    assert again.own_lines == design.own_lines
+    assert again.ratio("ring") == 0.9
+    assert again.with_template("168") == again
+    with pytest.raises(LineError, match="168 polygons"):
+        again.with_template("120")
+    assert again.without_own_line("ring") == Design(ScanSource("a.ply"))
+    assert again.without_own_line("ring").with_template("120").template == "120"
+    longer = again.with_own_line(OwnLine("ring", (1, 2)))
+    assert longer.own_lines == (OwnLine("ring", (1, 2)),)

@@ -1,0 +1,36 @@
+"""KEY=VALUE on the command line: every choice of the design, in hyphens or underscores."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+
+import pytest
+
+from app.settings import NUMBERS, SWITCHES, WORDS, settings_of
+from core.design import Design, ScanSource
+
+
+@pytest.mark.parametrize(
+    ("pairs", "fields"),
+    [
+        (["member-law=co_rotated", "prestress=0.7"], {"member_law": "co-rotated", "prestress": 0.7}),
+        (["Member_Law=Prestressed"], {"member_law": "prestressed"}),
+        (["line-force=explicit", "line-stiffness=0,2"], {"line_force": "explicit", "line_stiffness": 0.2}),
+        (["line-contact=sliding", "line-hold=held"], {"line_contact": "sliding", "line_hold": "held"}),
+        (["firm-chest=on"], {"firm_chest": 0.1}),
+        (["firm-chest=free"], {"firm_chest": 0.0}),
+        (["firm_chest=0.3", "volume-of=both"], {"firm_chest": 0.3, "volume_of": "both"}),
+        (["weights=paper", "scaled-normals=yes"], {"weights": "paper", "scaled_normals": True}),
+        (["dense-volume=on", "dense_volume=no"], {"dense_volume": False}),
+        (["template=120", "line-height=0.6"], {"template": "120", "line_height": 0.6}),
+        (["gain=1.2", "gain=auto"], {"gain": None}),
+    ],
+)
+def test_settings_are_read_with_hyphens_and_underscores(pairs: list[str], fields: dict[str, object]) -> None:
+    design = Design(ScanSource("a.ply"))
+    assert replace(design, **settings_of(pairs)) == replace(design, **fields)
+
+
+def test_every_choice_of_the_design_can_be_set() -> None:
+    not_settings = {"scan", "lines", "own_lines", "volume", "unknown"}
+    assert {*WORDS, *NUMBERS, *SWITCHES} == {field.name for field in fields(Design)} - not_settings
