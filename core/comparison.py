@@ -8,6 +8,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
+from core.body_volume import BodyChange, solve_body_exact
 from core.condition import Condition, RestShape
 from core.exact import solve_exact
 from core.model import ConstrainedModel
@@ -16,7 +19,10 @@ from core.solver import Record, State, Targets, Watch, at_rest, record, turn
 from core.verdict import Verdict, judge
 
 TURN_CONTROLS = ("adaptive", "conventional")
-"""The controls that are always compared; "none" joins when it is the chosen one."""
+"""The controls that are always compared; another joins when it is the chosen one."""
+
+NEAR = 0.05
+"""Lengths that change by no more than this let the exact answer start from the last one [1]."""
 
 MOST_TURNS = 300
 """Turns after a change of the targets at which a run is left as it is, settled or not."""
@@ -57,13 +63,20 @@ class Run:
 class Comparison:
     """The runs of the compared controls and the exact answer, for one model whose targets may move."""
 
-    def __init__(self, model: ConstrainedModel, targets: Targets, watch: Watch | None = None) -> None:
+    def __init__(
+        self,
+        model: ConstrainedModel,
+        targets: Targets,
+        watch: Watch | None = None,
+        body_change: BodyChange | None = None,
+    ) -> None:
         self.model = model
         self.targets = targets
         self.watch = watch
         self.runs: dict[str, Run] = {}
+        self._body_change = body_change
         self._shape = shape_of(model)
-        self.exact = solve_exact(model, targets.ratios)
+        self._solve(None)
         self._set_runs(fresh=True)
 
     def retarget(self, model: ConstrainedModel, targets: Targets, fresh: bool = False) -> None:
@@ -72,9 +85,22 @@ class Comparison:
         ``model`` may differ in the lines that are worn, not in its control points. ``fresh`` begins new
         records at turn 0.
         """
+        moved = np.abs(np.subtract(targets.ratios, self.targets.ratios)).max(initial=0.0)
+        near = self.exact if model is self.model and self.exact.found and moved <= NEAR else None
+        if model is not self.model:
+            for run in self.runs.values():
+                run.state = carried(run.state, self.model, model)
         self.model, self.targets = model, targets
-        self.exact = solve_exact(model, targets.ratios)
+        self._solve(near)
         self._set_runs(fresh)
+
+    def _solve(self, near: Balance | None) -> None:
+        """Find the exact answer; from one near by it is quicker, and the first Newton step is its tangent."""
+        self._exact_is_near = near is not None
+        if self._body_change is None:
+            self.exact = solve_exact(self.model, self.targets.ratios, near=near)
+        else:
+            self.exact = solve_body_exact(self.model, self.targets.ratios, self._body_change, near=near)
 
     @property
     def main(self) -> Run | None:
@@ -95,18 +121,28 @@ class Comparison:
 
     @property
     def resting(self) -> bool:
-        """Whether every run rests."""
+        """Whether every run rests, and the exact answer is that which is found from rest."""
+        return not self._exact_is_near and self._runs_rest
+
+    @property
+    def _runs_rest(self) -> bool:
         return all(run.resting for run in self.runs.values())
 
     def advance(self) -> None:
-        """Make one turn in every run that does not rest."""
+        """Make one turn in every run that does not rest; when all do, find the exact answer from rest.
+
+        Where there is more than one balance the answer must not depend on the way that a slider took.
+        """
+        if self._runs_rest:
+            self._solve(None)
         for run in self.runs.values():
             if not run.resting:
                 targets = replace(self.targets, control=run.control)
                 run.take(*turn(self.model, targets, run.state, self.watch))
 
     def _set_runs(self, fresh: bool) -> None:
-        wanted = [*TURN_CONTROLS] + (["none"] if self.targets.control == "none" else [])
+        wanted = dict.fromkeys([*TURN_CONTROLS, self.targets.control])
+        wanted.pop("exact", None)
         runs = {}
         for control in wanted:
             old = self.runs.get(control)
@@ -119,6 +155,15 @@ class Comparison:
                 old.watch_anew()
                 runs[control] = old
         self.runs = runs
+
+
+def carried(state: State, old: ConstrainedModel, new: ConstrainedModel) -> State:
+    """Return a state of the ``old`` model for the ``new`` one: the same places and the same pressure.
+
+    Tensions of held lines begin anew, for they may be those of other lines.
+    """
+    pressure = replace(state.pressure, value=state.pressure.value * old.pressure_unit / new.pressure_unit)
+    return State(state.moved, pressure, state.turn)
 
 
 def judge_balance(model: ConstrainedModel, balance: Balance, condition: Condition | None = None) -> Verdict:

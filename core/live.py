@@ -168,8 +168,11 @@ class LiveSolver:
         targets = targets_of(request.design, stages)
         start = time.perf_counter()
         same_body = old is not None and old.control is stages.control and old.binding is stages.binding
-        if self._comparison is None or not same_body:
-            self._comparison = Comparison(stages.model, targets, stages.watch)
+        dense = stages.design.dense_volume
+        same_answer = same_body and old is not None and old.design.dense_volume == dense
+        if self._comparison is None or not same_answer:
+            change = stages.body_change if dense else None
+            self._comparison = Comparison(stages.model, targets, stages.watch, change)
         else:
             self._comparison.retarget(stages.model, targets, request.fresh)
         self._seconds = time.perf_counter() - start

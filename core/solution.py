@@ -6,6 +6,7 @@ import time
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from core.body_volume import solve_body_exact
 from core.comparison import judge_balance, shape_of
 from core.exact import NEWTON_LIMIT, newton
 from core.mesh import Mesh, Points
@@ -86,7 +87,12 @@ def _run_exact(stages: Stages, rest: Record, turns: int | None) -> tuple[list[Re
     ratios = targets_of(stages.design, stages).ratios
     records: list[Record] = []
     before = at_rest(stages.model)
-    for balance in newton(stages.model, ratios, limit=NEWTON_LIMIT if turns is None else turns):
+    limit = NEWTON_LIMIT if turns is None else turns
+    if stages.design.dense_volume:
+        balances = iter([solve_body_exact(stages.model, ratios, stages.body_change, limit)])
+    else:
+        balances = newton(stages.model, ratios, limit)
+    for balance in balances:
         if balance.steps:
             step = float(((balance.state.moved - before.moved) ** 2).sum(axis=1).max() ** 0.5)
             records.append(record(stages.model, balance.state, step, stages.watch))

@@ -195,3 +195,51 @@ def test_a_balance_that_was_not_found_is_no_answer():
     balance = solve_exact(MODEL, (1.0, 0.7, 1.0))
     assert judge_balance(MODEL, balance).motion == "settled"
     assert judge_balance(MODEL, replace(balance, residual=1.0)).motion == "settling"
+
+
+def test_a_slider_that_moved_a_little_is_answered_from_near_and_rests_at_the_answer_from_rest():
+    comparison = Comparison(MODEL, targets(0.9, "exact"))
+    finish(comparison)
+    comparison.retarget(MODEL, targets(0.88, "exact"))
+    assert comparison.exact.found
+    assert comparison.exact.steps < solve_exact(MODEL, targets(0.88).ratios).steps
+    assert not comparison.resting
+    finish(comparison)
+    np.testing.assert_array_equal(
+        comparison.exact.state.moved, solve_exact(MODEL, targets(0.88).ratios).state.moved
+    )
+
+
+def test_a_slider_that_jumped_is_answered_from_rest():
+    comparison = Comparison(MODEL, targets(0.97, "exact"))
+    comparison.retarget(MODEL, targets(0.8, "exact"))
+    np.testing.assert_array_equal(
+        comparison.exact.state.moved, solve_exact(MODEL, targets(0.8).ratios).state.moved
+    )
+
+
+def test_a_walk_of_the_slider_ends_where_the_answer_from_rest_is():
+    comparison = Comparison(MODEL, targets(1.0, "exact"))
+    for ratio in (*np.linspace(1.0, 0.7, 31), *np.linspace(0.7, 0.9, 21)):
+        comparison.retarget(MODEL, targets(float(ratio), "exact"))
+    exact = solve_exact(MODEL, targets(0.9).ratios).state.moved
+    np.testing.assert_allclose(comparison.exact.state.moved, exact, atol=1e-8)
+
+
+def test_another_line_worn_leaves_the_pressure_what_it_was():
+    comparison = Comparison(MODEL, targets(0.9))
+    finish(comparison)
+    both = constrained_model(torso(), worn=["mid-bust", "full-bust"])
+    before = comparison.runs["adaptive"].state.pressure.value * MODEL.pressure_unit
+    comparison.retarget(both, targets(0.9))
+    after = comparison.runs["adaptive"].state.pressure.value * both.pressure_unit
+    assert both.pressure_unit != pytest.approx(MODEL.pressure_unit, rel=1e-3)
+    assert after == pytest.approx(before, rel=1e-12)
+
+
+def test_accumulating_joins_when_it_is_chosen():
+    comparison = Comparison(MODEL, targets(0.9, "accumulating"))
+    assert set(comparison.runs) == {"adaptive", "conventional", "accumulating"}
+    finish(comparison)
+    assert comparison.verdict.motion == "settled"
+    assert abs(comparison.main.records[-1].error) < 1e-5
