@@ -1,0 +1,118 @@
+"""How short a line can be made: against a scan of the slider, and where there is nothing to find."""
+
+import numpy as np
+import pytest
+from shapes import fitted, torso
+
+from core.comparison import shape_of
+from core.exact import solve_exact
+from core.limits import PRECISION, SIGNS, all_limits, shortest
+from core.lines import RATIO_LIMITS
+from core.mechanics import Mechanics
+from core.model import constrained_model
+
+WORN = ("mid-bust", "full-bust")
+CHOICES = {
+    "prestressed": Mechanics(member_law="prestressed"),
+    "co-rotated": Mechanics(member_law="co-rotated"),
+    "sliding": Mechanics(line_contact="sliding"),
+    "held": Mechanics(line_hold="held"),
+    "stiff": Mechanics(line_stiffness=200.0),
+    "firm": Mechanics(firm_chest=0.1),
+}
+
+
+def model_of(sample, mechanics=None, worn=WORN):
+    return constrained_model(fitted(sample), worn=worn, mechanics=mechanics)
+
+
+def signs_at(model, ratios):
+    """What an exact answer from rest shows."""
+    balance = solve_exact(model, ratios)
+    condition = shape_of(model).condition(model.tensegric.expand(balance.state.moved))
+    return {sign for sign in SIGNS if getattr(condition, sign)} if balance.found else {"no balance"}
+
+
+def with_mid_bust(ratio, full_bust=1.0):
+    return (1.0, float(ratio), full_bust)
+
+
+@pytest.mark.parametrize("full_bust", [1.0, 0.9])
+@pytest.mark.parametrize("sample", ["mannequin", "person"])
+def test_a_scan_of_the_slider_finds_the_same_beginnings(sample, full_bust):
+    model = model_of(sample)
+    found = shortest(model, with_mid_bust(0.97, full_bust), "mid-bust")
+    scanned = {}
+    for ratio in np.arange(1.0, RATIO_LIMITS[0] - 1e-9, -0.005):
+        for sign in signs_at(model, with_mid_bust(ratio, full_bust)):
+            scanned.setdefault(sign, ratio)
+    assert scanned.keys() == {sign for sign in SIGNS if found.begins[sign]}
+    for sign, ratio in scanned.items():
+        assert ratio - 1e-9 <= found.begins[sign].ratio <= ratio + 0.005 + 1e-9
+    assert found.last is None
+
+
+@pytest.mark.parametrize("mechanics", CHOICES.values(), ids=CHOICES)
+def test_each_sign_shows_at_its_beginning_and_not_a_little_above(mechanics):
+    model = model_of("person", mechanics)
+    found = shortest(model, (1.0, 1.0, 1.0), "mid-bust")
+    assert found.begins["strained"].ratio > found.begins["overstrained"].ratio
+    for sign, begins in found.begins.items():
+        if begins:
+            assert sign in signs_at(model, with_mid_bust(begins.ratio))
+            assert sign not in signs_at(model, with_mid_bust(begins.ratio + PRECISION))
+            line = next(line for line in model.lines if line.name == "mid-bust")
+            points = model.tensegric.expand(solve_exact(model, with_mid_bust(begins.ratio)).state.moved)
+            assert begins.reached == pytest.approx(line.length(points), abs=1e-4)
+
+
+def test_a_held_line_reaches_what_is_set_and_ends_where_nothing_balances():
+    model = model_of("mannequin", Mechanics(line_contact="sliding", line_hold="held"), worn=["mid-bust"])
+    found = shortest(model, (1.0, 0.95, 1.0), "mid-bust")
+    rest = found.line.rest_length
+    for begins in (found.present, found.begins["strained"], found.begins["overstrained"], found.last):
+        assert begins.reached == pytest.approx(begins.ratio * rest)
+    assert 0.7 < found.last.ratio < found.begins["overstrained"].ratio
+    assert solve_exact(model, with_mid_bust(found.last.ratio + PRECISION)).found
+    assert not solve_exact(model, with_mid_bust(found.last.ratio - 2.0 * PRECISION)).found
+
+
+def test_a_setting_that_is_beyond_says_so():
+    model = model_of("person")
+    assert shortest(model, with_mid_bust(0.98), "mid-bust").beyond == ()
+    assert shortest(model, with_mid_bust(0.92), "mid-bust").beyond == ("strained",)
+    assert shortest(model, with_mid_bust(0.85), "mid-bust").beyond == ("strained", "overstrained")
+    assert shortest(model, with_mid_bust(0.6), "mid-bust").beyond == SIGNS
+
+
+def test_what_the_other_lines_do_begins_at_the_rest_length():
+    found = shortest(model_of("person"), (1.0, 1.0, 0.8), "mid-bust")
+    assert found.begins["strained"].ratio == found.begins["overstrained"].ratio == 1.0
+    assert found.begins["inverted"].ratio < 0.9
+
+
+def test_a_line_on_the_rib_cage_has_no_limit():
+    model = model_of("person", worn=["under-bust"])
+    found = shortest(model, (0.8, 1.0, 1.0), "under-bust")
+    assert found.begins == dict.fromkeys(SIGNS)
+    assert (found.beyond, found.last) == ((), None)
+    assert found.present.reached == pytest.approx(found.line.rest_length)
+
+
+def test_the_torso_is_overstrained_later_with_a_softer_line():
+    ends = []
+    for stiffness in (200.0, 64.0, 16.0):
+        model = constrained_model(torso(), worn=["mid-bust"], mechanics=Mechanics(line_stiffness=stiffness))
+        ends.append(shortest(model, (1.0, 1.0, 1.0), "mid-bust").begins["overstrained"].ratio)
+    assert ends[0] > ends[1] > ends[2]
+
+
+def test_every_line_that_moves_anything_is_looked_at_worn_or_not(built):
+    stages = built("mannequin")  # its mid-bust line is worn at 97 %
+    mid, full = all_limits(stages)
+    assert (mid.line.name, full.line.name) == WORN
+    assert mid.present.ratio == 0.97
+    assert full.present is None
+    alone = constrained_model(fitted("mannequin"), worn=WORN)
+    again = shortest(alone, (1.0, 0.97, 1.0), "full-bust")
+    assert full.begins["strained"].ratio == pytest.approx(again.begins["strained"].ratio, abs=PRECISION)
