@@ -6,6 +6,8 @@ import time
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from threadpoolctl import threadpool_limits
+
 from core.body_volume import solve_body_exact
 from core.comparison import judge_balance, shape_of
 from core.exact import NEWTON_LIMIT, newton
@@ -64,7 +66,9 @@ def run(stages: Stages, turns: int | None = None) -> Solution:
     start = time.perf_counter()
     rest = record(stages.model, at_rest(stages.model), 0.0, stages.watch)
     solve = _run_exact if stages.design.volume == "exact" else _run_turns
-    records, state, verdict = solve(stages, rest, turns)
+    # Two BLAS threads make these small products many times slower.
+    with threadpool_limits(1):
+        records, state, verdict = solve(stages, rest, turns)
     condition = shape_of(stages.model).condition(stages.model.tensegric.expand(state.moved))
     verdict = replace(verdict, condition=condition)
     return Solution(stages, rest, tuple(records), state, verdict, time.perf_counter() - start)
