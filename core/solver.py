@@ -15,6 +15,9 @@ from core.mesh import Floats, Points
 from core.model import ConstrainedModel
 from core.volume import Pressure, next_pressure
 
+HELD_DAMPING = 2.0
+"""How much harder a held line pulls while it is too long, in parts of its tension's growth [1]; ours."""
+
 
 @dataclass(frozen=True)
 class Targets:
@@ -114,14 +117,17 @@ def aims(model: ConstrainedModel, targets: Targets, state: State, lengths: Float
     """Return the natural lengths of the worn segments in the coming turn, (s,) [mm], and the lines' tensions.
 
     A spring has its own (paper section 3). A line whose length is held has one tension all along, which grows
-    by what the line is still too long (the method of multipliers; ours).
+    by what the line is still too long (the method of multipliers; ours). While it is too long it pulls harder
+    still: without that damping it swings about the length for hundreds of turns.
     """
     natural = model.natural_lengths(targets.ratios)
     if model.mechanics.line_hold == "spring":
         return natural, state.tensions
     before = state.tensions if len(state.tensions) else np.zeros(len(model.lines))
-    tensions = before + model.tapes * model.sums(lengths - natural)
-    return lengths - tensions[model.owner] / model.segments.stiffness, tensions
+    excess = model.tapes * model.sums(lengths - natural)
+    tensions = before + excess
+    pull = tensions + HELD_DAMPING * excess
+    return lengths - pull[model.owner] / model.segments.stiffness, tensions
 
 
 def iterate(
