@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QMenu, QMenuBar, QWidget
 from app.samples import SAMPLES
 from app.words import LANGUAGES, tr
 
-CONTROLS = ("adaptive", "conventional", "exact", "none")
+CONTROLS = ("adaptive", "conventional", "accumulating", "exact", "none")
 
 
 class Actions:
@@ -35,6 +35,9 @@ class Actions:
         )
         self.flip = self._make(tr("Before / after"), "Space", tr("Show the body at rest, or reshaped"))
         self.strip = self._make(tr("Live plot"), "Ctrl+J", checkable=True)
+        self.model = self._make(
+            tr("How the model works…"), "Ctrl+M", tr("Choose how lines, skin and volume act")
+        )
         self.about = self._make(tr("About Busk"))
         self.samples = {name: self._make(tr(title)) for name, title in SAMPLES.items()}
         self.controls = self._group({name: self._control_title(name) for name in CONTROLS})
@@ -62,6 +65,7 @@ class Actions:
         solve = bar.addMenu(tr("Solve"))
         self._fill(solve, *self.controls.values(), None)
         self._fill(solve.addMenu(tr("Control mesh")), *self.templates.values())
+        self._fill(solve, None, self.model)
         self._fill(bar.addMenu(tr("Help")), self.about)
         return bar
 
@@ -99,6 +103,7 @@ class Actions:
         return {
             "adaptive": tr("Adaptive volume force"),
             "conventional": tr("Conventional volume force"),
+            "accumulating": tr("Accumulating volume force"),
             "exact": tr("Exact answer"),
             "none": tr("No volume control"),
         }[name]

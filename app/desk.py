@@ -93,6 +93,7 @@ class Desk(QObject):
         if self._frame is None or frame.stages.landmarks is not self._frame.stages.landmarks:
             self._show_found(frame.stages)
         self._frame = frame
+        self._window.model.set_gain(frame.stages.gain, frame.stages.gain_limit)
         self._window.view.show_frame(frame, design)
         self._window.lines.set_lines(line_views(design, frame, self._window.view.hidden_lines))
         percent = 1e5 * frame.error_ml / frame.stages.model.volume.rest_volume
@@ -119,6 +120,8 @@ class Desk(QObject):
         do.controls[design.volume].setChecked(True)
         do.templates[design.template].setChecked(True)
         self._window.strip.set_control(design.volume)
+        self._window.model.set_values(vars(design))
+        self._window.door.set_values(vars(design))
         self.show_title()
 
     def show_failure(self, error: Exception) -> None:
@@ -165,6 +168,11 @@ class Desk(QObject):
         view.set_after(worn)
         view.set_layer("bands", worn)
         view.set_layer("landmarks", step == "landmarks")
+
+    def show_model(self) -> None:
+        """Show how the model works in the place of the lines; what it does is seen beside it."""
+        self.go_to("lines")
+        self._window.inspector.setCurrentWidget(self._window.model)
 
     def select_line(self, name: str) -> None:
         """Select a line in the list and on the body."""

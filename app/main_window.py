@@ -13,6 +13,7 @@ from app.housekeeping import Housekeeping
 from app.notice import NoticeBar
 from app.panels.landmarks import LandmarksPanel
 from app.panels.lines import LinesPanel
+from app.panels.model import ModelDoor, ModelPanel
 from app.panels.rail import Rail
 from app.panels.result import ResultPanel
 from app.panels.scan import ScanPanel
@@ -46,6 +47,7 @@ class MainWindow(QMainWindow):
         self.rail, self.notices, self.strip, self.status = Rail(), NoticeBar(), Strip(), StatusBar()
         self.scan, self.landmarks = ScanPanel(), LandmarksPanel()
         self.lines, self.result = LinesPanel(), ResultPanel()
+        self.model, self.door = ModelPanel(), ModelDoor()
         self.inspector = QStackedWidget()
         self._lay_out()
         self.desk = Desk(self)
@@ -53,7 +55,13 @@ class MainWindow(QMainWindow):
         self._connect()
 
     def _lay_out(self) -> None:
-        for panel in (self.scan, self.landmarks, self.lines, self.result):
+        lines = QWidget()
+        column = QVBoxLayout(lines)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addWidget(self.lines, 1)
+        column.addWidget(self.door)
+        for panel in (self.scan, self.landmarks, lines, self.result, self.model):
             self.inspector.addWidget(panel)
         middle = QVBoxLayout()
         middle.setSpacing(0)
@@ -94,6 +102,9 @@ class MainWindow(QMainWindow):
         self.lines.visibility_changed.connect(desk.set_line_visible)
         self.lines.reset_all.connect(session.reset_lines)
         self.strip.control_chosen.connect(session.choose_control)
+        self.door.clicked.connect(desk.show_model)
+        self.model.left.connect(lambda: desk.go_to("lines"))
+        self.model.changed.connect(session.change)
         self.scan.open_asked.connect(desk.open)
         self.scan.unit_chosen.connect(session.choose_unit)
         self.landmarks.landmark_selected.connect(desk.select_landmark)
@@ -115,6 +126,7 @@ class MainWindow(QMainWindow):
         do.flip.triggered.connect(lambda: view.set_after(not view.after))
         do.strip.toggled.connect(lambda on: self.strip.set_folded(not on))
         self.strip.folded.connect(lambda folded: do.strip.setChecked(not folded))
+        do.model.triggered.connect(desk.show_model)
         do.about.triggered.connect(desk.about)
         do.recent.aboutToShow.connect(lambda: fill_recent_menu(do.recent, desk.open_file))
         for name, action in do.samples.items():

@@ -127,7 +127,7 @@ class Segment(QFrame):
         row = QHBoxLayout(self)
         row.setContentsMargins(2, 2, 2, 2)
         row.setSpacing(0)
-        group = QButtonGroup(self)
+        self._group = QButtonGroup(self)
         self._buttons: dict[str, QPushButton] = {}
         for name, title in choices:
             each = button(title, "segment")
@@ -137,13 +137,16 @@ class Segment(QFrame):
             each.toggled.connect(lambda on, b=each: b.setFont(_segment_font(on, small)))
             each.setFont(_segment_font(False, small))
             each.clicked.connect(lambda _=False, chosen=name: self.chosen.emit(chosen))
-            group.addButton(each)
+            self._group.addButton(each)
             row.addWidget(each)
             self._buttons[name] = each
 
     def set_choice(self, name: str) -> None:
-        """Show ``name`` as the choice that is on; nothing is emitted."""
-        self._buttons[name].setChecked(True)
+        """Show ``name`` as the choice that is on, or that it is none of these; nothing is emitted."""
+        self._group.setExclusive(False)
+        for each, item in self._buttons.items():
+            item.setChecked(each == name)
+        self._group.setExclusive(True)
 
     def button(self, name: str) -> QPushButton:
         """Return the button of one choice, for tooltip, shortcut or state."""

@@ -4,15 +4,17 @@ signals.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from PySide6.QtCore import QObject, QTimer, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from app.words import number, tr
-from core.design import Design, ScanSource
+from core.design import Design, OwnLine, ScanSource
 from core.errors import UserError
 from core.export import write_mesh
 from core.live import Failure, Frame, LiveSolver
@@ -110,14 +112,30 @@ class Session(QObject):
     def choose_control(self, control: str) -> None:
         """Choose the volume control."""
         if self.design is not None:
-            titles = {"adaptive": tr("Adaptive"), "conventional": tr("Conventional"), "exact": tr("Exact")}
+            titles = {
+                "adaptive": tr("Adaptive"),
+                "conventional": tr("Conventional"),
+                "accumulating": tr("Accumulating"),
+                "exact": tr("Exact"),
+            }
             self._commit(replace(self.design, volume=control), titles.get(control, tr("No volume control")))
 
     def choose_template(self, template: str) -> None:
         """Choose the control mesh by its number of polygons."""
-        if self.design is not None:
-            text = tr("Control mesh {count}").format(count=template)
-            self._commit(replace(self.design, template=template), text)
+        text = tr("Control mesh {count}").format(count=template)
+        self._edit(lambda design: design.with_template(template), text)
+
+    def change(self, changes: Mapping[str, Any], text: str) -> None:
+        """Change fields of the design as one undo step."""
+        self._edit(lambda design: replace(design, **changes), text)
+
+    def add_own_line(self, line: OwnLine) -> None:
+        """Add a line of the designer's own."""
+        self._edit(lambda design: design.with_own_line(line), tr("{line} added").format(line=line.name))
+
+    def remove_own_line(self, name: str) -> None:
+        """Remove a line of the designer's own."""
+        self._edit(lambda design: design.without_own_line(name), tr("{line} removed").format(line=name))
 
     def choose_unit(self, unit: str) -> None:
         """Read the scan again in another unit."""
@@ -180,6 +198,18 @@ class Session(QObject):
     def _begin(self, design: Design, path: Path | None) -> None:
         self._preview = None
         self._opening = (design, path, self._solver.submit(design, fresh=True))
+
+    def _edit(self, edit: Callable[[Design], Design], text: str) -> None:
+        """Make an edit that the design may refuse: then all that is shown goes back to what is."""
+        if self.design is None:
+            return
+        try:
+            after = edit(self.design)
+        except UserError as error:
+            self.failed.emit(error)
+            self.design_changed.emit(self.design)
+        else:
+            self._commit(after, text)
 
     def _commit(self, after: Design, text: str) -> None:
         previewing, self._preview = self._preview is not None, None

@@ -162,6 +162,9 @@ QPushButton[kind="primary"]:disabled {{ background: {t.pressed}; border-color: {
 QPushButton[kind="quiet"] {{ background: transparent; border-color: transparent; color: {t.text_quiet}; }}
 QPushButton[kind="quiet"]:hover {{ background: {t.pressed}; color: {t.text}; }}
 QPushButton[kind="quiet"]:focus {{ border-color: {t.accent}; }}
+QPushButton[kind="quiet"]:disabled {{ color: {faded(t.text_caption, t.panel, 0.6).name()}; }}
+QPushButton[kind="pull"] {{ padding: 0 28px 0 10px; text-align: left; }}
+QPushButton[kind="pull"]:focus {{ padding: 0 27px 0 9px; }}
 QFrame[kind="segment"] {{ background: {t.app if t.dark else t.pressed}; border-radius: 7px; }}
 QPushButton[kind="segment"] {{ border: 2px solid transparent; border-radius: 6px; padding: 0; min-height: 0;
     background: transparent; color: {t.text_quiet}; }}

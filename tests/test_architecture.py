@@ -21,14 +21,16 @@ FLOORS = {
     "mechanics": "mechanics band springs cells tensegric lines volume patch tffd",
     "solving": "condition layout sweep model solver gain potential newton sliding exact body_volume "
     "verdict comparison watch",
-    "document": "design own_lines project pipeline sphere live export solution report",
+    "document": "design own_lines project pipeline limits search sphere live export solution report",
     "seeing": "camera scene_stage scene_body scene_bands scene_control scene",
-    "wording": "display tokens words samples",
+    "wording": "display tokens words samples model_choices",
+    "printing": "figure_style figure_scene figure_study figure_bodies figure_sphere figure_side figure_turns "
+    "figure_map figure_claims figure_search figure_page figures",
     "asking": "session",
     "dress": "icons theme parts",
     "showing": "background canvas overlay pointer viewport live_plot verdict_chip convergence notice "
     "panels.length_slider panels.number_field panels.line_row panels.lines panels.landmarks panels.rail "
-    "housekeeping panels.result panels.scan panels.status panels.top_bar panels.view_tools",
+    "housekeeping panels.setting_field panels.model panels.result panels.scan panels.status panels.top_bar panels.view_tools",
     "roof": "present view_area actions recent dialogs application desk main_window window picture demo "
     "self_test settings cli __main__",
 }
@@ -42,6 +44,7 @@ OUTSIDE = {
     "document": NUMBERS | {"trimesh", "threadpoolctl", "platformdirs"},
     "seeing": NUMBERS | {"pyvista", "vtkmodules"},
     "wording": set(),
+    "printing": NUMBERS | {"pyvista", "matplotlib"},
     "asking": {"numpy", "PySide6.QtCore", "PySide6.QtGui"},
     "dress": {"PySide6.QtCore", "PySide6.QtGui", "PySide6.QtWidgets", "PySide6.QtSvg"},
     "showing": {"numpy", "pyvista", "pyvistaqt", "pyqtgraph", "vtkmodules", "PySide6.QtCore", "PySide6.QtGui"}
@@ -49,7 +52,7 @@ OUTSIDE = {
     "roof": {"PySide6", "numpy", "pyvista", "pyvistaqt", "platformdirs", "PySide6.QtCore", "PySide6.QtGui"}
     | {"PySide6.QtWidgets", "PySide6.QtPrintSupport"},
 }
-PANELS = ("lines", "landmarks", "rail", "result", "scan", "status", "top_bar", "view_tools")
+PANELS = ("lines", "landmarks", "model", "rail", "result", "scan", "status", "top_bar", "view_tools")
 STRANGERS = (
     ["core.tensegric", "core.lines", "core.volume"],
     ["app.viewport", "app.convergence", "app.notice", *(f"app.panels.{panel}" for panel in PANELS)],

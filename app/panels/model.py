@@ -1,0 +1,186 @@
+"""How the model works: every choice in plain words, out of the designer's way until it is asked for."""
+
+# ruff: noqa: D102, N802 - Qt names its events and says what they are
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from PySide6.QtCore import QEvent, QRectF, Qt, Signal
+from PySide6.QtGui import QColor, QEnterEvent, QPainter, QPaintEvent, QPen
+from PySide6.QtWidgets import QAbstractButton, QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
+
+from app.icons import paint_icon
+from app.model_choices import Setting, consequences, defaults, groups, summary
+from app.panels.setting_field import AmountField, Field, field_of
+from app.parts import ToolButton, button, hairline, sentence
+from app.theme import font, label, set_tag, tokens_of
+from app.words import number, tr
+
+DOOR_HEIGHT = 52
+"""Height of the foot of the inspector, where the way to the settings is [px]."""
+
+
+class ModelPanel(QWidget):
+    """All settings of the model. ``changed`` tells fields of the design with the name of the step."""
+
+    changed = Signal(object, str)
+    left = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.fields: dict[str, Field] = {}
+        self._rows: dict[str, QWidget] = {}
+        self._present: dict[str, Any] = defaults()
+        self._reset = button(tr("Reset to defaults"), "quiet")
+        self._reset.clicked.connect(lambda: self.changed.emit(defaults(), tr("Model reset to defaults")))
+        self._limit = sentence("", "caption")
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addLayout(self._head())
+        column.addWidget(self._scroll_area(), 1)
+        column.addWidget(self._foot())
+        self.set_values(self._present)
+
+    def set_values(self, present: Mapping[str, Any]) -> None:
+        """Show these values of the fields of the design; nothing is emitted."""
+        self._present = {key: present[key] for key in defaults()}
+        for key, field in self.fields.items():
+            field.show_value(self._present[key])
+        self._rows["prestress"].setVisible(self._present["member_law"] == "prestressed")
+        self._reset.setEnabled(self._present != defaults())
+
+    def set_gain(self, gain: float, limit: float) -> None:
+        """Show the conventional gain in force and the limit from which on it vibrates at rest."""
+        field = self.fields["gain"]
+        assert isinstance(field, AmountField)
+        field.edit.setPlaceholderText(number(gain, 2))
+        above = gain > limit
+        said = (
+            tr("Above {limit} it vibrates: this is too much.") if above else tr("It vibrates above {limit}.")
+        )
+        self._limit.setText(said.format(limit=number(limit, 2)))
+        set_tag(self._limit, "tone", "warn" if above else "")
+
+    def _head(self) -> QHBoxLayout:
+        head = QHBoxLayout()
+        head.setContentsMargins(10, 9, 10, 6)
+        head.setSpacing(4)
+        back = ToolButton("caret-left", tr("Back to the lines"), size=16, room=30)
+        back.clicked.connect(self.left)
+        head.addWidget(back)
+        head.addWidget(label(tr("How the model works"), "heading"))
+        head.addStretch(1)
+        return head
+
+    def _foot(self) -> QWidget:
+        foot = QWidget()
+        foot.setFixedHeight(DOOR_HEIGHT)
+        column = QVBoxLayout(foot)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addWidget(hairline())
+        row = QHBoxLayout()
+        row.setContentsMargins(6, 0, 10, 0)
+        row.addWidget(self._reset)
+        row.addStretch(1)
+        column.addLayout(row, 1)
+        return foot
+
+    def _scroll_area(self) -> QScrollArea:
+        inside = QWidget()
+        inside.setProperty("scrolled", "true")
+        column = QVBoxLayout(inside)
+        column.setContentsMargins(18, 2, 18, 16)
+        column.setSpacing(9)
+        for place, (title, settings) in enumerate(groups()):
+            if place:
+                column.addSpacing(5)
+                column.addWidget(hairline())
+                column.addSpacing(5)
+            column.addWidget(label(title, "name"))
+            for setting in settings:
+                self._rows[setting.key] = self._row(setting)
+                column.addWidget(self._rows[setting.key])
+        column.addWidget(self._limit)
+        column.addStretch(1)
+        area = QScrollArea()
+        area.setWidgetResizable(True)
+        area.setFrameShape(QFrame.Shape.NoFrame)
+        area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        area.setWidget(inside)
+        return area
+
+    def _row(self, setting: Setting) -> QWidget:
+        field = field_of(setting)
+        field.chosen.connect(lambda value: self._choose(setting, value))
+        self.fields[setting.key] = field
+        title = label(setting.title, "secondary")
+        for each in (title, field):
+            each.setToolTip(f"<p>{setting.tip}</p>")  # a paragraph wraps
+        field.focusProxy().setAccessibleName(setting.title)
+        field.focusProxy().setAccessibleDescription(setting.tip)
+        row = QWidget()
+        line = QHBoxLayout(row)
+        line.setContentsMargins(0, 0, 0, 0)
+        line.addWidget(title)
+        line.addStretch(1)
+        line.addWidget(field)
+        return row
+
+    def _choose(self, setting: Setting, value: Any) -> None:
+        if value != self._present[setting.key]:
+            changes = consequences(setting.key, value, self._present)
+            self.changed.emit(changes, f"{setting.title}: {setting.words(value)}")
+
+
+class ModelDoor(QAbstractButton):
+    """The way to the settings from under the lines: what is chosen, in a line."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._said = ""
+        self.setFixedHeight(DOOR_HEIGHT)
+        self.setText(tr("How the model works"))
+        self.setCursor(Qt.CursorShape.PointingHandCursor)
+
+    def set_values(self, present: Mapping[str, Any]) -> None:
+        """Say what is chosen."""
+        self._said = summary(present)
+        self.setAccessibleDescription(self._said)
+        self.setToolTip(f"<p>{self._said}</p>")
+        self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        tokens = tokens_of(self)
+        painter = QPainter(self)
+        painter.fillRect(0, 0, self.width(), 1, QColor(tokens.line))
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        if self.underMouse() or self.hasFocus():
+            painter.setPen(QPen(QColor(tokens.accent), 2) if self.hasFocus() else Qt.PenStyle.NoPen)
+            painter.setBrush(QColor(tokens.hover))
+            painter.drawRoundedRect(QRectF(self.rect()).adjusted(6, 6, -6, -5), 8, 8)
+        room = QRectF(18, 8, self.width() - 56, 20)
+        painter.setFont(font("secondary"))
+        painter.setPen(QColor(tokens.text))
+        painter.drawText(room, _LEFT, self.text())
+        painter.setFont(font("caption"))
+        painter.setPen(QColor(tokens.text_caption))
+        said = painter.fontMetrics().elidedText(self._said, Qt.TextElideMode.ElideRight, int(room.width()))
+        painter.drawText(room.translated(0, 18), _LEFT, said)
+        paint_icon(
+            painter,
+            "caret-right",
+            tokens.text_quiet,
+            QRectF(self.width() - 32, self.height() / 2 - 7, 14, 14),
+        )
+
+    def enterEvent(self, event: QEnterEvent) -> None:
+        self.update()
+
+    def leaveEvent(self, event: QEvent) -> None:
+        self.update()
+
+
+_LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
