@@ -244,7 +244,9 @@ def _parser(command: str) -> argparse.ArgumentParser:
         parser.add_argument("--dark", action="store_true")
         parser.add_argument("--language", choices=("en", "ja"), default="en")
         parser.add_argument("--size", type=_size, default=(1600, 1000), metavar="WIDTHxHEIGHT")
-    if command in ("solve", "picture", "demo"):
+    if command == "figures":
+        parser.add_argument("--only", action="append", metavar="N", help="this figure alone; may be repeated")
+    if command in ("solve", "picture", "demo", "figures"):
         parser.add_argument("--out", required=command != "demo", default="out", metavar="PLACE")
     return parser
 

@@ -1,0 +1,52 @@
+"""The figures of the paper, made again from the sample bodies and the sphere, and the page on them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from pathlib import Path
+
+from app.figure_bodies import figure_1, figure_3, figure_5
+from app.figure_map import figure_9
+from app.figure_page import write_page
+from app.figure_side import figure_4
+from app.figure_sphere import figure_2
+from app.figure_study import Study
+from app.figure_style import Figure, print_style
+from app.figure_turns import figure_6, figure_7, figure_8
+from core.errors import UserError
+
+FIGURES: dict[str, Callable[[Study], Figure]] = {
+    "1": figure_1,
+    "2": figure_2,
+    "3": figure_3,
+    "4": figure_4,
+    "5": figure_5,
+    "6": figure_6,
+    "7": figure_7,
+    "8": figure_8,
+    "9": figure_9,
+}
+"""How each figure is drawn, by its number: 1 to 7 are the paper's, 8 and 9 ours."""
+
+
+def make_figures(out: Path, only: Collection[str] = (), tell: Callable[[str], None] = print) -> None:
+    """Write the figures to ``out``, one picture and one CSV each, or those numbered in ``only``.
+
+    With all of them comes the page REPRODUCTION.md; ``tell`` hears of every file. Raises UserError.
+    """
+    unknown = sorted(set(only) - FIGURES.keys())
+    if unknown:
+        raise UserError(f"There is no figure {unknown[0]}.", f"Choose among: {', '.join(FIGURES)}.")
+    study = Study()
+    drawn = [draw(number, study, out, tell) for number in FIGURES if not only or number in only]
+    if not only:
+        write_page(out, drawn, study, tell)
+
+
+def draw(number: str, study: Study, out: Path, tell: Callable[[str], None] = print) -> Figure:
+    """Draw one figure and write its picture and table to ``out``. Raises UserError."""
+    with print_style():
+        figure = FIGURES[number](study)
+        figure.save(out)
+    tell(f"  {out / figure.name}.png and .csv: Fig. {number}, {figure.title}")
+    return figure
