@@ -32,7 +32,8 @@ _RIPPLE = 1e-4
 _LEAST = 26  # turns without which no swing is judged
 _LOOK_BACK = 120  # turns: room for a swing of 40 turns to show twice
 _LAGS = (1, 2, 4, 8, 16)  # together they see periods from 2 to 40
-_WINDOW = 12  # turns over which a quick swing is measured; over twice as many its growth
+_WINDOW = 12  # turns over which a quick swing is measured
+_SPANS = (24, 48)  # over which its growth is: the longer for swings that come and go
 
 
 @dataclass(frozen=True)
@@ -99,7 +100,7 @@ class _Swing:
 
 
 def _strongest_swing(course: Floats) -> _Swing | None:
-    """Return the largest swing of a course (n,) [1] that does not fade, or None."""
+    """Return the largest swing of a course (n,) [1] that neither fades nor is too small to see, or None."""
     ups = course[1:] > course[:-1]
     turned = int(np.count_nonzero(ups[1:] != ups[:-1]))
     if len(course) < _LEAST or turned < 3:
@@ -109,7 +110,7 @@ def _strongest_swing(course: Floats) -> _Swing | None:
     strongest = None
     for lag in _LAGS:
         swing = _swing(course, lag)
-        if swing and swing.growth >= _FADING and (not strongest or swing.amplitude > strongest.amplitude):
+        if swing and (strongest is None or swing.amplitude > strongest.amplitude):
             strongest = swing
             if swing.amplitude > room:  # no other can be much larger
                 break
@@ -117,7 +118,7 @@ def _strongest_swing(course: Floats) -> _Swing | None:
 
 
 def _swing(course: Floats, lag: int) -> _Swing | None:
-    """Return the swing of about 2 x ``lag`` turns in a course, if there is one.
+    """Return the swing of about 2 x ``lag`` turns in a course, if there is one that does not fade.
 
     Second differences over half a period show a swing in full and a straight drift not at all; a smooth
     approach leaves little, and that of one sign.
@@ -131,13 +132,20 @@ def _swing(course: Floats, lag: int) -> _Swing | None:
     period = float(turns[-1] - turns[0]) / periods
     longest = max(int((turns[1:] - turns[:-1]).max()), len(bend) - int(turns[-1]))
     whole = int(len(bend) / 2.0 / period)
-    if not 1.4 * lag <= period <= 4.0 * lag or whole < 1 or longest > 0.75 * period + 1.0:
+    if not 1.4 * lag <= period <= 4.0 * lag or whole < 1 or longest > period + 1.0:
         return None
-    window, long = (round(period * min(whole, math.ceil(n / period))) for n in (_WINDOW, 2 * _WINDOW))
-    recent, earlier = _size(bend[-long:], period), _size(bend[-2 * long : -long], period)
-    growth = (recent / max(earlier, 0.01 * _RIPPLE)) ** (1.0 / long)
+    window, *spans = (round(period * min(whole, math.ceil(n / period))) for n in (_WINDOW, *_SPANS))
+    growth = next((each for span in spans if (each := _growth(bend, period, span)) >= _FADING), None)
+    if growth is None:
+        return None
     gain = 4.0 * math.sin(math.pi * lag / period) ** 2
     return _Swing(period, _size(bend[-window:], period) / gain, growth, window)
+
+
+def _growth(bend: Floats, period: float, span: int) -> float:
+    """Return by how much the last ``span`` turns swing more than those before them, per turn."""
+    earlier = max(_size(bend[-2 * span : -span], period), 0.01 * _RIPPLE)
+    return math.pow(_size(bend[-span:], period) / earlier, 1.0 / span)
 
 
 def _sign_changes(bend: Floats) -> Indices:
