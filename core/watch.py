@@ -116,9 +116,8 @@ def _outline(still: Mesh, body: Mesh, z: float) -> Points:
 
 def _cut(places: Points, edges: Indices, z: float) -> Points:
     """Return where the edges, shape (2, e), cross a height, shape (c, 2) [mm]."""
-    start, end = edges
-    low, high = places[:, 2].take(start) - z, places[:, 2].take(end) - z
-    crossed = np.flatnonzero((low >= 0.0) != (high >= 0.0))
-    part = (low[crossed] / (low[crossed] - high[crossed]))[:, None]
-    a, b = places[start[crossed], :2], places[end[crossed], :2]
-    return np.asarray(a + part * (b - a))
+    above = places[:, 2] >= z
+    start, end = edges[:, above.take(edges[0]) != above.take(edges[1])]
+    a, b = places[start], places[end]
+    part = (z - a[:, 2]) / (b[:, 2] - a[:, 2])
+    return np.asarray(a[:, :2] + part[:, None] * (b - a)[:, :2])
