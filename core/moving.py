@@ -82,7 +82,8 @@ def moving_faces(body: Mesh, vertices: Indices, middle: float | None = None) -> 
     place = np.cumsum(concerned) - 1
     others = ~touched & concerned[body.faces].any(axis=1)
     gather = incidence(body.faces[others], len(body.vertices))[corners]
-    faces = np.ascontiguousarray(body.faces[touched].T)
+    faces = body.faces[touched].T
+    faces = np.ascontiguousarray(faces[:, np.argsort(faces.min(axis=0), kind="stable")])  # as vertices lie
     return MovingFaces(
         body,
         corners,

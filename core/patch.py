@@ -177,10 +177,10 @@ def _nearest_spots(points: Points, mesh: Mesh) -> tuple[Floats, Indices, Points]
     place = np.empty((len(points), 2))
     for rows, triangles in neighbourhoods(points, mesh):
         u, v, h = frames.coordinates(points[rows], triangles)
-        away = frames.distance2(triangles, u, v, h)
+        away = frames.distance2(points[rows], triangles, h)
         at = np.argmin(away, axis=0), np.arange(len(rows))
         distance2[rows], nearest[rows] = away[at], triangles[at[0]]
-        on_triangle = frames.nearest_place(triangles, u, v)
+        on_triangle = frames.nearest_place(points[rows], triangles, u, v)
         place[rows] = np.stack([on_triangle[0][at], on_triangle[1][at]], axis=1)
     v0, v1, v2 = (mesh.vertices[mesh.faces[nearest, k]] for k in range(3))
     return distance2, nearest, v0 + place[:, :1] * (v1 - v0) + place[:, 1:] * (v2 - v0)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from scipy.spatial.distance import cdist
@@ -66,7 +65,7 @@ def neighbourhoods(
 def _split(points: Points, rows: Indices) -> Iterator[Indices]:
     """Halve ``rows`` across their widest extent until all groups are small."""
     if len(rows) <= _GROUP:
-        yield rows
+        yield np.sort(rows)  # in the order of memory
         return
     group = points[rows]
     axis = int(np.argmax(np.ptp(group, axis=0)))
@@ -78,64 +77,78 @@ def _split(points: Points, rows: Indices) -> Iterator[Indices]:
 
 @dataclass(frozen=True, eq=False)
 class Frames:
-    """The frames of some triangles: corner v0, sides e1, e2 and unit normal n of each."""
+    """The frames of some triangles, each array of shape (m, 3, 3).
 
-    corner: Points
+    ``corners``; ``to_frame``, whose rows give u, v and h from corner 0; the unit vectors ``along`` each side
+    and ``across`` it, inward in the plane. ``lengths`` of the sides (m, 3) [mm].
+    """
+
+    corners: Floats
     to_frame: Floats
-    gram: Floats
+    along: Floats
+    across: Floats
+    lengths: Floats
 
     @classmethod
     def of(cls, mesh: Mesh) -> Frames:
         """Prepare the frames of all triangles; those of unusable ones mean nothing."""
-        v0, v1, v2 = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
-        e1, e2 = v1 - v0, v2 - v0
-        frames = np.stack([e1, e2, mesh.face_normals], axis=2)
+        corners = mesh.vertices[mesh.faces]
+        sides = np.roll(corners, -1, axis=1) - corners
+        lengths = np.linalg.norm(sides, axis=2)
+        along = sides / np.where(lengths > 0.0, lengths, 1.0)[:, :, None]
+        across = np.cross(mesh.face_normals[:, None], along)
+        frames = np.stack([sides[:, 0], -sides[:, 2], mesh.face_normals], axis=2)
         frames[~usable(mesh)] = np.eye(3)
-        gram = np.stack([np.einsum("ij,ij->i", a, b) for a, b in ((e1, e1), (e1, e2), (e2, e2))])
-        return cls(v0, np.linalg.inv(frames), gram)
+        return cls(corners, np.linalg.inv(frames), along, across, lengths)
 
     def coordinates(self, points: Points, triangles: Indices) -> Table:
         """Return u, v [1] and h [mm] of each point, v0 + u e1 + v e2 + h n, in each triangle's frame.
 
         Shapes (k, 3) [mm], (c,) and three of (c, k).
         """
-        origin = points[0]  # small figures keep their digits
-        to_frame = self.to_frame[triangles]
-        start = np.einsum("cij,cj->ci", to_frame, self.corner[triangles] - origin)
-        u, v, h = (to_frame[:, axis] @ (points - origin).T - start[:, axis, None] for axis in range(3))
+        start, forms = self.corners[triangles, 0], self.to_frame[triangles]
+        u, v, h = (_linear(forms[:, row], start, points) for row in range(3))
         return u, v, h
 
-    def distance2(self, triangles: Indices, u: Floats, v: Floats, h: Floats) -> Floats:
-        """Return the squared distances to the triangles of points with these coordinates, (c, k) [mm^2]."""
-        sides = self._sides(triangles, u, v)
-        away = np.minimum(np.minimum(next(sides)[0], next(sides)[0]), next(sides)[0])
-        away[(u >= 0.0) & (v >= 0.0) & (u + v <= 1.0)] = 0.0
+    def distance2(self, points: Points, triangles: Indices, h: Floats) -> Floats:
+        """Return the squared distances of points at heights ``h``, shape (c, k) [mm^2]."""
+        (first, in_first), (second, in_second), (third, in_third) = (
+            (away, across >= 0.0) for away, across, _ in self._sides(points, triangles)
+        )
+        away = np.minimum(np.minimum(first, second, out=first), third, out=first)
+        away[in_first & in_second & in_third] = 0.0
         away += h * h
         return away
 
-    def nearest_place(self, triangles: Indices, u: Floats, v: Floats) -> tuple[Floats, Floats]:
-        """Return u and v of the places on the triangles nearest to points with these coordinates, (c, k)."""
-        inside = (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0)
-        best, at_u, at_v = np.where(inside, -1.0, np.inf), u, v
-        for away, side_u, side_v in self._sides(triangles, u, v):
-            nearer = away < best
-            best = np.where(nearer, away, best)
-            at_u, at_v = np.where(nearer, side_u, at_u), np.where(nearer, side_v, at_v)
-        return at_u, at_v
+    def nearest_place(
+        self, points: Points, triangles: Indices, u: Floats, v: Floats
+    ) -> tuple[Floats, Floats]:
+        """Return u and v of the nearest places on the triangles to points with these coordinates, (c, k)."""
+        nearest = np.where((u >= 0.0) & (v >= 0.0) & (u + v <= 1.0), -1.0, np.inf)
+        for side, (away, _, at) in enumerate(self._sides(points, triangles)):
+            t = at / self.lengths[triangles, side, None]
+            nearer = away < nearest
+            nearest = np.where(nearer, away, nearest)
+            u = np.where(nearer, (t, 1.0 - t, 0.0)[side], u)
+            v = np.where(nearer, (0.0, t, 1.0 - t)[side], v)
+        return u, v
 
-    def _sides(self, triangles: Indices, u: Floats, v: Floats) -> Iterator[tuple[Floats, Any, Any]]:
-        """Give the squared distance in the plane to each side, and where on it the nearest place is."""
-        g11, g12, g22 = self.gram[:, triangles, None]
-        t = np.clip(u + g12 / g11 * v, 0.0, 1.0)
-        yield _length2(self.gram[:, triangles, None], u - t, v), t, 0.0
-        t = np.clip(v + g12 / g22 * u, 0.0, 1.0)
-        yield _length2(self.gram[:, triangles, None], u, v - t), 0.0, t
-        skew = g11 - 2.0 * g12 + g22
-        t = np.clip((g22 - g12) / skew * v - (g11 - g12) / skew * (u - 1.0), 0.0, 1.0)
-        yield _length2(self.gram[:, triangles, None], u + (t - 1.0), v - t), 1.0 - t, t
+    def _sides(self, points: Points, triangles: Indices) -> Iterator[Table]:
+        """Give, for each side, the squared distance to it in the plane, that across it, and where on it."""
+        for side in range(3):
+            start = self.corners[triangles, side]
+            along = _linear(self.along[triangles, side], start, points)
+            across = _linear(self.across[triangles, side], start, points)
+            at = np.clip(along, 0.0, self.lengths[triangles, side, None])
+            along -= at
+            along *= along
+            along += across * across
+            yield along, across, at
 
 
-def _length2(gram: Floats, u: Floats, v: Floats) -> Floats:
-    """Return the squared lengths of u e1 + v e2."""
-    g11, g12, g22 = gram
-    return np.asarray(u * (g11 * u + 2.0 * g12 * v) + g22 * (v * v))
+def _linear(forms: Points, start: Points, points: Points) -> Floats:
+    """Return the products of ``forms`` (c, 3) with the ways from ``start`` (c, 3) to each point, (c, k)."""
+    origin = points[0]  # small figures keep their digits
+    table = forms @ (points - origin).T
+    table -= np.einsum("ci,ci->c", forms, start - origin)[:, None]
+    return np.asarray(table)

@@ -182,7 +182,7 @@ def _groups(
         if weights == "paper":
             weight = _hat(points[rows], centroids(control)[triangles], reach[triangles])
         else:
-            weight = _gauss(frames.distance2(triangles, u, v, h), sigma)
+            weight = _gauss(frames.distance2(points[rows], triangles, h), sigma)
         total = weight.sum(axis=0)
         weighted = total > 0.0
         weight *= fade[rows] / np.where(weighted, total, 1.0)

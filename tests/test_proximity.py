@@ -35,8 +35,8 @@ def test_distances_and_places_agree_with_trimesh():
     frames, places = Frames.of(SOUP), places_by_trimesh()
     u, v, h = frames.coordinates(POINTS, ALL)
     distance = np.linalg.norm(places - POINTS, axis=2)
-    assert np.sqrt(frames.distance2(ALL, u, v, h)) == pytest.approx(distance, abs=1e-9)
-    at_u, at_v = frames.nearest_place(ALL, u, v)
+    assert np.sqrt(frames.distance2(POINTS, ALL, h)) == pytest.approx(distance, abs=1e-9)
+    at_u, at_v = frames.nearest_place(POINTS, ALL, u, v)
     assert np.abs(in_space(at_u, at_v) - places).max() < 1e-9
     assert min(at_u.min(), at_v.min(), (1.0 - at_u - at_v).min()) >= -1e-12
 
