@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from importlib.resources import files
 
@@ -9,8 +10,10 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+from core import pipeline
 from core.body import Body, read_scan
 from core.control_mesh import ControlMesh, fit_control_mesh
+from core.errors import FitError
 from core.landmarks import find_landmarks
 from core.mesh import Mesh
 from core.patch import Patch, patch_fade, smooth_step
@@ -135,6 +138,16 @@ def test_a_fence_that_does_not_close_is_noticed():
         (),
     )
     assert patch_fade(SHEET, control).rule == "distance"
+
+
+def test_a_control_mesh_whose_border_triangles_move_is_refused():
+    """The points of CONTROL are fixed on the border only."""
+    with pytest.raises(FitError, match="border of the control mesh can move"):
+        pipeline._bind(SHEET, CONTROL, np.ones(len(SHEET.vertices)), "smooth", False)
+    two_rings = (np.abs(CONTROL.column) > 2) | (np.abs(CONTROL.row - 2.5) > 1.0)
+    collared = replace(CONTROL, fixed=two_rings)
+    binding = pipeline._bind(SHEET, collared, np.ones(len(SHEET.vertices)), "smooth", False)
+    assert np.array_equal(binding.points, np.flatnonzero(~two_rings))
 
 
 SAMPLES = pytest.mark.parametrize("name", ["mannequin", "person"])
