@@ -1,7 +1,8 @@
 """What t-FFD costs and how faithful it is: `python benchmarks/bench_tffd.py [scan ...]`, or the samples.
 
-Times are medians on one thread.  For the shape, the free points of the line row are pulled in by 4 mm: how
-far the body follows, which angle this adds between neighbouring faces, and what moves outside the patch.
+Times are medians on one thread, with compiled loops where numba is installed. For the shape, the free points
+of the line row are pulled in by 4 mm: how far the body follows, which angle this adds between neighbouring
+faces, and what moves outside the patch.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from pathlib import Path
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from core import kernels
 from core.body import read_scan
 from core.control_mesh import ControlMesh, fit_control_mesh
 from core.landmarks import find_landmarks
@@ -73,25 +75,27 @@ def measure(path: str) -> None:
     print(f"patch by {patch.rule} in {patch_ms:.0f} ms {patch.reason}")
     points = pulled_in(control, 2, 4.0)
     for weights in ("paper", "smooth"):
-        make = partial(bind, mesh, control.mesh, patch.fade, weights)
+        make = partial(bind, mesh, control.mesh, patch.fade, weights, fixed=control.fixed, single=True)
         bind_ms, binding = median_ms(make, 5), make()
         moved = deform(binding, points)
         moving = moving_faces(mesh, binding.moving)
-        rows = len(binding.moving)
+        rows, places = len(binding.moving), moved[moving.vertices]
+        columns = binding.operator.weights.size / rows
         angles = added_angles(mesh, mesh.moved(moved))
         way = np.linalg.norm(moved - mesh.vertices, axis=1)
         print(
-            f"  {weights:6}  bind {bind_ms:4.0f} ms  {rows} rows of {binding.operator.nnz / rows:.1f}"
+            f"  {weights:6}  bind {bind_ms:4.0f} ms  {rows} rows of {columns:.1f}"
             f"  deform {median_ms(partial(deform_moving, binding, points), 50):.2f} ms"
-            f"  normals {median_ms(partial(moving.normals, moved), 50):.2f} ms"
-            f"  volume {median_ms(partial(moving.volume_change, moved), 50):.2f} ms\n"
+            f"  normals {median_ms(partial(moving.normals, places), 50):.2f} ms"
+            f"  volume {median_ms(partial(moving.volume_change, places), 50):.2f} ms\n"
             f"          follows {way.max() / 4.0:.2f}  leak {way[patch.fade == 0.0].max():.3f} mm"
             f"  angle +{angles.max():.1f}, 99.9 % under {np.quantile(angles, 0.999):.1f} deg"
-            f"  volume {moving.volume_change(moved) / 1e3:+.1f} cm3"
+            f"  volume {moving.volume_change(places) / 1e3:+.1f} cm3"
         )
 
 
 if __name__ == "__main__":
+    kernels.warm()
     with threadpool_limits(1):
         for argument in sys.argv[1:] or sorted(map(str, SAMPLES.glob("*.ply"))):
             measure(argument)
