@@ -172,9 +172,13 @@ def demo(options: argparse.Namespace) -> int:
 
 def figures(options: argparse.Namespace) -> int:
     """Make the figures of the paper from the sample bodies and a sphere, with a page that judges them."""
-    from app.figures import make_figures
+    from app.figures import make_figures, make_some
 
-    make_figures(_folder(options.out), options.only or ())
+    out = _folder(options.out)
+    if options.only:
+        make_some(options.only, out)
+    else:
+        make_figures(out)
     return SETTLED
 
 

@@ -12,7 +12,7 @@ from app.figure_study import BODIES, Study
 from app.figure_style import Figure, write_table
 from core import __version__
 from core.mechanics import DEFAULT_LINE_STIFFNESS
-from core.pipeline import GAIN_SHARE
+from core.pipeline import GAIN_SHARE, Stages
 from core.project import whole_file
 from core.search import RATIOS, Finding, search
 from core.tffd import GAUSS_WIDTH, HAT_RANGE
@@ -32,7 +32,11 @@ def write_page(
     rows = [(c.where, c.statement, c.found, c.verdict) for c in stated]
     write_table(out / "statements.csv", ("section", "the_paper", "here", "verdict"), rows)
     tell(f"  {out / 'statements.csv'}: {len(stated)} statements of the paper beside what was found")
-    found = search(BODIES.values(), study.stages, lambda part: tell(f"  searching: {part}"))
+
+    def build(body: str, template: str, height: float) -> Stages:
+        return study.stages(body, template, line_height=height)
+
+    found = search(BODIES.values(), build, lambda part: tell(f"  searching: {part}"))
     write_table(out / "search.csv", COLUMNS, rows_of(found))
     tell(f"  {out / 'search.csv'}: {len(found)} lines, laws and lengths tried")
 

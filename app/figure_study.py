@@ -10,6 +10,7 @@ import numpy as np
 
 from app.samples import sample_design
 from app.scene_body import bake_occlusion
+from core.design import WornLine
 from core.exact import newton, solve_exact
 from core.mesh import Floats, Points
 from core.pipeline import Stages, build, targets_of
@@ -48,34 +49,40 @@ class Study:
             self.memo[key] = make()
         return self.memo[key]  # type: ignore[no-any-return]
 
-    def stages(self, body: str, template: str | None = None, line_height: float = 0.5) -> Stages:
-        """Return the stages of a sample body with its line on, on the paper's template for it if None."""
+    def stages(self, body: str, template: str | None = None, **choices: Any) -> Stages:
+        """Return the stages of a sample body with its line on, on the paper's template for it if None.
+
+        ``choices`` are other values of the ``Design`` than the default ones.
+        """
         number = template or TEMPLATE[body]
 
         def make() -> Stages:
             other = next((self.memo[key] for key in self.memo if key[:2] == ("stages", body)), None)
-            design = replace(sample_design(body), template=number, line_height=line_height)
-            return build(design, other)
+            return build(replace(sample_design(body), template=number, **choices), other)
 
-        return self._once(("stages", body, number, line_height), make)
+        return self._once(("stages", body, number, *sorted(choices.items())), make)
 
     def occlusion(self, body: str) -> Floats:
         """Return how open the sky is above each vertex of a sample body, for its pictures."""
         return self._once(("occlusion", body), lambda: bake_occlusion(self.stages(body).body.mesh))
 
     def solved(
-        self, body: str, ratio: float, control: str, turns: int | None = None, template: str | None = None
+        self, body: str, ratio: float, control: str, turns: int | None = None, **choices: Any
     ) -> Solution:
-        """Return the paper's line on a body solved at a length ratio under a volume control."""
+        """Return a body solved with the paper's line at a length ratio, under a volume control.
+
+        If ``choices`` has own lines, they are worn in its place, all at that ratio.
+        """
 
         def make() -> Solution:
-            stages = self.stages(body, template)
-            design = replace(stages.design.with_line(LINE, ratio), volume=control)
-            return run(build(design, stages), turns)
+            stages = self.stages(body, **choices)
+            names = [line.name for line in stages.design.own_lines] or [LINE]
+            lines = tuple(WornLine(name, ratio) for name in names)
+            return run(build(replace(stages.design, lines=lines, volume=control), stages), turns)
 
-        return self._once(("solved", body, ratio, control, turns, template), make)
+        return self._once(("solved", body, ratio, control, turns, *sorted(choices.items())), make)
 
-    def ratio_for(self, body: str, reached: float) -> float:
+    def ratio_for(self, body: str, reached: float, **choices: Any) -> float:
         """Return the natural length at which the exact line reaches ``reached``, both over its rest length.
 
         The line is a spring: it ends longer than it is set (paper section 3).
@@ -85,11 +92,11 @@ class Study:
             low, high = 0.5, 1.0
             while high - low > 1e-6:
                 ratio = 0.5 * (low + high)
-                too_short = reached_length(self.stages(body), ratio) < reached
+                too_short = reached_length(self.stages(body, **choices), ratio) < reached
                 low, high = (ratio, high) if too_short else (low, ratio)
             return 0.5 * (low + high)
 
-        return self._once(("ratio", body, reached), make)
+        return self._once(("ratio", body, reached, *sorted(choices.items())), make)
 
     def way_to(
         self, body: str, ratio: float, control: str, turns: int, goal: Points
@@ -108,7 +115,7 @@ class Study:
 
     def newton_way(self, body: str, ratio: float, goal: Points) -> Floats:
         """Return over the Newton steps of the exact answer the largest distance to ``goal`` (f, 3) [mm]."""
-        stages = self.stages(body)
+        stages = self.stages(body, volume_of="both")
         ratios = targets_of(stages.design.with_line(LINE, ratio), stages).ratios
         states = [balance.state.moved for balance in newton(stages.model, ratios)]
         return np.array([np.linalg.norm(moved - goal, axis=1).max() for moved in states])

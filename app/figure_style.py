@@ -18,12 +18,13 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as Sheet
 from matplotlib.font_manager import fontManager
 
-from app.tokens import LIGHT
+from app.tokens import LIGHT, LINE_COLORS
 from core.project import whole_file
 
 COLOURS = {
     "conventional": LIGHT.warn_mark,
     "adaptive": LIGHT.accent,
+    "accumulating": LINE_COLORS[2],
     "exact": LIGHT.exact_curve,
     "none": LIGHT.ghost_curve,
     "rest": LIGHT.text_caption,

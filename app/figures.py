@@ -9,6 +9,7 @@ from app.figure_bodies import figure_1, figure_3, figure_5
 from app.figure_map import figure_9
 from app.figure_page import write_page
 from app.figure_side import figure_4
+from app.figure_slings import figure_10
 from app.figure_sphere import figure_2
 from app.figure_study import Study
 from app.figure_style import Figure, print_style
@@ -25,22 +26,31 @@ FIGURES: dict[str, Callable[[Study], Figure]] = {
     "7": figure_7,
     "8": figure_8,
     "9": figure_9,
+    "10": figure_10,
 }
-"""How each figure is drawn, by its number: 1 to 7 are the paper's, 8 and 9 ours."""
+"""How each figure is drawn, by its number: 1 to 7 are the paper's, the others ours."""
 
 
-def make_figures(out: Path, only: Collection[str] = (), tell: Callable[[str], None] = print) -> None:
-    """Write the figures to ``out``, one picture and one CSV each, or those numbered in ``only``.
+def make_figures(out: Path, tell: Callable[[str], None] = print) -> Callable[..., str]:
+    """Write all figures to ``out``, one picture and one CSV each, and the page REPRODUCTION.md on them.
 
-    With all of them comes the page REPRODUCTION.md; ``tell`` hears of every file. Raises UserError.
+    Returns what makes the page again for other places of its pictures, see ``figure_page``; ``tell`` hears
+    of every file. Raises UserError.
     """
-    unknown = sorted(set(only) - FIGURES.keys())
+    study = Study()
+    drawn = [draw(number, study, out, tell) for number in FIGURES]
+    return write_page(out, drawn, study, tell)
+
+
+def make_some(numbers: Collection[str], out: Path, tell: Callable[[str], None] = print) -> None:
+    """Write the figures with these ``numbers`` to ``out``, without the page. Raises UserError."""
+    unknown = sorted(set(numbers) - FIGURES.keys())
     if unknown:
         raise UserError(f"There is no figure {unknown[0]}.", f"Choose among: {', '.join(FIGURES)}.")
     study = Study()
-    drawn = [draw(number, study, out, tell) for number in FIGURES if not only or number in only]
-    if not only:
-        write_page(out, drawn, study, tell)
+    for number in FIGURES:
+        if number in numbers:
+            draw(number, study, out, tell)
 
 
 def draw(number: str, study: Study, out: Path, tell: Callable[[str], None] = print) -> Figure:

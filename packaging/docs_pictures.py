@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from PySide6.QtGui import QImage
 
@@ -14,12 +16,14 @@ off_screen()
 
 from PySide6.QtWidgets import QApplication  # noqa: E402
 
+from app.figures import make_figures  # noqa: E402
 from app.main_window import MainWindow  # noqa: E402
 from app.picture import save_window, settled_window, wait_until  # noqa: E402
 from app.samples import sample_design  # noqa: E402
 from core.design import Design  # noqa: E402
 
-PICTURES = Path(__file__).parent.parent / "docs" / "pictures"
+DOCS = Path(__file__).parent.parent / "docs"
+PICTURES = DOCS / "pictures"
 
 
 def step(name: str) -> Callable[[MainWindow], None]:
@@ -66,6 +70,16 @@ def shrink(path: Path) -> None:
     image.convertToFormat(QImage.Format.Format_Indexed8).save(str(path), quality=0)
 
 
+def figures() -> None:
+    """Draw the figures of the paper again, and write the page on them."""
+    with TemporaryDirectory() as folder:
+        page = make_figures(Path(folder))
+        for drawn in sorted(Path(folder).glob("fig-*.png")):
+            shutil.copy(drawn, PICTURES)
+            shrink(PICTURES / drawn.name)
+    (DOCS / "reproduction.md").write_text(page(pictures="pictures/", tables=False), encoding="utf-8")
+
+
 def main() -> None:
     PICTURES.mkdir(parents=True, exist_ok=True)
     for name, design, options, prepare in SHOTS:
@@ -74,6 +88,7 @@ def main() -> None:
             wait_until(window.is_settled, QApplication.processEvents)
             save_window(window, PICTURES / f"{name}.png")
         print(f"docs/pictures/{name}.png: {(PICTURES / f'{name}.png').stat().st_size // 1024} kB")
+    figures()
 
 
 if __name__ == "__main__":

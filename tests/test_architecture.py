@@ -25,8 +25,8 @@ FLOORS = {
     "seeing": "camera scene_stage scene_body scene_bands scene_control scene",
     "wording": "display tokens words samples model_choices",
     "printing": "figure_style figure_scene figure_study figure_bodies figure_sphere figure_side figure_turns "
-    "figure_map figure_claims figure_search figure_page figures",
-    "asking": "session",
+    "figure_map figure_slings figure_claims figure_search figure_page figures",
+    "asking": "edit session",
     "dress": "icons theme parts",
     "showing": "background canvas overlay pointer viewport live_plot verdict_chip convergence notice "
     "panels.length_slider panels.number_field panels.line_row panels.lines panels.landmarks panels.rail "
