@@ -25,7 +25,7 @@ class Choice:
 
     def words(self, value: Any) -> str:
         """Return the words for a value; one that is none of the options reads as the last."""
-        return dict(self.options).get(value, self.options[-1][1])
+        return next((words for each, words in self.options if each == value), self.options[-1][1])
 
 
 @dataclass(frozen=True)

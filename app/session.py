@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from PySide6.QtCore import QObject, QTimer, Signal
-from PySide6.QtGui import QUndoCommand, QUndoStack
+from PySide6.QtGui import QUndoStack
 
+from app.edit import Edit
 from app.words import number, tr
 from core.design import Design, OwnLine, ScanSource
 from core.errors import UserError
@@ -50,6 +51,7 @@ class Session(QObject):
         self._stage = ""
         self._stage_told = ""
         self._preview: Design | None = None
+        self._told = False
         self._opening: tuple[Design, Path | None, int] | None = None
         self._oldest = 0
         self._revision = 0
@@ -84,6 +86,7 @@ class Session(QObject):
         """Show a length while it is dragged; nothing is committed."""
         if self.design is not None and self._opening is None:
             fresh = self._preview is None
+            self._told = self._told and not fresh
             # As when it is let go: at its rest length a line is off.
             self._preview = self.design.with_line(name, None if at_rest_length(ratio) else ratio)
             self._solver.submit(self._preview, fresh)
@@ -214,7 +217,7 @@ class Session(QObject):
     def _commit(self, after: Design, text: str) -> None:
         previewing, self._preview = self._preview is not None, None
         if after != self.design and self.design is not None:
-            self.undo_stack.push(_Edit(self, self.design, after, text, shown=previewing))
+            self.undo_stack.push(Edit(self, self.design, after, text, shown=previewing))
         elif previewing and self.design is not None:
             self._submit(self.design)
 
@@ -253,41 +256,26 @@ class Session(QObject):
             self._opening = None
             if self.design is not None:
                 self._submit(self.design)
+        elif failure.revision > self._revision and self._preview is not None:
+            # One notice for a drag is enough, however far it goes on.
+            told, self._told = self._told, True
+            if told:
+                return
         elif failure.revision == self._revision and self.undo_stack.canUndo():
             # The edit cannot be carried out: it leaves the history as if it had not been made.
             edit = self.undo_stack.command(self.undo_stack.index() - 1)
-            if isinstance(edit, _Edit) and edit.after is self.design:
+            if isinstance(edit, Edit) and edit.after is self.design:
                 before = edit.before
                 edit.setObsolete(True)
                 # Qt drops an obsolete command without undoing it.
                 self.undo_stack.undo()
                 self.take(before)
+                told, self._told = self._told, False
+                if told:
+                    return
         self.failed.emit(failure.error)
 
 
 def at_rest_length(ratio: float) -> bool:
     """Tell whether a ratio is 100 % as it is shown: a line there is off."""
     return abs(ratio - 1.0) < 5e-6
-
-
-class _Edit(QUndoCommand):
-    """One edit: the design before and after. The first redo after a drag keeps the run that the preview
-    began.
-    """
-
-    def __init__(self, session: Session, before: Design, after: Design, text: str, shown: bool) -> None:
-        super().__init__(text)
-        self._session = session
-        self.before = before
-        self.after = after
-        self._shown = shown
-
-    def redo(self) -> None:
-        if self._shown:
-            self._shown = False
-            self._session.settle_preview(self.after)
-        else:
-            self._session.take(self.after)
-
-    def undo(self) -> None:
-        self._session.take(self.before)

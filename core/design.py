@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from itertools import pairwise
@@ -114,9 +115,9 @@ class Design:
                     f"Stay between {100 * RATIO_LIMITS[0]:.0f} and {100 * RATIO_LIMITS[1]:.0f} %.",
                 )
         names = [line.name for line in self.own_lines]
-        for line in self.own_lines:
-            if names.count(line.name) > 1:
-                raise LineError(f"There are two lines '{line.name}'.", "Give each line a name of its own.")
+        for name in names:
+            if names.count(name) > 1:
+                raise LineError(f"There are two lines '{name}'.", "Give each line a name of its own.")
 
     def _check_words(self) -> None:
         for value, choices, what in (
@@ -182,6 +183,15 @@ class Design:
         others = [line for line in self.lines if line.name != name]
         worn = [*others, WornLine(name, ratio)] if ratio is not None else others
         return replace(self, lines=tuple(sorted(worn, key=lambda line: line.name)))
+
+
+def cannot_hold(design: Design) -> LineError:
+    """Return what to say when there is no balance with the lines held at the lengths of a design."""
+    line = max(design.lines, key=lambda line: abs(math.log(line.ratio)), default=WornLine("The line", 1.0))
+    return LineError(
+        f"{line.name} cannot be held at {100 * line.ratio:.1f} % of its rest length.",
+        "Set it nearer to 100 %, or let lines spring back.",
+    )
 
 
 def to_json(design: Design) -> str:

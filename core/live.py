@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from threadpoolctl import threadpool_limits
 
 from core.comparison import Comparison
-from core.design import Design
+from core.design import Design, cannot_hold
 from core.errors import UserError
 from core.mesh import Points
 from core.pipeline import Stages, build, targets_of
@@ -142,9 +142,11 @@ class LiveSolver:
                     if request is not None:
                         asked = request.revision
                         self._take(request)
+                        self._refuse_what_cannot_be_held()
                         # Only now: the frames after a failure are still those of the design before it.
                         taken = asked
                     self._advance()
+                    self._refuse_what_cannot_be_held()
                     if self._stages is not None and self._comparison is not None:
                         self._publish(make_frame(taken, self._stages, self._comparison, self._seconds))
                 except UserError as error:
@@ -188,6 +190,15 @@ class LiveSolver:
             else:
                 comparison.advance()
                 self._seconds += time.perf_counter() - start
+
+    def _refuse_what_cannot_be_held(self) -> None:
+        """Rather than a body torn apart by lines that no balance can hold, the last frame stays."""
+        comparison, stages = self._comparison, self._stages
+        if comparison is None or stages is None or stages.design.line_hold != "held":
+            return
+        if not comparison.exact.found or (comparison.main and not comparison.main.sane):
+            self._comparison = None
+            raise cannot_hold(stages.design)
 
     def _publish(self, frame: Frame) -> None:
         with self._wake:

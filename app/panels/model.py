@@ -119,8 +119,7 @@ class ModelPanel(QWidget):
         title = label(setting.title, "secondary")
         for each in (title, field):
             each.setToolTip(f"<p>{setting.tip}</p>")  # a paragraph wraps
-        field.focusProxy().setAccessibleName(setting.title)
-        field.focusProxy().setAccessibleDescription(setting.tip)
+        field.describe(setting.title, setting.tip)
         row = QWidget()
         line = QHBoxLayout(row)
         line.setContentsMargins(0, 0, 0, 0)

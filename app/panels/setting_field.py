@@ -26,11 +26,17 @@ class Field(QWidget):
         """Show a value; nothing is emitted."""
         raise NotImplementedError
 
+    def describe(self, title: str, tip: str) -> None:
+        """Tell those who do not see the title what this is."""
+        self._inside.setAccessibleName(title)
+        self._inside.setAccessibleDescription(tip)
+
     def hold(self, widget: QWidget) -> None:
         """Put the widget that does it inside, and let it have the focus."""
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.addWidget(widget)
+        self._inside = widget
         self.setFocusProxy(widget)
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
 

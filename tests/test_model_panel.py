@@ -1,0 +1,179 @@
+"""How the model works, chosen in the real window: what each choice does, and that it can be taken back."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from window_tools import Script, points, run_main, settled
+
+from app.main_window import MainWindow
+from app.model_choices import consequences, defaults, groups, summary
+from app.panels.setting_field import AmountField, MenuField, SegmentField
+from core.design import Design, OwnLine, ScanSource
+from core.live import Frame
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+def choose(window: MainWindow, key: str, value: Any) -> None:
+    """Choose a value as a hand does."""
+    field = window.model.fields[key]
+    if isinstance(field, SegmentField):
+        name = next(name for name, each in field._values.items() if each == value)
+        field.segment.button(name).click()
+    elif isinstance(field, MenuField):
+        field.actions_by_value[value].trigger()
+    elif isinstance(field, AmountField):
+        field.edit.selectAll()
+        field.edit.insert(str(value))
+        field.edit.editingFinished.emit()
+
+
+def frame_of(window: MainWindow) -> Frame:
+    frame = window.session.frame
+    assert frame is not None
+    return frame
+
+
+def bust_points(window: MainWindow) -> float:
+    """Return the mean height of the bust points over their rest [mm]."""
+    now, rest = frame_of(window).marks, frame_of(window).stages.rest_marks
+    return 0.5 * (now.nipple_left_z + now.nipple_right_z - rest.nipple_left_z - rest.nipple_right_z)
+
+
+def test_a_sliding_line_lifts_the_bust_points_and_undo_brings_the_old_result_back() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        window.actions_.model.trigger()
+        assert window.inspector.currentWidget() is window.model
+        choose(window, "volume", "exact")
+        yield settled(window)
+        at_start, glued = points(window).copy(), bust_points(window)
+        choose(window, "line_contact", "sliding")
+        yield settled(window)
+        assert bust_points(window) > glued + 1.0
+        assert frame_of(window).verdict.state == "settled"
+        assert window.session.undo_stack.undoText() == "Skin contact: Slides over it"
+        assert window.session.undo_stack.count() == 2
+        window.actions_.undo.trigger()
+        yield settled(window)
+        assert np.abs(points(window) - at_start).max() < 1e-6
+        assert window.model._present["line_contact"] == "glued"
+
+    run_main([], script)
+
+
+def test_a_held_line_reaches_its_length() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        choose(window, "line_hold", "held")
+        yield settled(window)
+        assert frame_of(window).verdict.state == "settled"
+        for control in ("adaptive", "exact"):
+            choose(window, "volume", control)
+            yield settled(window)
+            line = next(line for line in frame_of(window).stages.model.lines if line.name == "mid-bust")
+            assert abs(frame_of(window).lengths["mid-bust"] - 0.95 * line.rest_length) < 0.01
+
+    run_main([], script)
+
+
+def test_what_cannot_be_held_is_said_and_the_last_good_state_stays() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        choose(window, "line_contact", "sliding")
+        choose(window, "line_hold", "held")
+        yield settled(window)
+        design, at_start = window.session.design, points(window).copy()
+        window.lines.length_previewed.emit("mid-bust", 0.76)
+        window.lines.length_previewed.emit("mid-bust", 0.75)
+        yield lambda: window.notices.notice() is not None
+        window.lines.length_committed.emit("mid-bust", 0.75)
+        yield lambda: window.session.design == design and window.is_settled()
+        notice = window.notices.notice()
+        assert notice is not None
+        assert "mid-bust cannot be held at 7" in notice.sentence
+        assert not window.notices._waiting
+        assert np.abs(points(window) - at_start).max() < 0.2
+        assert window.session.undo_stack.count() == 2
+        assert window.lines.rows["mid-bust"].slider.ratio() == pytest.approx(0.95)
+
+    run_main([], script)
+
+
+def test_every_setting_is_one_step_and_the_reset_brings_back_all() -> None:
+    wanted = {
+        "line_height": ("60", 0.6),
+        "line_stiffness": ("8", 8.0),
+        "firm_chest": (0.1, 0.1),
+        "member_law": ("prestressed", "prestressed"),
+        "prestress": ("70", 0.7),
+        "weights": ("paper", "paper"),
+        "scaled_normals": (True, True),
+        "volume_of": ("both", "both"),
+        "dense_volume": (True, True),
+        "gain": ("1,2", 1.2),
+        "volume": ("conventional", "conventional"),
+    }
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        steps = window.session.undo_stack
+        for count, (key, (typed, value)) in enumerate(wanted.items(), start=1):
+            choose(window, key, typed)
+            assert steps.count() == count, key
+            assert getattr(window.session.design, key) == value
+        yield settled(window)
+        assert frame_of(window).stages.gain == 1.2
+        assert window.model.fields["gain"].edit.text() == "1.20"
+        window.model._reset.click()
+        yield settled(window)
+        assert steps.undoText() == "Model reset to defaults"
+        assert not window.model._reset.isEnabled()
+        assert all(getattr(window.session.design, key) == value for key, value in defaults().items())
+
+    run_main([], script)
+
+
+def test_what_cannot_be_is_refused_and_the_field_shows_what_is() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        choose(window, "line_stiffness", "700")
+        notice = window.notices.notice()
+        assert notice is not None
+        assert "out of range" in notice.sentence
+        assert window.model.fields["line_stiffness"].edit.text() == "16.0"
+        choose(window, "line_stiffness", "soft")
+        assert window.model.fields["line_stiffness"].edit.text() == "16.0"
+        assert window.session.undo_stack.count() == 0
+        window.session.add_own_line(OwnLine("strap", (35, 48, 61)))
+        window.session.choose_template("120")
+        assert window.session.design.template == "168"
+        assert window.actions_.templates["168"].isChecked()
+
+    run_main([], script)
+
+
+def test_forces_one_turn_late_come_with_a_soft_line_and_leave_with_it() -> None:
+    usual = defaults()
+    late = consequences("line_force", "explicit", usual)
+    assert late == {"line_force": "explicit", "line_stiffness": 0.2}
+    assert consequences("line_force", "implicit", usual | late) == {
+        "line_force": "implicit",
+        "line_stiffness": 16.0,
+    }
+    softer = usual | {"line_force": "explicit", "line_stiffness": 0.1}
+    assert consequences("line_force", "implicit", softer) == {"line_force": "implicit"}
+    assert consequences("line_contact", "sliding", usual) == {"line_contact": "sliding"}
+
+
+def test_every_choice_has_its_words_and_the_door_says_what_is_not_usual() -> None:
+    settings = [setting for _, group in groups() for setting in group]
+    values = vars(Design(ScanSource("a.ply")))
+    elsewhere = {"scan", "lines", "own_lines", "unknown", "template"}
+    assert {setting.key for setting in settings} == set(values) - elsewhere
+    assert all(setting.tip.endswith(".") and setting.words(values[setting.key]) for setting in settings)
+    assert summary(values) == "Sticks to the skin · Springs back"
+    assert summary(values | {"firm_chest": 0.3}) == "Sticks to the skin · Springs back · Firm"
