@@ -197,12 +197,15 @@ def measure_views(frame: Frame) -> list[MeasureView]:
     """Return the table of what changed."""
     rest, now = frame.stages.rest_marks, frame.marks
     volume = frame.stages.model.volume.rest_volume / 1000.0
+    # The body has no volume of its own there: what its skin gains is counted from the same rest volume.
+    skin = frame.stages.moving.volume_change(frame.points) / 1000.0
     rows: Sequence[tuple[str, str, float, float]] = (
         (tr("Apex height"), "mm", rest.apex_z, now.apex_z),
         (tr("Apex protrusion"), "mm", rest.apex_protrusion, now.apex_protrusion),
         (tr("Bust point left, height"), "mm", rest.nipple_left_z, now.nipple_left_z),
         (tr("Bust point right, height"), "mm", rest.nipple_right_z, now.nipple_right_z),
         (tr("Volume of control mesh"), "ml", volume, volume + frame.error_ml),
+        (tr("Volume on the skin"), "ml", volume, volume + skin),
         *(
             (tr("{line}, front part").format(line=line_title(line.name)), "mm", line.rest_length, reached)
             for line, reached in zip(frame.stages.model.lines, frame.lengths.values(), strict=True)

@@ -12,7 +12,6 @@ from core.body_volume import solve_body_exact
 from core.comparison import judge_balance, shape_of
 from core.exact import NEWTON_LIMIT, newton
 from core.mesh import Mesh, Points
-from core.moving import volume_change
 from core.pipeline import Stages, targets_of
 from core.solver import Record, State, at_rest, iterate, record
 from core.tffd import deform
@@ -51,10 +50,10 @@ class Solution:
         """The reshaped body."""
         return self.stages.body.mesh.moved(deform(self.stages.binding, self.control_points))
 
-    @cached_property
+    @property
     def body_change(self) -> float:
         """The volume that the body has gained [ml]."""
-        return volume_change(self.stages.body.mesh, self.body.vertices) / 1000.0
+        return float(self.stages.body_change(self.control_points).sum()) / 1000.0
 
 
 def run(stages: Stages, turns: int | None = None) -> Solution:

@@ -7,6 +7,7 @@ import pytest
 from shapes import torso
 
 from core.comparison import MOST_TURNS, Comparison, judge_balance
+from core.condition import rest_shape
 from core.exact import solve_exact
 from core.gain import gain_limit
 from core.model import constrained_model
@@ -243,3 +244,20 @@ def test_accumulating_joins_when_it_is_chosen():
     finish(comparison)
     assert comparison.verdict.motion == "settled"
     assert abs(comparison.main.records[-1].error) < 1e-5
+
+
+@pytest.mark.parametrize("control", ["adaptive", "exact"])
+def test_a_shape_that_strains_changes_the_word_and_not_when_a_run_rests(control):
+    comparison = Comparison(MODEL, targets(0.5, control))
+    finish(comparison)
+    assert comparison.verdict.motion == "settled"
+    assert comparison.verdict.state == "overstrained"
+    shape = rest_shape(torso().mesh, torso().fixed)
+    points = MODEL.tensegric.expand(comparison.shown.moved)
+    assert comparison.verdict.condition == shape.condition(points)
+    before = comparison.shown.moved
+    comparison.retarget(MODEL, targets(0.48, control))
+    assert control == "exact" or np.array_equal(comparison.shown.moved, before), "it goes on from there"
+    comparison.retarget(MODEL, targets(0.97, control))
+    finish(comparison)
+    assert comparison.verdict.state == "settled"

@@ -1,0 +1,51 @@
+"""What the command line says of a shape that no body has."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+import trimesh
+
+from app.cli import main
+
+
+@pytest.mark.parametrize(
+    ("line", "code", "state", "sentence"),
+    [
+        ("97%", 0, "settled", ""),
+        (
+            "80%",
+            0,
+            "overstrained",
+            "rest lengths. It does not tell how a body would look. Set mid-bust longer.",
+        ),
+        ("60%", 3, "folded", "degrees. It does not tell how a body would look. Set mid-bust longer."),
+    ],
+)
+def test_a_shape_that_is_no_body_is_named_and_the_line_to_blame(
+    mannequin: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    line: str,
+    code: int,
+    state: str,
+    sentence: str,
+) -> None:
+    words = ["solve", str(mannequin), "--line", f"mid-bust={line}", "--line", "full-bust=99.5%"]
+    assert main([*words, "--volume", "exact", "--out", str(tmp_path)]) == code
+    said = capsys.readouterr()
+    figures = json.loads((tmp_path / "report.json").read_text("utf-8"))
+    assert (figures["motion"], figures["state"]) == ("settled", state)
+    assert ("settled" if state == "settled" else f"settled but {state}") in said.out
+    assert sentence in said.err
+    assert said.err.count("\n") == (1 if sentence else 0)
+    shape = figures["condition"]
+    assert (shape["folded"], shape["overstrained"]) == (state == "folded", state != "settled")
+    assert shape["shortest_edge_percent"] < 100.0 < shape["longest_edge_percent"]
+    assert abs(figures["volume"]["error_percent"]) < 1e-6
+    before, after = (trimesh.load(path, process=False) for path in (mannequin, tmp_path / "body.ply"))
+    assert figures["volume"]["body_change_ml"] == pytest.approx(
+        (after.volume - before.volume) / 1e3, abs=0.05
+    )
