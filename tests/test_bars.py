@@ -219,6 +219,28 @@ def test_the_strip_says_the_verdict(strip: Strip, qtbot: QtBot) -> None:
     assert set(TONES) == {*STATES, "stale", "paused"}
 
 
+def test_the_strip_says_what_to_do_about_a_fold(strip: Strip) -> None:
+    strip.set_run({"adaptive": run(np.linspace(0.0, 2.0, 50))}, "adaptive", None)
+    high = strip.height()
+    strip.set_verdict(Said("folded", hint="The skin folds over. Set Mid-bust longer."))
+    QApplication.processEvents()
+    hints = [label for label in strip.findChildren(QLabel) if label.text().endswith("Mid-bust longer.")]
+    assert [label.isVisible() for label in hints] == [True, False], "unfolded now, on one line when folded"
+    assert strip.height() == high
+    strip.set_folded(True)
+    assert [label.isVisible() for label in hints] == [False, True]
+
+
+@pytest.mark.parametrize("settling", [False, True])
+def test_the_range_of_the_plots_only_grows_while_a_run_settles_whatever_its_word(
+    strip: Strip, settling: bool
+) -> None:
+    for top in (4.0, 2.0):
+        strip.set_verdict(Said("overstrained", settling=settling))
+        strip.set_run({"adaptive": run(np.linspace(0.0, top, 50))}, "adaptive", None)
+    assert strip.error_plot.value_range()[1] == pytest.approx(4.0 if settling else 2.0)
+
+
 @pytest.mark.parametrize(("state", "token"), [("settled", "accent"), ("vibrating", "warn_mark")])
 def test_a_vibrating_run_is_amber(strip: Strip, state: str, token: str) -> None:
     strip.set_verdict(Said(state))
