@@ -82,13 +82,13 @@ def updates(
     binding: Binding, double: Binding, moving: MovingFaces, tapes: Tapes, points: Points
 ) -> dict[str, Work]:
     """Give what is done in a frame, in the forms compared."""
-    operator, wide = (each.operator.onto(moving.moving) for each in (binding, double))
+    operator, wide = binding.operator, double.operator
     change, rest = binding.change(points), moving.rest
     places = operator.added(change, rest)
     rows = binding.operator.of_rows(np.arange(len(binding.moving)))
     dense = rows.toarray().astype(np.float32)
     single = change.astype(np.float32)
-    tables = operator.weights, operator.starts, operator.columns, operator.rows
+    tables = operator.weights, operator.starts, operator.columns
 
     def frame() -> None:
         now = operator.added(binding.change(points), rest)
@@ -192,9 +192,7 @@ def measure(name: str, mesh: Mesh, control: ControlMesh, marks: Landmarks) -> No
     found = medians(works | others(binding, moving, points), 25 if len(mesh.vertices) < 500_000 else 11)
     found |= medians(once, 5 if len(mesh.vertices) < 100_000 else 3)
     bandwidth = 2e-6 * block.nbytes / found.pop("copy")
-    read = (
-        operator.weights.nbytes + operator.rows.nbytes + 2 * len(binding.moving) * 24 + 2 * moving.rest.nbytes
-    )
+    read = operator.weights.nbytes + 2 * len(binding.moving) * 24 + 2 * moving.rest.nbytes
     floor = 1e-6 * read / bandwidth
     print(
         f"  memory {bandwidth:.1f} GB/s: the {1e-6 * read:.1f} MB of an update take {floor:.3f} ms at least"

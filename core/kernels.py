@@ -60,11 +60,11 @@ def _compiled() -> Mapping[str, Callable[..., Any]]:
         # Our values are read-only arrays; numba takes others for these as well, but not the reverse.
         return types.Array(dtype, dimensions, "C", readonly=True)
 
-    points, corners, rows = given(types.float64, 2), given(types.int64, 2), given(types.int64, 1)
+    points, corners, columns = given(types.float64, 2), given(types.int64, 2), given(types.int64, 1)
     starts, flags, out = given(types.int64, 2), given(types.boolean, 1), types.float64[:, ::1]
     signatures = {
         blend_loop: [
-            types.void(given(kind, 1), starts, rows, rows, given(kind, 2), out)
+            types.void(given(kind, 1), starts, columns, given(kind, 2), out)
             for kind in (types.float32, types.float64)
         ],
         normals_loop: [types.void(points, corners, points, out)],
@@ -75,39 +75,35 @@ def _compiled() -> Mapping[str, Callable[..., Any]]:
     }
 
 
-def blend(
-    weights: Weights, starts: Indices, columns: Indices, rows: Indices, change: Points, rest: Points
-) -> Points:
-    """Return ``rest``, shape (r, 3) [mm], with a sum of ``change`` added to some rows: t-FFD in delta form.
+def blend(weights: Weights, starts: Indices, columns: Indices, change: Points, rest: Points) -> Points:
+    """Return ``rest``, shape (r, 3) [mm], with sums of ``change`` added to its first rows: t-FFD as deltas.
 
     Rows that the same columns change form a group, so that the inner loop runs over rows. Group g has the
-    ``rows[r:s]`` and the ``columns[c:d]``; its weights, shape (d - c, s - r), lie at ``weights[w:x]``, where
+    rows r to s and the ``columns[c:d]``; its weights, shape (d - c, s - r), lie at ``weights[w:x]``, where
     (r, c, w) and (s, d, x) are the rows g and g + 1 of ``starts``, shape (groups + 1, 3). ``change`` has
     shape (all columns, 3). Sums are made in the precision of ``weights``.
     """
     change = change.astype(weights.dtype)
     loop = _forms.loops.get("blend_loop")
     if loop is None:
-        return blend_plain(weights, starts, columns, rows, change, rest)
+        return blend_plain(weights, starts, columns, change, rest)
     result = rest.copy()
-    loop(weights, starts, columns, rows, change, result)
+    loop(weights, starts, columns, change, result)
     return result
 
 
-def blend_plain(
-    weights: Weights, starts: Indices, columns: Indices, rows: Indices, change: Any, rest: Points
-) -> Points:
+def blend_plain(weights: Weights, starts: Indices, columns: Indices, change: Any, rest: Points) -> Points:
     """Define ``blend``: one small matrix product a group."""
     change = change[columns].T
-    moved = np.empty((3, len(rows)), weights.dtype)
+    moved = np.empty((3, starts[-1, 0]), weights.dtype)
     for (r, c, w), (s, d, x) in pairwise(starts.tolist()):
         np.matmul(change[:, c:d], weights[w:x].reshape(d - c, s - r), out=moved[:, r:s])
     result = rest.copy()
-    result[rows] += moved.T
+    result[: len(moved.T)] += moved.T
     return result
 
 
-def blend_loop(weights: Any, starts: Any, columns: Any, rows: Any, change: Any, result: Any) -> None:
+def blend_loop(weights: Any, starts: Any, columns: Any, change: Any, result: Any) -> None:
     """Add to ``result``, shape (r, 3), what ``blend_plain`` adds to ``rest``."""
     most = 0
     for g in range(len(starts) - 1):
@@ -127,10 +123,9 @@ def blend_loop(weights: Any, starts: Any, columns: Any, rows: Any, change: Any, 
                 z[j] += weight[j] * dz
             at += count
         for j in range(count):
-            row = rows[first + j]
-            result[row, 0] += x[j]
-            result[row, 1] += y[j]
-            result[row, 2] += z[j]
+            result[first + j, 0] += x[j]
+            result[first + j, 1] += y[j]
+            result[first + j, 2] += z[j]
 
 
 def normals(points: Points, corners: Indices, still: Points) -> Points:

@@ -15,16 +15,15 @@ from core.mesh import Flags, Floats, Indices, Mesh, Points, frozen, incidence
 class MovingFaces:
     """The faces of a body that move with some of its vertices; made by ``moving_faces``.
 
-    ``vertices`` are all corners of these faces, shape (r,), ascending: the vertices whose normals change;
-    ``moving`` are the places among them of those that move, shape (k,). ``corners`` (3, a) are the faces, as
-    places in ``vertices``, and ``left`` (a,) tells which lie on the subject's left at rest. ``still`` is
-    twice the area vectors of the other faces there, shape (r, 3) [mm^2]. Below, ``places`` are those of
-    ``vertices``, shape (r, 3) [mm].
+    ``vertices`` are all corners of these faces, shape (r,), whose normals change; the first ``count`` are
+    those that move. ``corners`` (3, a) are the faces, as places in ``vertices``, and ``left`` (a,) tells
+    which lie on the subject's left of ``middle`` [mm] at rest. ``still`` is twice the area vectors of the
+    other faces there, shape (r, 3) [mm^2]. Below, ``places`` are those of ``vertices``, shape (r, 3) [mm].
     """
 
     body: Mesh
     vertices: Indices
-    moving: Indices
+    count: int
     corners: Indices
     left: Flags
     still: Points
@@ -67,7 +66,7 @@ class MovingFaces:
 
 
 def moving_faces(body: Mesh, vertices: Indices, middle: float | None = None) -> MovingFaces:
-    """Collect the faces of ``body`` that have a corner among ``vertices``, shape (k,).
+    """Collect the faces of ``body`` that have a corner among ``vertices``, shape (k,), none of them twice.
 
     Left is where the centroid of a face has x > ``middle`` [mm]; that of the vertices if None.
     """
@@ -76,20 +75,22 @@ def moving_faces(body: Mesh, vertices: Indices, middle: float | None = None) -> 
     touched = moves[body.faces].any(axis=1)
     concerned = moves.copy()
     concerned[body.faces[touched]] = True
-    corners = np.flatnonzero(concerned)
+    corners = np.concatenate([vertices, np.flatnonzero(concerned & ~moves)])
     if middle is None:
         middle = float(body.vertices[corners, 0].sum() / max(len(corners), 1))
-    place = np.cumsum(concerned) - 1
+    place = np.full(len(body.vertices), -1)
+    place[corners] = np.arange(len(corners))
     others = ~touched & concerned[body.faces].any(axis=1)
     gather = incidence(body.faces[others], len(body.vertices))[corners]
-    faces = body.faces[touched].T
-    faces = np.ascontiguousarray(faces[:, np.argsort(faces.min(axis=0), kind="stable")])  # as vertices lie
+    faces = place[body.faces[touched]].T
+    # In the order of their vertices: what lies together in space then lies together in memory.
+    faces = np.ascontiguousarray(faces[:, np.argsort(faces.min(axis=0), kind="stable")])
     return MovingFaces(
         body,
         corners,
-        place[vertices],
-        place[faces],
-        body.vertices[faces, 0].mean(axis=0) > middle,
+        len(vertices),
+        faces,
+        body.vertices[corners[faces], 0].mean(axis=0) > middle,
         frozen(2.0 * (gather @ body.area_vectors[others])),
         middle,
     )

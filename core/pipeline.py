@@ -25,7 +25,7 @@ from core.patch import Patch, patch_fade
 from core.project import ScanFile, read_scan_file
 from core.solver import Marks, Targets
 from core.template import read_template
-from core.tffd import Binding, Operator, Weights, bind, uncollared
+from core.tffd import Binding, Weights, bind, uncollared
 from core.watch import BodyWatch
 
 GAIN_SHARE = 0.97
@@ -73,17 +73,13 @@ class Stages:
 
         ``control_points`` have shape (n, 3) [mm].
         """
-        places = self._operator.added(self.binding.change(control_points), self.moving.rest)
+        places = self.binding.operator.added(self.binding.change(control_points), self.moving.rest)
         return places, self.moving.normals(places)
 
     def body_change(self, control_points: Points) -> Floats:
         """Return the volumes that the body's left and right have gained since rest, shape (2,) [mm^3]."""
-        places = self._operator.added(self.binding.change(control_points), self.moving.rest)
+        places = self.binding.operator.added(self.binding.change(control_points), self.moving.rest)
         return self.moving.side_volume_changes(places)
-
-    @cached_property
-    def _operator(self) -> Operator:
-        return self.binding.operator.onto(self.moving.moving)
 
 
 class _Stager:

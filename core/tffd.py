@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, Literal
@@ -39,36 +39,32 @@ class Operator:
     weights: kernels.Weights
     starts: Indices
     columns: Indices
-    rows: Indices
 
     def added(self, change: Floats, rest: Points) -> Points:
-        """Return ``rest``, shape (k, 3) [mm], plus the operator times ``change``, (columns, 3)."""
-        return kernels.blend(self.weights, self.starts, self.columns, self.rows, change, rest)
+        """Return ``rest``, shape (r, 3) [mm], plus the operator times ``change``, (columns, 3).
 
-    def onto(self, places: Indices) -> Operator:
-        """Return the operator with its row k at the row ``places[k]`` of a larger rest."""
-        return replace(self, rows=places[self.rows])
+        The rows of the operator are the first rows of ``rest``; those after them stay.
+        """
+        return kernels.blend(self.weights, self.starts, self.columns, change, rest)
 
     def of_rows(self, rows: Indices) -> sparse.csr_array:
         """Return a few of its rows as a matrix, shape (rows, columns)."""
-        each, back = np.unique(rows, return_inverse=True)  # a row may be asked for twice
-        at = np.full(len(self.rows), -1)
-        at[each] = np.arange(len(each))
-        dense = np.zeros((len(each), int(self.columns.max(initial=-1)) + 1))
+        at = np.full(self.starts[-1, 0], -1)
+        at[rows] = np.arange(len(rows))
+        dense = np.zeros((len(rows), int(self.columns.max(initial=-1)) + 1))
         for (r, c, w), (s, d, x) in pairwise(self.starts.tolist()):
-            wanted = at[self.rows[r:s]]
-            chosen = wanted >= 0
+            chosen = np.flatnonzero(at[r:s] >= 0)
             table = self.weights[w:x].reshape(d - c, s - r)
-            dense[np.ix_(wanted[chosen], self.columns[c:d])] = table[:, chosen].T
-        return sparse.csr_array(dense[back])
+            dense[np.ix_(at[r:s][chosen], self.columns[c:d])] = table[:, chosen].T
+        return sparse.csr_array(dense)
 
 
 @dataclass(frozen=True, eq=False)
 class Binding:
     """How the vertices of a body follow its control mesh: a linear operator on what the control mesh changes.
 
-    ``moving`` are the vertices that can move, shape (k,), ascending: the rows of ``operator``. Its columns
-    are what can change: the control points ``points`` (p,), then the normals of the control triangles
+    ``moving`` are the vertices that can move, shape (k,): the rows of ``operator``, neighbours together. Its
+    columns are what can change: the control points ``points`` (p,), then the normals of the control triangles
     ``triangles`` (t,).
     """
 
@@ -135,17 +131,14 @@ def bind(
     can_change = np.concatenate([free, free[control.faces].any(axis=1)])
     candidates = np.flatnonzero(fade > 0.0)
     groups = list(_groups(body.vertices[candidates], fade[candidates], control, weights, can_change))
-    rows = _joined([group.rows for group in groups], np.int64)
-    kept = np.sort(rows)
     sizes = [(*group.table.shape[::-1], group.table.size) for group in groups]
     operator = Operator(
         _joined([group.table.ravel() for group in groups], np.float32 if single else np.float64),
         frozen(np.cumsum([(0, 0, 0), *sizes], axis=0), np.int64).view(np.int64),
         _joined([group.columns for group in groups], np.int64),
-        frozen(np.searchsorted(kept, rows), np.int64).view(np.int64),
     )
     points, triangles = np.split(np.flatnonzero(can_change), [int(free.sum())])
-    moving = _joined([candidates[kept]], np.int64)
+    moving = _joined([candidates[group.rows] for group in groups], np.int64)
     return Binding(body, control, moving, points, triangles - len(free), operator, scaled_normals)
 
 

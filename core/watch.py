@@ -99,7 +99,7 @@ class Tapes:
 
 def _still(moving: MovingFaces) -> Mesh:
     moves = np.zeros(len(moving.body.vertices), dtype=bool)
-    moves[moving.vertices[moving.moving]] = True
+    moves[moving.vertices[: moving.count]] = True
     return Mesh(moving.body.vertices, moving.body.faces[~moves[moving.body.faces].any(axis=1)])
 
 

@@ -20,21 +20,20 @@ STILL = RANDOM.normal(scale=500.0, size=(70, 3))
 
 
 def tables(dtype: type) -> tuple[np.ndarray, ...]:
-    """Five groups over 60 of 70 rows, with 1 to 9 of 20 columns; one group has no column, one no row."""
+    """Five groups over 60 of 70 rows, with 4 to 9 of 20 columns; one group has no column, one no row."""
     sizes = [(0, 0, 0), (11, 4, 44), (1, 9, 9), (30, 0, 0), (0, 3, 0), (18, 7, 126)]
     starts = np.cumsum(sizes, axis=0)
     columns = np.concatenate([RANDOM.permutation(20)[:count] for _, count, _ in sizes[1:]])
-    rows = RANDOM.permutation(70)[:60]
     weights = RANDOM.normal(size=starts[-1, 2]).astype(dtype)
-    return weights, starts, columns, rows, RANDOM.normal(scale=9.0, size=(20, 3)), POINTS
+    return weights, starts, columns, RANDOM.normal(scale=9.0, size=(20, 3)), POINTS
 
 
-def matrix(weights, starts, columns, rows, *_) -> np.ndarray:
+def matrix(weights, starts, columns, *_) -> np.ndarray:
     whole = np.zeros((70, 20))
     for (r, c, w), (s, d, _) in pairwise(starts):
         for j in range(r, s):
             for i in range(c, d):
-                whole[rows[j], columns[i]] += weights[w + (i - c) * (s - r) + j - r]
+                whole[j, columns[i]] += weights[w + (i - c) * (s - r) + j - r]
     return whole
 
 
@@ -55,11 +54,9 @@ def form(request, monkeypatch):
 @pytest.mark.parametrize(("dtype", "error"), [(np.float64, 1e-12), (np.float32, 1e-5)])
 def test_blend_adds_a_matrix_product(form, dtype, error):
     given = tables(dtype)
-    wanted = POINTS + matrix(*given) @ given[4]
+    wanted = POINTS + matrix(*given) @ given[3]
     assert np.abs(kernels.blend(*given) - wanted).max() < error
-    assert np.array_equal(
-        np.delete(kernels.blend(*given), given[3], axis=0), np.delete(POINTS, given[3], axis=0)
-    )
+    assert np.array_equal(kernels.blend(*given)[60:], POINTS[60:])
 
 
 def test_blend_of_no_change_is_rest_bit_for_bit(form):
@@ -70,7 +67,7 @@ def test_blend_of_no_change_is_rest_bit_for_bit(form):
 
 def test_blend_of_nothing(form):
     none = np.empty(0, dtype=np.int64)
-    given = np.empty(0), np.zeros((1, 3), dtype=np.int64), none, none, np.empty((0, 3)), POINTS
+    given = np.empty(0), np.zeros((1, 3), dtype=np.int64), none, np.empty((0, 3)), POINTS
     assert np.array_equal(kernels.blend(*given), POINTS)
 
 

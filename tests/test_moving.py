@@ -28,14 +28,15 @@ def test_normals_are_those_of_the_whole_body():
     assert moving.normals(moving.rest) == pytest.approx(BALL.vertex_normals[moving.vertices], abs=1e-13)
 
 
-def test_the_moving_are_found_again_among_the_corners():
-    moving = moving_faces(BALL, FRONT)
-    assert np.array_equal(moving.vertices[moving.moving], FRONT)
+def test_what_moves_comes_first_as_it_was_given():
+    moving = moving_faces(BALL, FRONT[::-1])
+    assert np.array_equal(moving.vertices[: moving.count], FRONT[::-1])
+    assert len(set(moving.vertices.tolist())) == len(moving.vertices) > moving.count
     assert np.array_equal(moving.rest, BALL.vertices[moving.vertices])
     lonely = Mesh(np.concatenate([BALL.vertices, [[0.0, 0, 0]]]), BALL.faces)
     with_lonely = moving_faces(lonely, np.append(FRONT, len(BALL.vertices)))
-    assert with_lonely.vertices[with_lonely.moving[-1]] == len(BALL.vertices)
-    assert with_lonely.normals(with_lonely.rest)[-1].tolist() == [0.0, 0.0, 0.0]
+    assert with_lonely.vertices[len(FRONT)] == len(BALL.vertices)
+    assert with_lonely.normals(with_lonely.rest)[len(FRONT)].tolist() == [0.0, 0.0, 0.0]
 
 
 def test_no_vertex_that_turns_is_forgotten_and_no_other_taken():

@@ -27,7 +27,7 @@ def moving(request: pytest.FixtureRequest) -> MovingFaces:
 def pushed(moving: MovingFaces) -> np.ndarray:
     places = moving.rest.copy()
     random = np.random.default_rng(7)
-    places[moving.moving] += random.normal((0.0, 8.0, 9.0), 0.5, size=(len(moving.moving), 3))
+    places[: moving.count] += random.normal((0.0, 8.0, 9.0), 0.5, size=(moving.count, 3))
     return places
 
 

@@ -75,7 +75,7 @@ def test_the_hat_of_the_paper_by_hand():
     # The mean radius of both is 2, so the hats end at 5: 1 - 2/5 against 1 - 4/5, alone, and out of reach.
     binding = bind(body, control, np.ones(3), "paper")
     assert deform(binding, lifted)[:, 2] == pytest.approx([0.6 / 0.8, 1.0, 0.0], abs=1e-12)
-    assert binding.moving.tolist() == [0, 1]
+    assert sorted(binding.moving.tolist()) == [0, 1]
 
 
 def test_the_smooth_weights_by_hand():
@@ -135,15 +135,15 @@ def test_what_cannot_change_is_left_out_and_changes_nothing(weights):
 
 
 @BOTH
-def test_a_few_rows_as_a_matrix_and_all_of_them_elsewhere(weights):
+def test_a_few_rows_as_a_matrix_and_all_of_them_before_others(weights):
     binding = bind(BODY, CONTROL, FULL, weights, fixed=RING)
     moved, rows = shaken(CONTROL), np.array([700, 3, 41])
     ours = binding.rest_moving[rows] + binding.operator.of_rows(rows) @ binding.change(moved)
     assert np.abs(ours - deform_moving(binding, moved)[rows]).max() < 1e-11
-    doubled = np.repeat(BODY.vertices, 2, axis=0)
-    spread = binding.operator.onto(2 * np.arange(len(BODY.vertices))).added(binding.change(moved), doubled)
-    assert np.array_equal(spread[::2], deform(binding, moved))
-    assert np.array_equal(spread[1::2], BODY.vertices)
+    longer = np.concatenate([binding.rest_moving, BODY.vertices[:5]])
+    places = binding.operator.added(binding.change(moved), longer)
+    assert np.array_equal(places[:-5], deform_moving(binding, moved))
+    assert np.array_equal(places[-5:], BODY.vertices[:5])
 
 
 @BOTH
@@ -186,7 +186,7 @@ def test_fade_scales_the_motion_and_stills_the_rest(weights):
     part = deform(binding, shaken(CONTROL))
     assert np.abs(part - BODY.vertices - fade[:, None] * full).max() < 1e-11
     assert np.array_equal(part[fade == 0.0], BODY.vertices[fade == 0.0])
-    assert np.array_equal(binding.moving, np.flatnonzero(fade))
+    assert np.array_equal(np.sort(binding.moving), np.flatnonzero(fade))
 
 
 @BOTH
