@@ -49,14 +49,15 @@ class Operator:
 
     def of_rows(self, rows: Indices) -> sparse.csr_array:
         """Return a few of its rows as a matrix, shape (rows, columns)."""
+        each, back = np.unique(rows, return_inverse=True)  # a row may be asked for twice
         at = np.full(self.starts[-1, 0], -1)
-        at[rows] = np.arange(len(rows))
-        dense = np.zeros((len(rows), int(self.columns.max(initial=-1)) + 1))
+        at[each] = np.arange(len(each))
+        dense = np.zeros((len(each), int(self.columns.max(initial=-1)) + 1))
         for (r, c, w), (s, d, x) in pairwise(self.starts.tolist()):
             chosen = np.flatnonzero(at[r:s] >= 0)
             table = self.weights[w:x].reshape(d - c, s - r)
             dense[np.ix_(at[r:s][chosen], self.columns[c:d])] = table[:, chosen].T
-        return sparse.csr_array(dense)
+        return sparse.csr_array(dense[back])
 
 
 @dataclass(frozen=True, eq=False)
