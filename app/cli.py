@@ -13,11 +13,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NoReturn
 
-from app.settings import help_text, settings_of
+from app.settings import dressed, help_text, settings_of
 from core import __version__
-from core.design import Design, ScanSource
-from core.errors import LineError, UserError
-from core.lines import length_ratio
+from core.design import Design, ScanSource, cannot_hold
+from core.errors import UserError
 from core.own_lines import HELP, own_line
 from core.project import is_project, open_project
 from core.template import read_template
@@ -100,16 +99,12 @@ def solve(options: argparse.Namespace) -> int:
     if options.volume:
         design = replace(design, volume=options.volume)
     stages = build(design)
-    for request in options.line or []:
-        name, equals, text = request.partition("=")
-        named = (line for line in stages.model.lines if line.name.lower() == name.strip().lower())
-        line = next(named, None)
-        if line is None or not equals:
-            names = ", ".join(line.name for line in stages.model.lines)
-            raise LineError(f"'{request}' names no line.", f"Write NAME=LENGTH; the lines are: {names}.")
-        design = design.with_line(line.name, length_ratio(text, line))
+    design = dressed(design, stages.model.lines, options.line or [])
     out = _folder(options.out)
     solution = run(build(design, stages), options.turns)
+    lost = ("diverging", "settling") if design.volume == "exact" else ("diverging",)
+    if design.line_hold == "held" and solution.verdict.motion in lost:
+        raise cannot_hold(design)
     figures = write_solution(solution, out)
     for sentence in [*still_lines(solution.stages), *shape_warnings(solution)]:
         print(f"busk: {sentence}", file=sys.stderr)
@@ -127,6 +122,28 @@ def solve(options: argparse.Namespace) -> int:
         f"{volume['error_percent']:+.4f} % ({volume['error_ml']:+.2f} ml); written to {out}"
     )
     return SETTLED if verdict.motion == "settled" and verdict.state != "folded" else NOT_SETTLED
+
+
+def limits(options: argparse.Namespace) -> int:
+    """Print how short each line can be made before the body strains, folds or turns inside out."""
+    from app.limits import limits_text
+    from core.limits import all_limits
+    from core.pipeline import build
+
+    design = design_of(options.input, options)
+    stages = build(design)
+    stages = build(dressed(design, stages.model.lines, options.line or []), stages)
+    print(limits_text(list(all_limits(stages)), stages, options.json))
+    return SETTLED
+
+
+def sweep(options: argparse.Namespace) -> int:
+    """Try every volume control on the sample bodies and the sphere, and write what comes of it."""
+    from app.trials import run_trials
+
+    run_trials(_folder(options.out), options.quick)
+    print(f"written to {options.out}")
+    return SETTLED
 
 
 def detect(options: argparse.Namespace) -> int:
@@ -217,28 +234,29 @@ def _window_parser() -> argparse.ArgumentParser:
 
 def _parser(command: str) -> argparse.ArgumentParser:
     parser = _Parser(prog=f"busk {command}", description=COMMANDS[command][0])
-    if command in ("solve", "detect", "picture"):
+    if command in ("solve", "limits", "detect", "picture"):
         parser.add_argument("input", metavar="SCAN_OR_PROJECT", help="PLY, OBJ, STL or .busk")
         parser.add_argument(
             "--unit", choices=("mm", "cm", "m", "inch"), help="the scan's unit, if not guessed well"
         )
         parser.add_argument("--up", help="the scan's axis that points up, like +z")
         parser.add_argument("--front", help="the scan's axis that the body faces, like -y")
-    if command in ("solve", "picture"):
+    if command in ("solve", "limits", "picture"):
         parser.add_argument("--settings", action="append", metavar="KEY=VALUE", help=help_text())
         parser.add_argument("--path", action="append", metavar="NAME=POINTS", help=HELP)
-    if command == "solve":
+    if command in ("solve", "limits"):
         parser.add_argument(
             "--line",
             action="append",
             metavar="NAME=LENGTH",
             help="97%% of the rest length, -20mm shorter, 400mm absolute; of the front part, side to side",
         )
+    if command == "solve":
         parser.add_argument("--volume", choices=CONTROLS)
         parser.add_argument(
             "--turns", type=_turns, metavar="N", help="exactly N turns; else until settled, at most 300"
         )
-    if command == "detect":
+    if command in ("limits", "detect"):
         parser.add_argument("--json", action="store_true", help="print JSON")
     if command == "picture":
         parser.add_argument(
@@ -248,9 +266,11 @@ def _parser(command: str) -> argparse.ArgumentParser:
         parser.add_argument("--dark", action="store_true")
         parser.add_argument("--language", choices=("en", "ja"), default="en")
         parser.add_argument("--size", type=_size, default=(1600, 1000), metavar="WIDTHxHEIGHT")
+    if command == "sweep":
+        parser.add_argument("--quick", action="store_true", help="a few cases only")
     if command == "figures":
         parser.add_argument("--only", action="append", metavar="N", help="this figure alone; may be repeated")
-    if command in ("solve", "picture", "demo", "figures"):
+    if command in ("solve", "picture", "demo", "figures", "sweep"):
         parser.add_argument("--out", required=command != "demo", default="out", metavar="PLACE")
     return parser
 
@@ -270,9 +290,11 @@ def _size(text: str) -> tuple[int, int]:
 
 COMMANDS: dict[str, tuple[str, Callable[[argparse.Namespace], int]]] = {
     "solve": ("solve a design and write body, control mesh, turns and report", solve),
+    "limits": ("tell how short each line can be made", limits),
     "detect": ("find the bust landmarks of a scan", detect),
     "picture": ("render a scan or project to a PNG file", picture),
     "demo": ("do the sample session off-screen and write what comes out", demo),
     "figures": ("make the figures of the paper again, with their tables and a page", figures),
+    "sweep": ("try every volume control on the samples and the sphere, with a table", sweep),
     "self-test": ("check this installation", self_test),
 }

@@ -1,12 +1,13 @@
-"""Settings as they are written on the command line: KEY=VALUE."""
+"""Settings and lines as they are written on the command line: KEY=VALUE, NAME=LENGTH."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from core.design import TEMPLATES, WEIGHTS
-from core.errors import UserError
+from core.design import TEMPLATES, WEIGHTS, Design
+from core.errors import LineError, UserError
+from core.lines import Line, length_ratio
 from core.mechanics import CHOICES, RANGES
 
 WORDS = {**CHOICES, "weights": WEIGHTS, "template": TEMPLATES}
@@ -37,6 +38,18 @@ def settings_of(pairs: Sequence[str]) -> dict[str, Any]:
             )
         values[key] = _READERS[key](key, value)
     return values
+
+
+def dressed(design: Design, lines: Sequence[Line], requests: Sequence[str]) -> Design:
+    """Return a design with the ``lines`` worn as requested: NAME=LENGTH each. Raises LineError."""
+    for request in requests:
+        name, equals, text = request.partition("=")
+        line = next((line for line in lines if line.name.lower() == name.strip().lower()), None)
+        if line is None or not equals:
+            names = ", ".join(line.name for line in lines)
+            raise LineError(f"'{request}' names no line.", f"Write NAME=LENGTH; the lines are: {names}.")
+        design = design.with_line(line.name, length_ratio(text, line))
+    return design
 
 
 def help_text() -> str:

@@ -21,7 +21,7 @@ FLOORS = {
     "mechanics": "mechanics band springs cells tensegric lines volume patch tffd",
     "solving": "condition layout sweep model solver gain potential newton sliding exact body_volume "
     "verdict comparison watch",
-    "document": "design own_lines project pipeline limits search sphere live export solution report",
+    "document": "design own_lines project pipeline limits trial search sphere live export solution report",
     "seeing": "camera scene_stage scene_body scene_bands scene_control scene",
     "wording": "display tokens words samples model_choices",
     "printing": "figure_style figure_scene figure_study figure_bodies figure_sphere figure_side figure_turns "
@@ -31,8 +31,8 @@ FLOORS = {
     "showing": "background canvas overlay pointer viewport live_plot verdict_chip convergence notice "
     "panels.length_slider panels.number_field panels.line_row panels.lines panels.landmarks panels.rail "
     "housekeeping panels.setting_field panels.model panels.result panels.scan panels.status panels.top_bar panels.view_tools",
-    "roof": "present view_area actions recent dialogs application desk main_window window picture demo "
-    "self_test settings cli __main__",
+    "roof": "present view_area actions recent dialogs application desk line_maker main_window window picture demo "
+    "self_test limits trials settings cli __main__",
 }
 CORE = ("ground", "anatomy", "mechanics", "solving", "document")
 NUMBERS = {"numpy", "scipy"}

@@ -1,9 +1,12 @@
 """How short a line can be made: against a scan of the slider, and where there is nothing to find."""
 
+import json
+
 import numpy as np
 import pytest
 from shapes import fitted, torso
 
+from app.cli import main
 from core.comparison import shape_of
 from core.exact import solve_exact
 from core.limits import PRECISION, SIGNS, all_limits, shortest
@@ -116,3 +119,31 @@ def test_every_line_that_moves_anything_is_looked_at_worn_or_not(built):
     alone = constrained_model(fitted("mannequin"), worn=WORN)
     again = shortest(alone, (1.0, 0.97, 1.0), "full-bust")
     assert full.begins["strained"].ratio == pytest.approx(again.begins["strained"].ratio, abs=PRECISION)
+
+
+def test_the_command_prints_a_table_and_the_same_as_json(person, capsys):
+    arguments = ["limits", str(person), "--line", "mid-bust=92%", "--line", "under-bust=95%"]
+    assert main(arguments) == 0
+    said = capsys.readouterr().out
+    assert "mid-bust, at rest" in said
+    assert "already strained" in said
+    assert "under-bust lies on the rib cage" in said
+    assert main([*arguments, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["lines"].keys() == set(WORN)
+    line = found["lines"]["mid-bust"]
+    assert line["present"]["set_percent"] == pytest.approx(92.0)
+    assert (line["beyond"], line["no_balance_below"]) == (["strained"], None)
+    for sign in SIGNS:
+        begins = line["begins"][sign]
+        assert f"{begins['reached_mm']:.1f} mm" in said
+        assert begins["reached_percent"] == pytest.approx(100.0 * begins["reached_mm"] / line["rest_mm"])
+    assert found["lines"]["full-bust"]["present"] is None
+
+
+@pytest.mark.parametrize(
+    "words", [["--line", "wing=90%"], ["--line", "mid-bust=soon"], ["--settings", "a=b"]]
+)
+def test_the_command_says_in_one_sentence_what_is_wrong(person, capsys, words):
+    assert main(["limits", str(person), *words]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
