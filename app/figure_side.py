@@ -29,7 +29,9 @@ def figure_4(study: Study) -> Figure:
     """Draw side views and profiles of the person (paper Fig. 4, a and b)."""
     stages = study.stages(BODY)
     drawn = sheet(6.0)
-    axes = drawn.subplot_mosaic([["rest", "held", "free"], ["p0", "p1", "change"]], height_ratios=(1.0, 1.15))
+    upper, lower = np.ravel(np.asarray(drawn.subfigures(2, 1, height_ratios=(1.0, 1.15))))
+    plots = [*upper.subplots(1, 3), *lower.subplots(1, 3, width_ratios=(1.0, 1.0, 1.5))]
+    axes = dict(zip(("rest", "held", "free", "p0", "p1", "change"), plots, strict=True))
     held, free = (study.solved(BODY, study.ratio_for(BODY, REACHED[0]), c) for c in ("adaptive", "none"))
     pictures = [_picture(study, stages, None), _picture(study, stages, held), _picture(study, stages, free)]
     titles = ("before", "after, volume held", "after, volume free")

@@ -76,7 +76,6 @@ def figures() -> None:
         page = make_figures(Path(folder))
         for drawn in sorted(Path(folder).glob("fig-*.png")):
             shutil.copy(drawn, PICTURES)
-            shrink(PICTURES / drawn.name)
     (DOCS / "reproduction.md").write_text(page(pictures="pictures/", tables=False), encoding="utf-8")
 
 

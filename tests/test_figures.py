@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import csv
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,11 +12,12 @@ import matplotlib.image
 import numpy as np
 import pytest
 
+from app.cli import main
 from app.figure_bodies import figure_1
 from app.figure_page import page_of
 from app.figure_search import Pair, pairs_of, search_words
 from app.figure_side import outward, profile
-from app.figure_study import Study, line_share, reached_length
+from app.figure_study import Study, line_share, moved, reached_length
 from app.figure_style import trimmed
 from app.figures import FIGURES, draw, make_some
 from core.errors import UserError
@@ -166,3 +169,26 @@ def test_the_page_leaves_no_blank(study: Study) -> None:
     assert words["higher_always"] == "mid-bust 0.5, force-density, glued"
     assert words["larger_always"] == "none"
     assert words["pairs"] == "3"
+
+
+def test_the_command_draws_what_is_asked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["figures", "--only", "3", "--out", str(tmp_path)]) == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["fig-3-person.csv", "fig-3-person.png"]
+    assert "Fig. 3" in capsys.readouterr().out
+    assert main(["figures", "--only", "12", "--out", str(tmp_path)]) == 2
+    assert "no figure 12" in capsys.readouterr().err
+
+
+def test_figures_need_no_window() -> None:
+    code = "import sys, app.figures; sys.exit(any(name.startswith('PySide6') for name in sys.modules))"
+    assert subprocess.run([sys.executable, "-c", code], check=False, capture_output=True).returncode == 0
+
+
+def test_the_heights_are_those_of_the_bust_points_on_the_body(study: Study) -> None:
+    solution = study.solved("person", 0.9, "exact")
+    rest = solution.stages.body.mesh.vertices
+    marks = [solution.stages.landmarks.position(f"bust_point_{side}") for side in ("left", "right")]
+    nearest = [int(np.linalg.norm(rest - mark, axis=1).argmin()) for mark in marks]
+    rise = (solution.body.vertices[nearest, 2] - rest[nearest, 2]).mean()
+    assert moved(solution)[0] == pytest.approx(rise, abs=1e-9)
+    assert abs(rise) > 0.1

@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from core.exact import Balance, solve_exact
+from core.mechanics import CONTACTS, HOLDS, LAWS, Mechanics
 from core.mesh import Points
 from core.solver import Targets, iterate
 from core.sphere import SphereModel, sphere_model
@@ -134,3 +135,35 @@ def test_turns_end_at_the_exact_answer() -> None:
     *_, (state, measured) = iterate(ball.model, lambda: Targets(asked("horizontal", 0.8)), turns=1200)
     assert abs(measured.error) < 1e-9
     assert ball.centred(state.moved) == pytest.approx(ball.centred(balance.state.moved), abs=1e-3)
+
+
+@pytest.mark.parametrize("hold", HOLDS)
+@pytest.mark.parametrize("contact", CONTACTS)
+@pytest.mark.parametrize("law", LAWS)
+def test_every_law_narrows_the_sphere_at_constant_volume(law: str, contact: str, hold: str) -> None:
+    mechanics = Mechanics(member_law=law, line_contact=contact, line_hold=hold)
+    ball = sphere_model(("horizontal",), mechanics)
+    balance = solve_exact(ball.model, asked("horizontal", 0.9))
+    points = ball.centred(balance.state.moved)
+    size = np.ptp(points, axis=0)
+    assert balance.found
+    assert size[0] == pytest.approx(size[1], abs=1e-6)
+    assert size[0] < 185.0
+    assert size[2] > 210.0
+    assert ball.model.volume.volume(points) == pytest.approx(ball.model.volume.rest_volume, rel=1e-9)
+    if hold == "held":
+        assert reached(ball, points)["horizontal"] == pytest.approx(0.9, abs=1e-9)
+    else:
+        assert 0.9 < reached(ball, points)["horizontal"] < 0.92
+
+
+def test_two_closed_lines_at_once() -> None:
+    """They cross at two points; both shorten, and the body bulges in the four fields between them."""
+    ball = sphere_model(LINES)
+    balance = solve_exact(ball.model, (0.85, 0.85))
+    points = ball.centred(balance.state.moved)
+    assert balance.found
+    assert all(0.85 < share < 0.9 for share in reached(ball, points).values())
+    apart = np.linalg.norm(points, axis=1)
+    between = np.abs(ball.control.mesh.vertices[:, 1:]).min(axis=1) > 40.0
+    assert apart[between].min() > 103.0
