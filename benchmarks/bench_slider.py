@@ -1,7 +1,9 @@
-"""From a slider's move to the new body: one exact solve, t-FFD and normals, no drawing; and the load.
+"""From a slider's move to the new body: an answer from the last one, t-FFD, normals, girths; no drawing.
 
 Run: python benchmarks/bench_slider.py [SCAN ...]; without a scan the two sample bodies are taken. Prints
-medians [ms] of a drag from 100 % to 85 % and back; every solve starts at rest.
+medians of processor time [ms] on one thread over a drag from 100 % to 85 % and back in 120 moves, for the
+choices of the model that change what an answer costs; then what an answer from rest costs in each place
+of the same drag.
 """
 
 from __future__ import annotations
@@ -20,60 +22,65 @@ from core.design import Design, ScanSource, WornLine
 from core.exact import solve_exact
 from core.pipeline import Stages, build
 from core.solver import Targets, at_rest, turn
+from core.watch import Tapes
 
 SAMPLES = Path(__file__).parent.parent / "resources" / "samples"
+GIRTHS = ("under-bust", "mid-bust", "full-bust")
+CHOICES: dict[str, dict[str, str]] = {
+    "as by default": {},
+    "prestressed": {"member_law": "prestressed"},
+    "co-rotated": {"member_law": "co-rotated"},
+    "sliding": {"line_contact": "sliding"},
+    "held": {"line_hold": "held"},
+}
+HEADS = ("solve", "body", "girths", "frame", "from rest", "turn", "steps")
 
 
 def milliseconds(work: Callable[[], object]) -> float:
-    start = time.perf_counter()
+    start = time.process_time()
     work()
-    return 1000.0 * (time.perf_counter() - start)
+    return 1e3 * (time.process_time() - start)
 
 
 def drag(stages: Stages) -> dict[str, float]:
-    """Medians of the parts of a slider's move over a drag from 100 % to 85 % and back."""
-    ratios = np.concatenate([np.linspace(1.0, 0.85, 60), np.linspace(0.85, 1.0, 60)])
-    parts: dict[str, list[float]] = {"solve": [], "shape": [], "slider": []}
-    for ratio in ratios:
-        start = time.perf_counter()
-        state = solve_exact(stages.model, (1.0, float(ratio), 1.0)).state
-        solved = time.perf_counter()
-        stages.shape(stages.model.tensegric.expand(state.moved))
-        done = time.perf_counter()
-        parts["solve"].append(1000.0 * (solved - start))
-        parts["shape"].append(1000.0 * (done - solved))
-        parts["slider"].append(1000.0 * (done - start))
+    """Medians of the parts of a slider's move."""
+    model, tensegric = stages.model, stages.model.tensegric
+    lines = {line.name: line for line in model.lines}
+    heights = [float(tensegric.rest[lines[name].path, 2].mean()) for name in GIRTHS]
+    tapes = Tapes(stages.moving, heights)
+    parts: dict[str, list[float]] = {name: [] for name in HEADS}
+    balance = solve_exact(model, (1.0, 1.0, 1.0))
+    for ratio in np.concatenate([np.linspace(1.0, 0.85, 61)[1:], np.linspace(0.85, 1.0, 61)[1:]]):
+        ratios = (1.0, float(ratio), 1.0)
+        start = time.process_time()
+        balance = solve_exact(model, ratios, near=balance)
+        solved = time.process_time()
+        places, _ = stages.shape(tensegric.expand(balance.state.moved))
+        shaped = time.process_time()
+        tapes(places)
+        done = time.process_time()
+        parts["solve"].append(1e3 * (solved - start))
+        parts["body"].append(1e3 * (shaped - solved))
+        parts["girths"].append(1e3 * (done - shaped))
+        parts["frame"].append(1e3 * (done - start))
+        parts["steps"].append(balance.steps)
+        parts["from rest"].append(milliseconds(partial(solve_exact, model, ratios)))
+    one = partial(turn, model, Targets((1.0, 0.9, 1.0)), at_rest(model), stages.watch)
+    parts["turn"] = [milliseconds(one) for _ in range(99)]
     return {name: statistics.median(values) for name, values in parts.items()}
-
-
-def figures(scan: str) -> list[float]:
-    """Load [s], then medians [ms]: solve, shape, both, one adaptive turn."""
-    design = Design(ScanSource(str(Path(scan).absolute())), lines=(WornLine("mid-bust", 0.95),))
-    loads = []
-    for _ in range(3):
-        start = time.perf_counter()
-        stages = build(design)
-        loads.append(time.perf_counter() - start)
-    parts = drag(stages)
-    ratios = (1.0, 0.9, 1.0)
-    one = partial(turn, stages.model, Targets(ratios), at_rest(stages.model), stages.watch)
-    turns = [milliseconds(one) for _ in range(99)]
-    return [
-        statistics.median(loads),
-        parts["solve"],
-        parts["shape"],
-        parts["slider"],
-        statistics.median(turns),
-    ]
 
 
 def main() -> None:
     scans = sys.argv[1:] or [str(path) for path in sorted(SAMPLES.glob("*.ply"))]
-    heads = ["load s", "solve", "t-FFD + normals", "slider to body", "turn"]
-    print("scan".ljust(24) + "".join(name.rjust(17) for name in heads))
     with threadpool_limits(1):
         for scan in scans:
-            print(Path(scan).name.ljust(24) + "".join(f"{figure:17.2f}" for figure in figures(scan)))
+            stages = None
+            print(f"{Path(scan).name:24}" + "".join(f"{name:>11}" for name in HEADS))
+            for name, choice in CHOICES.items():
+                source = ScanSource(str(Path(scan).absolute()))
+                stages = build(Design(source, lines=(WornLine("mid-bust", 0.95),), **choice), stages)
+                medians = drag(stages)
+                print(f"  {name:22}" + "".join(f"{medians[head]:11.2f}" for head in HEADS))
 
 
 if __name__ == "__main__":
