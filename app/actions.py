@@ -39,6 +39,8 @@ class Actions:
             tr("How the model works…"), "Ctrl+M", tr("Choose how lines, skin and volume act")
         )
         self.about = self._make(tr("About Busk"))
+        self.add_lines = {name: self._make(title) for name, title in self._line_titles().items()}
+        self.own_line = self._make(tr("Line through control points…"))
         self.samples = {name: self._make(tr(title)) for name, title in SAMPLES.items()}
         self.controls = self._group({name: self._control_title(name) for name in CONTROLS})
         self.templates = self._group(
@@ -46,7 +48,7 @@ class Actions:
         )
         self.themes = self._group({"system": tr("As the system"), "light": tr("Light"), "dark": tr("Dark")})
         self.languages = self._group(dict(LANGUAGES))
-        for action in (self.save, self.save_as, self.export, self.reset, self.flip):
+        for action in self._of_document():
             action.setEnabled(False)
 
     def menu_bar(self, view: Mapping[str, QAction]) -> QMenuBar:
@@ -62,6 +64,8 @@ class Actions:
         self._fill(look, self.flip, None, *view.values(), None, self.strip)
         self._fill(look.addMenu(tr("Theme")), *self.themes.values())
         self._fill(look.addMenu(tr("Language")), *self.languages.values())
+        self.add_menu = bar.addMenu(tr("Lines"))
+        self._fill(self.add_menu, *self.add_lines.values(), None, self.own_line)
         solve = bar.addMenu(tr("Solve"))
         self._fill(solve, *self.controls.values(), None)
         self._fill(solve.addMenu(tr("Control mesh")), *self.templates.values())
@@ -71,8 +75,12 @@ class Actions:
 
     def enable_document(self) -> None:
         """Allow what needs an open body."""
-        for action in (self.save, self.save_as, self.export, self.reset, self.flip):
+        for action in self._of_document():
             action.setEnabled(True)
+
+    def _of_document(self) -> tuple[QAction, ...]:
+        document = (self.save, self.save_as, self.export, self.reset, self.flip, self.model)
+        return (*document, *self.add_lines.values(), self.own_line)
 
     def _make(
         self,
@@ -107,6 +115,15 @@ class Actions:
             "exact": tr("Exact answer"),
             "none": tr("No volume control"),
         }[name]
+
+    @staticmethod
+    def _line_titles() -> dict[str, str]:
+        return {
+            "straps": tr("Add straps over the bust points"),
+            "slings": tr("Add slings round the breasts"),
+            "obliques": tr("Add oblique lines from the sides"),
+            "rings": tr("Add closed rings round the bust points"),
+        }
 
     @staticmethod
     def _fill(menu: QMenu, *actions: QAction | None) -> None:

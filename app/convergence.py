@@ -241,7 +241,12 @@ class _Legend(QWidget):
 
     def show_tracks(self, roles: Mapping[str, str], exact: bool, exact_is_main: bool) -> None:
         """Name these runs by their roles, and the exact answer if there is one."""
-        titles = {"adaptive": tr("Adaptive"), "conventional": tr("Conventional"), "none": tr("None")}
+        titles = {
+            "adaptive": tr("Adaptive"),
+            "conventional": tr("Conventional"),
+            "accumulating": tr("Accumulating"),
+            "none": tr("None"),
+        }
         colors = {"main": "accent", "warning": "warn_mark", "ghost": "ghost_curve"}
         self._entries = [(titles[name], colors[role], False) for name, role in roles.items()]
         if exact:

@@ -10,6 +10,7 @@ from app.actions import Actions
 from app.convergence import Strip
 from app.desk import Desk
 from app.housekeeping import Housekeeping
+from app.line_maker import LineMaker
 from app.notice import NoticeBar
 from app.panels.landmarks import LandmarksPanel
 from app.panels.lines import LinesPanel
@@ -51,6 +52,7 @@ class MainWindow(QMainWindow):
         self.inspector = QStackedWidget()
         self._lay_out()
         self.desk = Desk(self)
+        self.line_maker = LineMaker(self)
         self.housekeeping = Housekeeping(self)
         self._connect()
 
@@ -102,6 +104,8 @@ class MainWindow(QMainWindow):
         self.lines.visibility_changed.connect(desk.set_line_visible)
         self.lines.reset_all.connect(session.reset_lines)
         self.strip.control_chosen.connect(session.choose_control)
+        self.lines.add_asked.connect(self.line_maker.show_menu)
+        self.lines.removed.connect(self.line_maker.remove)
         self.door.clicked.connect(desk.show_model)
         self.model.left.connect(lambda: desk.go_to("lines"))
         self.model.changed.connect(session.change)
@@ -126,12 +130,14 @@ class MainWindow(QMainWindow):
         do.flip.triggered.connect(lambda: view.set_after(not view.after))
         do.strip.toggled.connect(lambda on: self.strip.set_folded(not on))
         self.strip.folded.connect(lambda folded: do.strip.setChecked(not folded))
+        do.own_line.triggered.connect(self.line_maker.ask)
         do.model.triggered.connect(desk.show_model)
         do.about.triggered.connect(desk.about)
         do.recent.aboutToShow.connect(lambda: fill_recent_menu(do.recent, desk.open_file))
         for name, action in do.samples.items():
             action.triggered.connect(lambda _=False, sample=name: desk.open_sample(sample))
         for group, ask in (
+            (do.add_lines, self.line_maker.add),
             (do.controls, session.choose_control),
             (do.templates, session.choose_template),
             (do.themes, desk.choose_theme),

@@ -58,19 +58,14 @@ def draw_picture(
 
 def _set_up(scene: Scene, solution: Solution) -> None:
     """Put the reshaped body of a solution with its lines into a scene."""
-    from app.present import BAND_WIDTHS, LINE_COLOURS, worn_bands
-    from app.scene_bands import Band
+    from app.present import bands
     from app.scene_body import bake_occlusion
 
     stages = solution.stages
     scene.show_body(stages.body.mesh)
     scene.set_occlusion(bake_occlusion(stages.body.mesh))
     scene.show_control_mesh(stages.control.mesh, stages.control.fixed)
-    rest = stages.control.mesh.vertices
-    scene.show_bands(
-        Band(name, rest[list(stages.control.paths[name])], LINE_COLOURS[name], BAND_WIDTHS[name])
-        for name in worn_bands(stages.control, ())
-    )
+    scene.show_bands(bands(stages.model.lines, stages.control.mesh.vertices, ()))
     scene.move_body(stages.moving.vertices, *stages.shape(solution.control_points))
 
 

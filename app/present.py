@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,12 +12,14 @@ from app.panels.landmarks import LandmarkView
 from app.panels.line_row import LineView
 from app.panels.result import MeasureView
 from app.panels.scan import ScanView
+from app.scene_bands import Band
 from app.verdict_chip import state_title
 from app.words import number, tr
-from core.control_mesh import ControlMesh
 from core.design import Design
 from core.landmarks import Landmarks
+from core.lines import Line
 from core.live import Frame
+from core.mesh import Points
 from core.pipeline import Stages
 from core.report import blamed_line
 from core.solver import Marks
@@ -28,14 +30,32 @@ LINE_COLOURS = {"full-bust": "#0A5F73", "mid-bust": "#E5536B", "under-bust": "#5
 BAND_WIDTHS = {"full-bust": 10.0, "mid-bust": 12.0, "under-bust": 22.0}
 """Width of the bands as they are drawn [mm]; what they are made of comes with the garment."""
 
+OWN_COLOURS = ("#E2A32F", "#6FA3F5", "#7A1F2E", "#A9ABC9")
+"""Colours of own lines, one after the other; a pair of lines for both sides shares one."""
+
+OWN_WIDTH = 12.0
+"""Width of the band of an own line as it is drawn [mm]."""
+
 PLOTTED_TURNS = 600
 """Turns that the live plot looks back."""
 
 
 def line_title(name: str) -> str:
     """Return a line's name in the window's language."""
-    titles = {"full-bust": tr("Full bust"), "mid-bust": tr("Mid-bust"), "under-bust": tr("Under-bust")}
-    return titles.get(name, name)
+    titles = {
+        "full-bust": tr("Full bust"),
+        "mid-bust": tr("Mid-bust"),
+        "under-bust": tr("Under-bust"),
+        "strap left": tr("Strap left"),
+        "strap right": tr("Strap right"),
+        "sling left": tr("Sling left"),
+        "sling right": tr("Sling right"),
+        "oblique left": tr("Oblique left"),
+        "oblique right": tr("Oblique right"),
+        "ring left": tr("Ring left"),
+        "ring right": tr("Ring right"),
+    }
+    return titles.get(name, name[:1].upper() + name[1:])
 
 
 def landmark_title(name: str) -> str:
@@ -51,13 +71,32 @@ def landmark_title(name: str) -> str:
     return titles.get(name, name)
 
 
-def worn_bands(control: ControlMesh, hidden: Collection[str]) -> list[str]:
-    """Return the names of the lines that are drawn on the body."""
-    return [name for name in LINE_COLOURS if name in control.paths and name not in hidden]
+def line_colours(names: Iterable[str]) -> dict[str, str]:
+    """Return the colours of these lines in the order of the list: those of the template, top line first."""
+    given = list(names)
+    own = [name for name in given if name not in LINE_COLOURS]
+    kinds = list(dict.fromkeys(_kind(name) for name in own))
+    colours = {name: colour for name, colour in LINE_COLOURS.items() if name in given}
+    return colours | {name: OWN_COLOURS[kinds.index(_kind(name)) % len(OWN_COLOURS)] for name in own}
+
+
+def _kind(name: str) -> str:
+    """Return the name of a line without its side."""
+    return name.removesuffix(" left").removesuffix(" right")
+
+
+def bands(lines: Sequence[Line], rest: Points, hidden: Collection[str]) -> list[Band]:
+    """Return what is drawn of the lines on the body; ``rest`` are all control points at rest, (n, 3) [mm]."""
+    paths = {line.name: line.path for line in lines}
+    return [
+        Band(name, rest[paths[name]], colour, BAND_WIDTHS.get(name, OWN_WIDTH))
+        for name, colour in line_colours(paths).items()
+        if name not in hidden
+    ]
 
 
 def line_views(design: Design, frame: Frame, hidden: Collection[str]) -> list[LineView]:
-    """Return the rows of the list of lines, top line first."""
+    """Return the rows of the list of lines, top line first, then own lines."""
     lines = {line.name: line for line in frame.stages.model.lines}
     return [
         LineView(
@@ -70,9 +109,9 @@ def line_views(design: Design, frame: Frame, hidden: Collection[str]) -> list[Li
             lines[name].constrains,
             name not in hidden,
             lines[name].whole_length,
+            name not in LINE_COLOURS,
         )
-        for name, colour in LINE_COLOURS.items()
-        if name in lines
+        for name, colour in line_colours(lines).items()
     ]
 
 
@@ -207,11 +246,16 @@ def measure_views(frame: Frame) -> list[MeasureView]:
         (tr("Volume of control mesh"), "ml", volume, volume + frame.error_ml),
         (tr("Volume on the skin"), "ml", volume, volume + skin),
         *(
-            (tr("{line}, front part").format(line=line_title(line.name)), "mm", line.rest_length, reached)
+            (_measured_part(line), "mm", line.rest_length, reached)
             for line, reached in zip(frame.stages.model.lines, frame.lengths.values(), strict=True)
         ),
     )
     return [MeasureView(*row) for row in rows]
+
+
+def _measured_part(line: Line) -> str:
+    title = line_title(line.name)
+    return tr("{line}, front part").format(line=title) if line.back_length else title
 
 
 def facts(frame: Frame) -> list[str]:

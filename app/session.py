@@ -4,9 +4,9 @@ signals.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import partial, reduce
 from pathlib import Path
 from typing import Any
 
@@ -132,13 +132,13 @@ class Session(QObject):
         """Change fields of the design as one undo step."""
         self._edit(lambda design: replace(design, **changes), text)
 
-    def add_own_line(self, line: OwnLine) -> None:
-        """Add a line of the designer's own."""
-        self._edit(lambda design: design.with_own_line(line), tr("{line} added").format(line=line.name))
+    def add_own_lines(self, lines: Sequence[OwnLine], text: str) -> None:
+        """Add lines of the designer's own."""
+        self._edit(lambda design: reduce(Design.with_own_line, lines, design), text)
 
-    def remove_own_line(self, name: str) -> None:
+    def remove_own_line(self, name: str, title: str) -> None:
         """Remove a line of the designer's own."""
-        self._edit(lambda design: design.without_own_line(name), tr("{line} removed").format(line=name))
+        self._edit(lambda design: design.without_own_line(name), tr("{line} removed").format(line=title))
 
     def choose_unit(self, unit: str) -> None:
         """Read the scan again in another unit."""

@@ -9,8 +9,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from app.background import Background
 from app.overlay import Pin
 from app.panels.view_tools import CompareTools, ViewTools
-from app.present import BAND_WIDTHS, LINE_COLOURS, band_label, landmark_title, worn_bands
-from app.scene_bands import Band
+from app.present import band_label, bands, landmark_title
 from app.scene_body import bake_occlusion
 from app.theme import label
 from app.viewport import Viewport
@@ -18,6 +17,7 @@ from core.body import Body
 from core.control_mesh import ControlMesh
 from core.design import Design
 from core.landmarks import Landmarks
+from core.lines import Line
 from core.live import Frame
 
 _MARGIN = 14
@@ -40,6 +40,7 @@ class ViewArea(QWidget):
         self._body: Body | None = None
         self._control: ControlMesh | None = None
         self._landmarks: Landmarks | None = None
+        self._lines: tuple[Line, ...] = ()
         self._landmark = ""
         self._labels: dict[str, tuple[str, str]] = {}
         self._background = Background(self)
@@ -72,31 +73,30 @@ class ViewArea(QWidget):
         if stages.control is not self._control:
             self._control, self._landmarks = stages.control, stages.landmarks
             scene.show_control_mesh(stages.control.mesh, stages.control.fixed)
-            self.show_bands()
+            self._lines = ()
             self.viewport.frame_bust()
             self._show_pins()
+        if _paths(stages.model.lines) != _paths(self._lines):
+            self._lines = stages.model.lines
+            self.show_bands()
         scene.move_body(stages.moving.vertices, frame.points, frame.normals)
         scene.move_control_mesh(frame.control_points)
-        self._labels = {name: band_label(design, frame, name) for name in stages.control.paths}
+        self._labels = {name: band_label(design, frame, name) for name in frame.lengths}
         self._show_label()
         self.viewport.request_draw()
 
     def show_bands(self) -> None:
         """Lay the lines that are not hidden on the body."""
-        if self._control is None:
-            return
-        points = self._control.mesh.vertices
-        names = worn_bands(self._control, self.hidden_lines)
-        self.viewport.scene.show_bands(
-            Band(name, points[list(self._control.paths[name])], LINE_COLOURS[name], BAND_WIDTHS[name])
-            for name in names
-        )
+        if self._control is not None:
+            rest = self._control.mesh.vertices
+            self.viewport.scene.show_bands(bands(self._lines, rest, self.hidden_lines))
         self.select_line(self.selected_line)
 
     def select_line(self, name: str) -> None:
         """Put a casing round one line."""
         self.selected_line = name
-        self.viewport.select_band(name if name not in self.hidden_lines else None)
+        shown = name in {line.name for line in self._lines} - self.hidden_lines
+        self.viewport.select_band(name if shown else None)
         self._show_label()
 
     def select_landmark(self, name: str) -> None:
@@ -195,3 +195,7 @@ class ViewArea(QWidget):
         found = self._landmarks.points.values() if shown and self._landmarks is not None else ()
         pins = [Pin(mark.name, landmark_title(mark.name), mark.position, mark.confidence) for mark in found]
         self.viewport.set_pins(pins, self._landmark)
+
+
+def _paths(lines: tuple[Line, ...]) -> list[tuple[str, list[int]]]:
+    return [(line.name, line.path.tolist()) for line in lines]

@@ -85,8 +85,10 @@ class Comparison:
         ``model`` may differ in the lines that are worn, not in its control points. ``fresh`` begins new
         records at turn 0.
         """
-        moved = np.abs(np.subtract(targets.ratios, self.targets.ratios)).max(initial=0.0)
-        near = self.exact if model is self.model and self.exact.found and moved <= NEAR else None
+        near = None
+        if model is self.model and self.exact.found:
+            moved = np.abs(np.subtract(targets.ratios, self.targets.ratios)).max(initial=0.0)
+            near = self.exact if moved <= NEAR else None
         if model is not self.model:
             for run in self.runs.values():
                 run.state = carried(run.state, self.model, model)

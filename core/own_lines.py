@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import groupby
 
 from core.design import OwnLine
 from core.errors import LineError
@@ -74,3 +75,36 @@ def _point(word: str, template: Template) -> int:
             f"Its rows are 0 to {len(template.rows) - 1}, its columns {-template.half} to {template.half}.",
         )
     return template.point(row, column)
+
+
+def ready_made(template: Template) -> dict[str, tuple[OwnLine, ...]]:
+    """Return lines that garments have, a pair of each, by kind (ours): they go where the template has rows.
+
+    "straps" rise through the bust points, "slings" hang round each breast from the upper edge, "obliques" go
+    from the side under the bust point and up inside it, "rings" are closed round the bust point.
+    """
+    low, bust = template.lines["mid-bust"], template.row_of("bust point")
+    top, side, tip = template.row_of("edge"), template.half - 1, template.bust_column
+    up = range(low, top + 1)
+    around = [(bust - 1, column) for column in range(tip - 1, tip + 2)] + [(bust, tip + 1)]
+    around += [(bust + 1, column) for column in range(tip + 1, tip - 2, -1)] + [(bust, tip - 1)]
+    inner = max(tip - 2, 1)
+    rising = [(bust, tip - 1), *((row, inner) for row in range(bust + 1, top + 1))]
+    kinds = {
+        "strap": [(row, tip) for row in up],
+        "sling": [*((row, tip + 1) for row in reversed(up)), (low, tip), *((row, tip - 1) for row in up)],
+        "oblique": [(low, column) for column in range(side, tip - 1, -1)] + rising,
+        "ring": around,
+    }
+    sides = (("left", 1), ("right", -1))
+    return {
+        f"{kind}s": tuple(
+            OwnLine(f"{kind} {word}", _places(cells, sign, template), kind == "ring") for word, sign in sides
+        )
+        for kind, cells in kinds.items()
+    }
+
+
+def _places(cells: list[tuple[int, int]], sign: int, template: Template) -> tuple[int, ...]:
+    points = [template.point(row, sign * column) for row, column in cells]
+    return tuple(point for point, _ in groupby(points))

@@ -148,7 +148,7 @@ def test_what_cannot_be_is_refused_and_the_field_shows_what_is() -> None:
         choose(window, "line_stiffness", "soft")
         assert window.model.fields["line_stiffness"].edit.text() == "16.0"
         assert window.session.undo_stack.count() == 0
-        window.session.add_own_line(OwnLine("strap", (35, 48, 61)))
+        window.session.add_own_lines((OwnLine("strap", (35, 48, 61)),), "Strap")
         window.session.choose_template("120")
         assert window.session.design.template == "168"
         assert window.actions_.templates["168"].isChecked()

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QVBoxLay
 from app.panels.length_slider import LengthSlider
 from app.panels.number_field import NumberField
 from app.parts import ToolButton, hairline, sentence
-from app.theme import label, set_tag, tokens_of
+from app.theme import font, label, set_tag, tokens_of
 from app.words import number, tr
 
 _OFF = 5e-6  # a set length nearer to the rest length than this means that the line is not worn
@@ -24,7 +24,8 @@ class LineView:
     """What a row shows of a line; lengths [mm], ``ratio`` = set over rest length [1].
 
     ``rest_mm`` is the rest length of the free front part, ``whole_mm`` that of the whole closed band.
-    ``reached_mm`` is None before a run. A line that is not ``constrained`` is only measured.
+    ``reached_mm`` is None before a run. A line that is not ``constrained`` is only measured; an ``own`` one
+    can be removed.
     """
 
     name: str
@@ -36,6 +37,7 @@ class LineView:
     constrained: bool
     visible: bool
     whole_mm: float
+    own: bool = False
 
 
 class LineChip(QWidget):
@@ -70,6 +72,7 @@ class LineRow(QFrame):
     cancelled = Signal()
     pressed = Signal()
     visibility_changed = Signal(bool)
+    removed = Signal()
 
     def __init__(self, view: LineView) -> None:
         super().__init__()
@@ -86,6 +89,7 @@ class LineRow(QFrame):
         """Show new values of the same line, without disturbing a drag or a number being typed."""
         self.view = view
         self._name.setText(view.title)
+        self._name.setToolTip(view.title if view.own else "")
         set_tag(self._name, "tone", "" if view.visible else "faint")
         self._chip.set_filled(view.visible)
         self._show_lengths(self.slider.ratio() if self.slider.isSliderDown() else view.ratio)
@@ -95,7 +99,7 @@ class LineRow(QFrame):
             each.setVisible(view.constrained)
         self._measure.setVisible(not view.constrained)
         self._measure.setText(f"{number(view.reached_mm or view.rest_mm)} mm")
-        self._note.setVisible(not view.constrained)
+        self._foot.setVisible(not view.constrained)
         self._details.setVisible(self._open and view.constrained)
         self._eye.show_icon("eye" if view.visible else "eye-slash")
         self._show_eye()
@@ -138,10 +142,11 @@ class LineRow(QFrame):
         column = QVBoxLayout(self)
         column.setContentsMargins(12, 8, 8, 6)
         column.setSpacing(2)
+        self._details = _Details()
         head = QHBoxLayout()
         head.setSpacing(8)
         self._chip = LineChip(self.view.color)
-        self._name = label("", "name")
+        self._name = _Title()
         self._eye = ToolButton("eye", tr("Show or hide this line (H)"), size=16, room=24)
         self._measure = label("", "name", tabular=True)
         self._measure.setContentsMargins(0, 3, 6, 3)
@@ -152,16 +157,22 @@ class LineRow(QFrame):
         head.addWidget(self.percent)
         head.addWidget(self.millimetres)
         head.addWidget(self._measure)
-        self._note = sentence(tr("On the rib cage: measured, it does not move."), "caption")
-        self._note.setContentsMargins(22, 0, 0, 4)
+        still = tr("On points that do not move: measured only.")
+        note = still if self.view.own else tr("On the rib cage: measured, it does not move.")
+        self._note = sentence(note, "caption")
+        self._foot = QWidget()
+        foot = QHBoxLayout(self._foot)
+        foot.setContentsMargins(22, 0, 4, 4)
+        self._bins = (remove_button(), self._details.bin)
+        foot.addWidget(self._note, 1)
+        foot.addWidget(self._bins[0], alignment=Qt.AlignmentFlag.AlignTop)
         self.slider.setAccessibleName(tr("Length of {line}").format(line=self.view.title))
         self.slider.setToolTip(
             tr("Length of the front part, 80 to 112 % of its rest.\n← → 0.1 %, Shift 1 %, Alt 0.01 %")
         )
-        self._details = _Details()
         column.addLayout(head)
         column.addWidget(self.slider)
-        column.addWidget(self._note)
+        column.addWidget(self._foot)
         column.addWidget(self._details)
 
     def _connect(self) -> None:
@@ -174,6 +185,8 @@ class LineRow(QFrame):
             field.entered.connect(self._take)
             field.opened.connect(self.pressed)
             field.left.connect(self.slider.setFocus)
+        for each in self._bins:
+            each.clicked.connect(self.removed)
         self._eye.clicked.connect(lambda: self.visibility_changed.emit(not self.view.visible))
 
     def _take(self, ratio: float) -> None:
@@ -198,6 +211,8 @@ class LineRow(QFrame):
 
     def _show_eye(self) -> None:
         self._eye.setVisible(self._hovered or self._open or not self.view.visible)
+        for each in self._bins:
+            each.setVisible(self.view.own and self._open)
 
 
 class _Details(QWidget):
@@ -221,8 +236,10 @@ class _Details(QWidget):
         grid.setRowMinimumHeight(2, 17)
         self._part = sentence("", "caption")
         self._whole = sentence("", "caption")
+        self.bin = remove_button()
         grid.addWidget(self._part, 3, 0, 1, 3)
         grid.addWidget(self._whole, 4, 0, 1, 3)
+        grid.addWidget(self.bin, 3, 2, 2, 1, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignTop)
 
     def show_lengths(self, view: LineView, ratio: float) -> None:
         """Show a set length, as a share of the rest length, and what ``view`` reached."""
@@ -230,7 +247,12 @@ class _Details(QWidget):
         whole_mm = view.whole_mm - view.rest_mm + set_mm
         worn = abs(ratio - 1.0) > _OFF
         self._values[0].setText(_figure(number(set_mm), "mm"))
-        part = tr("{percent} % of the front part, side to side").format(percent=number(ratio * 100))
+        front, own = (
+            tr("{percent} % of the front part, side to side"),
+            tr("{percent} % of its length at rest"),
+        )
+        part = (own if view.own else front).format(percent=number(ratio * 100))
+        self._whole.setVisible(view.whole_mm > view.rest_mm)
         self._part.setText(part if worn else tr("At 100 % the line is off: it measures and does not pull."))
         whole = tr("Whole band: {set} of {rest} mm ({percent} %)")
         percent = number(whole_mm / view.whole_mm * 100)
@@ -249,6 +271,27 @@ class _Details(QWidget):
         self._values[1].setText(reached)
         self._values[2].setText(gap)
         set_tag(self._values[2], "tone", tone)
+
+
+def remove_button() -> ToolButton:
+    """Return the button that removes an own line."""
+    return ToolButton("trash", tr("Remove this line (Del)"), size=16, room=24)
+
+
+class _Title(QLabel):
+    """The name of a line; where there is no room for it, its beginning."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setFont(font("name"))
+        self.setProperty("role", "name")
+        self.setMinimumWidth(40)
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        painter.setPen(self.palette().color(self.foregroundRole()))
+        shown = painter.fontMetrics().elidedText(self.text(), Qt.TextElideMode.ElideRight, self.width())
+        painter.drawText(self.rect(), Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, shown)
 
 
 def _figure(value: str, unit: str) -> str:

@@ -32,6 +32,8 @@ class LinesPanel(QWidget):
     drag_cancelled = Signal(str)
     selected = Signal(str)
     visibility_changed = Signal(str, bool)
+    removed = Signal(str)
+    add_asked = Signal()
     reset_all = Signal()
 
     def __init__(self) -> None:
@@ -60,6 +62,7 @@ class LinesPanel(QWidget):
         for view in lines:
             self.rows[view.name].show_view(view)
         self._empty.setVisible(not lines)
+        self.add.setEnabled(bool(lines))
         self._scroll.setVisible(bool(lines))
         self._reset.setEnabled(any(view.constrained and view.ratio != 1.0 for view in lines))
 
@@ -78,6 +81,8 @@ class LinesPanel(QWidget):
             self._step(steps[Qt.Key(event.key())])
         elif event.key() == Qt.Key.Key_H and row is not None:
             self.visibility_changed.emit(row.view.name, not row.view.visible)
+        elif event.key() == Qt.Key.Key_Delete and row is not None and row.view.own:
+            self.removed.emit(row.view.name)
         elif (
             event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and row is not None and row.view.constrained
         ):
@@ -90,6 +95,9 @@ class LinesPanel(QWidget):
         head.setContentsMargins(18, 12, 14, 8)
         head.addWidget(label(tr("Lines"), "heading"))
         head.addStretch(1)
+        self.add = ToolButton("plus", tr("Add a line of your own"))
+        self.add.clicked.connect(self.add_asked)
+        head.addWidget(self.add)
         self._reset = ToolButton("arrow-counter-clockwise", tr("Set all lines back to their length at rest"))
         self._reset.clicked.connect(self.reset_all)
         head.addWidget(self._reset)
@@ -125,6 +133,7 @@ class LinesPanel(QWidget):
         row.committed.connect(lambda ratio: self.length_committed.emit(name, ratio))
         row.cancelled.connect(lambda: self.drag_cancelled.emit(name))
         row.pressed.connect(lambda: self._choose(name))
+        row.removed.connect(lambda: self.removed.emit(name))
         row.visibility_changed.connect(lambda visible: self.visibility_changed.emit(name, visible))
 
     def _choose(self, name: str) -> None:

@@ -1,0 +1,120 @@
+"""Own lines in the real window: added ready made or point by point, shortened, saved and removed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from window_tools import Script, points, run_main, settled
+
+from app import line_maker
+from app.main_window import MainWindow
+from core.own_lines import ready_made
+from core.pipeline import build
+from core.template import read_template
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+def test_slings_are_listed_drawn_shortened_and_removed() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        at_start, bands = points(window).copy(), window.view.viewport.scene.bands
+        window.actions_.add_lines["slings"].trigger()
+        yield lambda: "sling right" in window.lines.rows and window.is_settled()
+        assert list(window.lines.rows)[:3] == ["full-bust", "mid-bust", "under-bust"]
+        assert "sling left" in bands.names
+        assert window.view.selected_line == "sling left"
+        assert window.session.undo_stack.undoText() == "Sling left and Sling right added"
+        assert np.abs(points(window) - at_start).max() < 0.2, "at 100 % they do not pull"
+        window.lines.length_committed.emit("sling left", 0.94)
+        yield settled(window)
+        frame = window.session.frame
+        assert frame is not None
+        row = window.lines.rows["sling left"]
+        assert row.view.own
+        assert 0.94 * row.view.rest_mm < (row.view.reached_mm or 0.0) < 0.97 * row.view.rest_mm
+        assert frame.marks.nipple_left_z > frame.stages.rest_marks.nipple_left_z + 1.0
+        assert window.view._labels["sling left"][0] == "Sling left 94.0 %"
+        row._bins[1].click()
+        yield lambda: "sling left" not in window.lines.rows and window.is_settled()
+        assert "sling left" not in bands.names
+        assert np.abs(points(window) - at_start).max() < 0.2
+        window.desk.select_line("sling right")
+        QTest.keyClick(window.lines, Qt.Key.Key_Delete)
+        yield lambda: "sling right" not in window.lines.rows
+        window.actions_.undo.trigger()
+        yield lambda: "sling right" in window.lines.rows
+
+    run_main([], script)
+
+
+def test_a_line_goes_through_the_points_that_are_named(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    answers = ["v=r6c-3,r3c0,r6c3", "v=r9c0,r3c0", "edge=r6c-2:r6c2", ""]
+    monkeypatch.setattr(line_maker, "ask_own_line", lambda _: answers.pop(0))
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        window.actions_.own_line.trigger()
+        yield lambda: "v" in window.lines.rows and window.is_settled()
+        assert window.session.design.own_lines[0].points == (81, 45, 87)
+        window.actions_.own_line.trigger()
+        assert "no place 'r9c0'" in window.notices.notice().sentence
+        window.actions_.own_line.trigger()
+        yield lambda: "edge" in window.lines.rows
+        assert not window.lines.rows["edge"].view.constrained
+        assert window.lines.rows["edge"]._note.text() == "On points that do not move: measured only."
+        window.actions_.own_line.trigger()
+        assert window.session.undo_stack.count() == 2
+        assert window.session.save(str(tmp_path / "v.busk"), None)
+
+    def again(window: MainWindow) -> Script:
+        yield settled(window)
+        assert list(window.lines.rows)[-2:] == ["v", "edge"]
+        assert {"v", "edge"} <= set(window.view.viewport.scene.bands.names)
+
+    run_main([], script)
+    run_main([str(tmp_path / "v.busk")], again)
+
+
+def test_the_accumulating_force_can_be_chosen() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        window.actions_.controls["accumulating"].trigger()
+        yield settled(window)
+        assert set(window.session.frame.tracks) == {"adaptive", "conventional", "accumulating"}
+        assert window.session.frame.verdict.state == "settled"
+        window.desk.plot_now()
+        segment = window.strip._segment
+        assert not any(
+            segment.button(name).isChecked() for name in ("adaptive", "conventional", "none", "exact")
+        )
+        segment.button("exact").click()
+        assert window.session.design.volume == "exact"
+
+    run_main([], script)
+
+
+@pytest.mark.parametrize("name", ["168", "120"])
+def test_ready_made_lines_pull_on_their_own_side_of_every_template(name: str, built) -> None:
+    template = read_template(name)
+    for kind, pair in ready_made(template).items():
+        for line, sign in zip(pair, (1, -1), strict=True):
+            columns = template.column[list(line.points)] * sign
+            assert columns.min() >= 0, kind
+            assert template.free[list(line.points)].any()
+            assert line.closed == (kind == "rings")
+            if not line.closed:
+                assert template.fixed[line.points[0]] or template.fixed[line.points[-1]]
+        left, right = (template.column[list(line.points)] for line in pair)
+        assert np.array_equal(left, -right)
+    design = built("mannequin").design.with_template(name)
+    for pair in ready_made(template).values():
+        for line in pair:
+            design = design.with_own_line(line)
+    assert len(build(design, built("mannequin")).model.lines) == 3 + 8
