@@ -4,12 +4,12 @@ from itertools import product
 
 import numpy as np
 import pytest
-from models import cable_force, line_force, volume_slopes
+from models import cable_force, line_force, small, volume_slopes
 from shapes import fitted, run, torso
 
 from core.design import OwnLine
 from core.exact import solve_exact
-from core.mechanics import Mechanics
+from core.mechanics import CONTACTS, HOLDS, LAWS, VOLUMES, Mechanics
 from core.model import constrained_model
 from core.pipeline import with_own_lines
 from core.solver import Targets
@@ -156,3 +156,47 @@ def test_a_strap_lifts_the_bust_point_under_it_alone(sample):
     left, right = (points - model.tensegric.rest)[list(control.bust_points), 2]
     assert left > 3.0
     assert abs(right) < 0.2
+
+
+EVERY_CHOICE = list(product(LAWS, CONTACTS, HOLDS, VOLUMES))
+
+
+@pytest.mark.parametrize(("law", "contact", "hold", "volume_of"), EVERY_CHOICE)
+def test_every_choice_of_the_model_obeys_the_volume_asked_for_and_rests_without_a_line(
+    law, contact, hold, volume_of
+):
+    choice = Mechanics(law, line_contact=contact, line_hold=hold, volume_of=volume_of)
+    bare = solve_exact(small(choice, worn=()), (0.9, 0.9, 0.9))
+    assert bare.found
+    np.testing.assert_allclose(bare.state.moved, 0.0, atol=1e-10)
+    model, excess = small(choice, worn=("mid-bust",)), np.array([3000.0, -1000.0])
+    balance = solve_exact(model, (1.0, 0.95, 1.0), excess=excess)
+    assert balance.found
+    points = model.tensegric.expand(balance.state.moved)
+    gained = model.volume.side_volumes(points) - model.volume.side_volumes(model.tensegric.rest)
+    if volume_of == "each":
+        np.testing.assert_allclose(gained, excess, atol=1e-4)
+    else:
+        assert gained.sum() == pytest.approx(2000.0, abs=1e-4)
+
+
+@pytest.mark.parametrize("contact", CONTACTS)
+@pytest.mark.parametrize("hold", HOLDS)
+def test_the_way_of_a_slider_is_repeatable_and_leads_to_the_answer_from_rest(contact, hold):
+    """Each answer starts from the last one; twice the same way is the same to the bit."""
+    choice = Mechanics(line_contact=contact, line_hold=hold)
+    model = small(choice, worn=("mid-bust",))
+    ways = []
+    for _ in range(2):
+        way = [solve_exact(model, (1.0, 1.0, 1.0))]
+        for ratio in (0.99, 0.98, 0.97, 0.96, 0.95, 0.96, 0.97):
+            way.append(solve_exact(model, (1.0, ratio, 1.0), near=way[-1]))
+            assert way[-1].found
+            assert way[-1].steps <= 6
+        ways.append(way)
+    for one, two in zip(*ways, strict=True):
+        np.testing.assert_array_equal(one.state.moved, two.state.moved)
+    # There and back, and from rest: the same place.
+    np.testing.assert_allclose(way[7].state.moved, way[3].state.moved, atol=1e-9)
+    cold = solve_exact(model, (1.0, 0.97, 1.0))
+    np.testing.assert_allclose(way[7].state.moved, cold.state.moved, atol=1e-9)

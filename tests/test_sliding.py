@@ -87,11 +87,11 @@ def test_a_sliding_turn_is_a_plain_sweep_point_by_point(control):
 
 
 @pytest.mark.parametrize("law", LAWS, ids=law_of)
-@pytest.mark.parametrize("hold", ["spring", "held"])
-def test_the_derivative_of_the_balance_converges_with_second_order(law, hold):
-    model = small(Mechanics(law.member_law, line_contact="sliding", line_hold=hold))
+@pytest.mark.parametrize(("hold", "volume_of"), [("spring", "both"), ("held", "each"), ("held", "both")])
+def test_the_derivative_of_the_balance_converges_with_second_order(law, hold, volume_of):
+    model = small(Mechanics(law.member_law, line_contact="sliding", line_hold=hold, volume_of=volume_of))
     potential, skin = Potential(model, RATIOS), Skin(model)
-    multipliers = np.array([3e4, 2e4, -40.0, -30.0])[: len(potential.wanted)]
+    multipliers = np.array([*[3e4, 2e4][: len(potential.sides)], -40.0, -30.0])[: len(potential.wanted)]
 
     def balance(moved):
         forces, push = skin.projected(potential.at(moved))
