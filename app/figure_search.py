@@ -9,7 +9,7 @@ import numpy as np
 
 from app.figure_study import BODIES, LINE, TEMPLATE, Study
 from core.model import ConstrainedModel, constrained_model
-from core.search import FIRST_TURNS, RATIOS, Finding, mirrored_mean
+from core.search import FIRST_TURNS, RATIOS, TEMPLATES, Finding, mirrored_mean
 from core.solver import Targets, iterate
 
 COLUMNS = tuple(field.name for field in fields(Finding))
@@ -54,9 +54,9 @@ def rows_of(found: Sequence[Finding]) -> list[tuple[object, ...]]:
     return [astuple(finding) for finding in found]
 
 
-def pairs_of(found: Sequence[Finding]) -> list[Pair]:
-    """Return the cases on the paper's templates, both bodies side by side."""
-    own = [finding for finding in found if finding.template == TEMPLATE[finding.body]]
+def pairs_of(found: Sequence[Finding], template: str = "") -> list[Pair]:
+    """Return the cases on a template, or on the paper's for each body, both bodies side by side."""
+    own = [finding for finding in found if finding.template == (template or TEMPLATE[finding.body])]
     a, b = ([finding for finding in own if finding.body == body] for body in BODIES.values())
     return [Pair(one, other) for one, other in zip(a, b, strict=False)]
 
@@ -76,6 +76,7 @@ def search_words(found: Sequence[Finding], study: Study) -> dict[str, str]:
         "whole": str(sum(pair.higher and pair.larger and pair.shakes for pair in pairs)),
         "by_contact": _shares(pairs, {"sliding": _slides, "glued": lambda pair: not _slides(pair)}),
         "by_route": _shares(pairs, {"lines that draw up": _draws_up, "others": lambda p: not _draws_up(p)}),
+        **{f"larger_{number}": _larger(pairs_of(found, number)) for number in TEMPLATES},
         "twin": _twin(study),
         "search_table": _table([pair for pair in pairs if pair.a.set_percent == 100 * RATIOS[0]]),
     }
@@ -93,6 +94,10 @@ def _of_length(pairs: Sequence[Pair], ratio: float) -> str:
         f"apex higher in {apex}, apex further forward in {further}; first error of the person larger in "
         f"{larger}; the conventional force vibrates on both and the adaptive on neither in {shakes}."
     )
+
+
+def _larger(pairs: Sequence[Pair]) -> str:
+    return f"{sum(pair.larger for pair in pairs)} of {len(pairs)}"
 
 
 def _slides(pair: Pair) -> bool:

@@ -113,12 +113,14 @@ class Study:
             error.append(measured.error)
         return np.array(away), np.array(error)
 
-    def newton_way(self, body: str, ratio: float, goal: Points) -> Floats:
-        """Return over the Newton steps of the exact answer the largest distance to ``goal`` (f, 3) [mm]."""
+    def newton_way(self, body: str, ratio: float, goal: Points) -> tuple[Floats, Floats]:
+        """Return what ``way_to`` does, over the Newton steps of the exact answer."""
         stages = self.stages(body, volume_of="both")
         ratios = targets_of(stages.design.with_line(LINE, ratio), stages).ratios
         states = [balance.state.moved for balance in newton(stages.model, ratios)]
-        return np.array([np.linalg.norm(moved - goal, axis=1).max() for moved in states])
+        volumes = [stages.model.volume.volume(stages.model.tensegric.expand(moved)) for moved in states]
+        away = np.array([np.linalg.norm(moved - goal, axis=1).max() for moved in states])
+        return away, np.array(volumes) / stages.model.volume.rest_volume - 1.0
 
 
 def reached_length(stages: Stages, ratio: float) -> float:

@@ -100,18 +100,13 @@ def figure_8(study: Study) -> Figure:
             away, error = study.way_to(body, ratio, control, turns, exact.state.moved)
             for plot, values in zip(axes[:, column], (away, 100.0 * np.abs(error)), strict=True):
                 plot.semilogy(np.arange(turns + 1), values, color=COLOURS[control], label=control)
-            rows += [
-                (body, control, turn, float(a), float(e), 100.0 * float(e))
-                for turn, (a, e) in enumerate(zip(away, error, strict=True))
-            ]
+            rows += _way_rows(body, control, away, error)
             said.append(
                 f"{body}, {control}: {away[-1]:.2g} mm and {100 * error[-1]:+.2g} % after {turns} turns"
             )
-        steps = study.newton_way(body, ratio, exact.state.moved)
-        axes[0, column].semilogy(
-            steps, "D-", ms=2.6, lw=0.8, color=COLOURS["exact"], label="exact: Newton steps"
-        )
-        rows += [(body, "exact", step, float(away), 0.0, 0.0) for step, away in enumerate(steps)]
+        away, error = study.newton_way(body, ratio, exact.state.moved)
+        axes[0, column].semilogy(away, "D-", ms=2.6, lw=0.8, color=COLOURS["exact"], label="exact, Newton")
+        rows += _way_rows(body, "exact", away, error)
         axes[0, column].set_title(f"({letter}) {body}, line at {100 * ratio:.0f} %")
         axes[1, column].set_xlabel("turn, or Newton step")
         said.append(f"{body}, exact: {exact.last.turn} Newton steps, {abs(100 * exact.last.error):.1g} %")
@@ -126,8 +121,13 @@ def figure_8(study: Study) -> Figure:
         + "; ".join(said)
         + "."
     )
-    columns = ("body", "control", "turn", "distance_to_exact_mm", "volume_error", "volume_error_percent")
+    columns = ("body", "control", "turn_or_step", "distance_to_exact_mm", "volume_error_percent")
     return Figure("fig-8-exact", "Both controls against the exact answer", caption, columns, rows, drawn)
+
+
+def _way_rows(body: str, control: str, away: Floats, error: Floats) -> list[tuple[object, ...]]:
+    pairs = zip(away.tolist(), (100.0 * error).tolist(), strict=True)
+    return [(body, control, turn, *pair) for turn, pair in enumerate(pairs)]
 
 
 def _line(plot: Axes, values: Floats, control: str, label: str) -> None:

@@ -31,7 +31,12 @@ FIGURES: dict[str, Callable[[Study], Figure]] = {
 """How each figure is drawn, by its number: 1 to 7 are the paper's, the others ours."""
 
 
-def make_figures(out: Path, tell: Callable[[str], None] = print) -> Callable[..., str]:
+def say(text: str) -> None:
+    """Print a line at once, also into a pipe: who waits wants to see that something is done."""
+    print(text, flush=True)
+
+
+def make_figures(out: Path, tell: Callable[[str], None] = say) -> Callable[..., str]:
     """Write all figures to ``out``, one picture and one CSV each, and the page REPRODUCTION.md on them.
 
     Returns what makes the page again for other places of its pictures, see ``figure_page``; ``tell`` hears
@@ -42,7 +47,7 @@ def make_figures(out: Path, tell: Callable[[str], None] = print) -> Callable[...
     return write_page(out, drawn, study, tell)
 
 
-def make_some(numbers: Collection[str], out: Path, tell: Callable[[str], None] = print) -> None:
+def make_some(numbers: Collection[str], out: Path, tell: Callable[[str], None] = say) -> None:
     """Write the figures with these ``numbers`` to ``out``, without the page. Raises UserError."""
     unknown = sorted(set(numbers) - FIGURES.keys())
     if unknown:
@@ -53,7 +58,7 @@ def make_some(numbers: Collection[str], out: Path, tell: Callable[[str], None] =
             draw(number, study, out, tell)
 
 
-def draw(number: str, study: Study, out: Path, tell: Callable[[str], None] = print) -> Figure:
+def draw(number: str, study: Study, out: Path, tell: Callable[[str], None] = say) -> Figure:
     """Draw one figure and write its picture and table to ``out``. Raises UserError."""
     with print_style():
         figure = FIGURES[number](study)
