@@ -1,0 +1,50 @@
+"""Cases with far too short lines, several at once, under every choice: each ends with a figure and a verdict.
+
+benchmarks/bench_hard_cases.py tries a thousand of them; here are the first few.
+"""
+
+from __future__ import annotations
+
+from math import isfinite, isnan
+
+import pytest
+from hard_cases import hard_case
+
+from core.mechanics import CHOICES
+from core.verdict import MOTIONS
+
+SEEDS = range(60)
+TURNS = 100
+CASES = [hard_case(seed) for seed in SEEDS]
+
+
+def test_the_cases_are_hard_and_many_kinds():
+    for name, words in CHOICES.items():
+        assert {getattr(case.mechanics, name) for case in CASES} == set(words)
+    assert sum(len(case.ratios) > 1 for case in CASES) > 30
+    assert sum(len(case.own) > 0 for case in CASES) > 30
+    lengths = [ratio for case in CASES for ratio in case.ratios.values()]
+    assert min(lengths) < 0.55
+    assert max(lengths) > 1.05
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.seed)
+def test_every_case_ends_with_a_figure_and_a_verdict(case):
+    """A warning of an overflow would fail it too."""
+    residual, exact = case.exact()
+    step, adaptive = case.turns("adaptive", TURNS)
+    assert not isnan(residual)
+    assert not isnan(step)
+    for verdict in (exact, adaptive):
+        assert verdict.motion in MOTIONS
+        assert isfinite(verdict.error)
+        assert verdict.condition is not None
+    if exact.motion == "settled":
+        assert residual < 1e-8
+        assert abs(exact.error) < 1e-9
+        # A force that is kept during the turn is the paper to the letter, and no promise.
+        assert adaptive.motion in ("settled", "settling") or case.mechanics.line_force == "explicit"
+    else:
+        assert adaptive.motion != "settled"
+        # A spring always gives way in the end; only what is held, or slides, can be left without a balance.
+        assert case.mechanics.line_hold == "held" or case.mechanics.line_contact == "sliding"
