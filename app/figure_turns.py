@@ -112,7 +112,7 @@ def figure_8(study: Study) -> Figure:
         said.append(f"{body}, exact: {exact.last.turn} Newton steps, {abs(100 * exact.last.error):.1g} %")
     axes[0, 0].set_ylabel("largest distance to the\nexact answer [mm]")
     axes[1, 0].set_ylabel("volume error [%]")
-    axes[0, 0].legend(loc="best")
+    axes[0, 0].legend(loc="upper right", bbox_to_anchor=(1.0, 0.77))
     axes[0, 0].set_ylim(1e-5, 30.0)
     axes[1, 0].set_ylim(1e-9, 10.0)
     caption = (
