@@ -24,9 +24,11 @@ from PySide6.QtWidgets import (
 
 from app import words
 from app.convergence import Exact, Strip, Track
+from app.model_choices import defaults
 from app.notice import NoticeBar
 from app.panels.landmarks import LandmarksPanel, LandmarkView
 from app.panels.lines import LinesPanel, LineView
+from app.panels.model import ModelPanel
 from app.panels.rail import Rail
 from app.panels.result import MeasureView, ResultPanel
 from app.panels.scan import ScanPanel, ScanView
@@ -141,7 +143,7 @@ class Mock(QWidget):
         rail.set_state("scan", "done")
         rail.set_state("landmarks", "look", 2)
         rail.set_state("lines", "available")
-        rail.set_current(page)
+        rail.set_current("lines" if page == "model" else page)
         return rail
 
     def _status(self) -> StatusBar:
@@ -159,6 +161,7 @@ class Mock(QWidget):
             "landmarks": LandmarksPanel(),
             "lines": LinesPanel(),
             "result": ResultPanel(),
+            "model": ModelPanel(),
         }
         for each in pages.values():
             stack.addWidget(each)
@@ -191,6 +194,8 @@ class Mock(QWidget):
             ("Projection of the bust", "mm", 58.1, 60.3),
             ("Volume inside the control mesh", "ml", 4612.0, 4611.0),
         ]
+        pages["model"].set_values({**defaults(), "member_law": "prestressed", "line_contact": "sliding"})
+        pages["model"].set_gain(1.9, 1.76)
         pages["result"].set_rows([MeasureView(tr(name), *rest) for name, *rest in rows])
         stack.setCurrentWidget(pages[page])
         self.pages = pages

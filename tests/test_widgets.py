@@ -269,7 +269,7 @@ def test_lines_are_chosen_and_hidden_by_key(lines: LinesPanel, qtbot: QtBot) -> 
 
 
 @pytest.mark.parametrize("language", ["en", "ja"])
-@pytest.mark.parametrize("page", ["scan", "landmarks", "lines", "result"])
+@pytest.mark.parametrize("page", ["scan", "landmarks", "lines", "result", "model"])
 def test_nothing_is_cut_off_in_the_smallest_window(qtbot: QtBot, language: str, page: str) -> None:
     use_language(language)
     window = Mock(page, vibrating=True)
