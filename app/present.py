@@ -202,6 +202,8 @@ def _hint(frame: Frame) -> str:
         "folded": tr("The skin folds over: this is no body any more."),
         "overstrained": tr("The skin strains by more than 30 %: hardly a body."),
     }.get(frame.verdict.state, "")
+    if frame.verdict.state == "diverging":
+        return tr("The turns run away: the body is shown as it was before.")
     line = blamed_line(frame.stages)
     if not what or line is None:
         return what

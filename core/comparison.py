@@ -24,6 +24,9 @@ TURN_CONTROLS = ("adaptive", "conventional")
 NEAR = 0.05
 """Lengths that change by no more than this let the exact answer start from the last one [1]."""
 
+CALM_ERROR, CALM_STEP = 0.05, 20.0
+"""Volume error [1] and largest move in a turn [mm] below which a state of a diverging run can be shown."""
+
 MOST_TURNS = 300
 """Turns after a change of the targets at which a run is left as it is, settled or not."""
 
@@ -33,7 +36,7 @@ class Run:
 
     def __init__(self, model: ConstrainedModel, control: str, state: State, watch: Watch | None) -> None:
         self.control = control
-        self.state = state
+        self.state = self._calm = state
         self.records: list[Record] = [record(model, state, 0.0, watch)]
         self.watch_anew()
 
@@ -42,9 +45,15 @@ class Run:
         self.changed_at = self.state.turn
         self.verdict = judge([])
 
+    def restart(self, model: ConstrainedModel) -> None:
+        """Go back to rest, turns counted on."""
+        self.state = self._calm = replace(at_rest(model), turn=self.state.turn)
+
     def take(self, state: State, measured: Record) -> None:
         """Take the next turn."""
         self.state = state
+        if abs(measured.error) < CALM_ERROR and measured.step < CALM_STEP:
+            self._calm = state
         self.records.append(measured)
         self.verdict = judge(self.records[self.changed_at - self.records[0].turn + 1 :])
 
@@ -58,6 +67,11 @@ class Run:
     def sane(self) -> bool:
         """Whether the run can be gone on from: a diverging one starts again at rest."""
         return self.verdict.motion != "diverging"
+
+    @property
+    def shown(self) -> State:
+        """The state to show: of a diverging run the last calm one, not a body torn apart."""
+        return self.state if self.sane else self._calm
 
 
 class Comparison:
@@ -112,7 +126,7 @@ class Comparison:
     @property
     def shown(self) -> State:
         """The state to show: that of the chosen control's run, or the exact answer."""
-        return self.main.state if self.main else self.exact.state
+        return self.main.shown if self.main else self.exact.state
 
     @property
     def verdict(self) -> Verdict:
@@ -153,7 +167,7 @@ class Comparison:
                 runs[control] = Run(self.model, control, state, self.watch)
             else:
                 if not old.sane:
-                    old.state = replace(at_rest(self.model), turn=old.state.turn)
+                    old.restart(self.model)
                 old.watch_anew()
                 runs[control] = old
         self.runs = runs

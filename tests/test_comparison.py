@@ -261,3 +261,18 @@ def test_a_shape_that_strains_changes_the_word_and_not_when_a_run_rests(control)
     comparison.retarget(MODEL, targets(0.97, control))
     finish(comparison)
     assert comparison.verdict.state == "settled"
+
+
+def test_of_a_diverging_run_the_last_calm_state_is_shown():
+    comparison = Comparison(MODEL, targets(0.97))
+    finish(comparison)
+    comparison.retarget(MODEL, targets(0.97, "conventional", 4.0 * CALM))
+    finish(comparison)
+    assert comparison.verdict.motion == "diverging"
+    shown = MODEL.volume.volume(MODEL.tensegric.expand(comparison.shown.moved))
+    assert abs(shown / MODEL.volume.rest_volume - 1.0) < 0.05
+    torn = MODEL.volume.volume(MODEL.tensegric.expand(comparison.main.state.moved))
+    assert abs(torn / MODEL.volume.rest_volume - 1.0) > 0.5
+    comparison.retarget(MODEL, targets(0.97, "conventional"))
+    finish(comparison)
+    assert comparison.verdict.motion == "settled"
