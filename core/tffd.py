@@ -180,9 +180,10 @@ def _groups(
         total = weight.sum(axis=0)
         weighted = total > 0.0
         weight *= fade[rows] / np.where(weighted, total, 1.0)
-        in_frame = np.stack([weight * (1.0 - u - v), weight * u, weight * v, weight * h], axis=1)
         near_one = weight.any(axis=1)
-        columns, table = _summed(column[ends[triangles[near_one]]], in_frame[near_one])
+        weight, u, v, h = (table[near_one] for table in (weight, u, v, h))
+        in_frame = np.stack([weight * (1.0 - u - v), weight * u, weight * v, weight * h], axis=1)
+        columns, table = _summed(column[ends[triangles[near_one]]], in_frame)
         yield _Group(rows[weighted], columns, table[:, weighted])
 
 
