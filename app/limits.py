@@ -31,6 +31,9 @@ def limits_text(found: Sequence[Limits], stages: Stages, as_json: bool = False) 
 def _table(limits: Limits, stages: Stages) -> Iterator[str]:
     rest = limits.line.rest_length
     yield f"{limits.line.name}, at rest {rest:.1f} mm; {_present(limits, stages)}"
+    if not limits.found:
+        yield "  no balance is found at any length: the other lines ask for too much"
+        return
     for sign, meaning in MEANING.items():
         yield f"  {sign:12}  {_beginning(limits, sign):39}  {meaning}"
     if limits.last is not None:
@@ -68,6 +71,7 @@ def _figures_of(found: Sequence[Limits], stages: Stages) -> dict[str, Any]:
                 "present": _figures(limits.present, limits),
                 "beyond": list(limits.beyond),
                 "begins": {sign: _figures(limits.begins[sign], limits) for sign in MEANING},
+                "found": limits.found,
                 "no_balance_below": _figures(limits.last, limits),
             }
             for limits in found

@@ -50,7 +50,8 @@ class Limits:
     ``present`` is the line as it is set, None if it is off; ``beyond`` names those of SIGNS that this setting
     already shows. ``begins`` tells for each of SIGNS the longest length that shows it, None where none does
     down to RATIO_LIMITS; a beginning at the rest length is the other lines' doing. ``last`` is the shortest
-    length with a balance, None if there is one all the way.
+    length with a balance, None if there is one down to where all SIGNS show. ``found`` is False if there is none anywhere: the
+    other lines ask for what cannot be.
     """
 
     line: Line
@@ -58,6 +59,7 @@ class Limits:
     beyond: tuple[str, ...]
     begins: Mapping[str, Length | None]
     last: Length | None
+    found: bool = True
 
 
 def shortest(model: ConstrainedModel, ratios: tuple[float, ...], name: str) -> Limits:
@@ -70,7 +72,8 @@ def shortest(model: ConstrainedModel, ratios: tuple[float, ...], name: str) -> L
         return Limits(line, None if present is None else present.length, beyond, dict.fromkeys(SIGNS), None)
     stops, last = walk.down()
     begins = {sign: walk.beginning(stops, sign) for sign in SIGNS}
-    return Limits(line, None if present is None else present.length, beyond, begins, last)
+    length = None if present is None else present.length
+    return Limits(line, length, beyond, begins, last, found=bool(stops))
 
 
 def all_limits(stages: Stages) -> Iterator[Limits]:
@@ -136,9 +139,9 @@ class _Walk:
 
     def down(self) -> tuple[list[_Stop], Length | None]:
         """Return the stops from rest until all SIGNS show, and the last length if no balance lies below."""
-        here = self.solved(1.0)
+        here = self.solved(1.0) or self.solved(self._ratios[self._index])
         if here is None:
-            return [], Length(1.0, self._model.lines[self._index].rest_length)
+            return [], None
         stops, stride = [here], _STRIDE
         while not (here.shows("overstrained") and here.shows("inverted")) and here.length.ratio > _LEAST:
             ratio = max(here.length.ratio - stride, _LEAST)

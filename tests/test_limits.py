@@ -94,6 +94,14 @@ def test_what_the_other_lines_do_begins_at_the_rest_length():
     assert found.begins["inverted"].ratio < 0.9
 
 
+def test_where_the_other_lines_leave_no_balance_nothing_is_told():
+    model = model_of("mannequin", Mechanics(line_contact="sliding", line_hold="held"))
+    found = shortest(model, (1.0, 0.95, 0.6), "mid-bust")
+    assert not found.found
+    assert (found.present, found.last, found.beyond) == (None, None, ())
+    assert found.begins == dict.fromkeys(SIGNS)
+
+
 def test_a_line_on_the_rib_cage_has_no_limit():
     model = model_of("person", worn=["under-bust"])
     found = shortest(model, (0.8, 1.0, 1.0), "under-bust")
