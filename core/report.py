@@ -147,7 +147,7 @@ def notes(stages: Stages) -> list[str]:
         *warnings(stages),
         *stages.body.repairs,
         "Lengths are those of the front part of a line, side to side; the back does not change.",
-        "Not modelled: sliding of the garment on the skin, gravity, stiffness of real tape and real tissue.",
+        "Not modelled: friction between garment and skin, gravity, stiffness of real tape and real tissue.",
     ]
 
 
@@ -175,11 +175,13 @@ def blamed_line(stages: Stages) -> WornLine | None:
 
 def still_lines(stages: Stages) -> list[str]:
     """Return a sentence for each line that is worn where no length can move anything."""
-    worn = [line for line in stages.model.lines if line.name in stages.design.worn()]
+    own = {line.name for line in stages.design.own_lines}
+    still = [line.name for line in stages.model.lines if not line.constrains]
     return [
-        f"{line.name} lies on the rib cage: it is measured, and no length that is set moves it."
-        for line in worn
-        if not line.constrains
+        f"{name} lies on {'points that do not move' if name in own else 'the rib cage'}: "
+        "it is measured, and no length that is set moves it."
+        for name in still
+        if name in stages.design.worn()
     ]
 
 
