@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 from threadpoolctl import threadpool_limits
 
+from core import kernels
 from core.comparison import Comparison
 from core.design import Design, cannot_hold
 from core.errors import UserError
@@ -24,6 +25,9 @@ from core.verdict import Verdict
 
 _SLICE = 0.012
 """Seconds of turns between two frames: about one picture of a screen."""
+
+LARGE = 10_000
+"""Moving vertices from which on compiled loops gain more in use than the second costs that they load in."""
 
 _NAP = 0.0005
 """A pause per frame in which the window's thread surely gets the interpreter."""
@@ -87,6 +91,7 @@ class LiveSolver:
         self._comparison: Comparison | None = None
         self._seconds = 0.0
         self._held = False
+        self._warmer: threading.Thread | None = None
         self._thread = threading.Thread(target=self._work, name="busk-solver", daemon=True)
         self._thread.start()
 
@@ -127,6 +132,8 @@ class LiveSolver:
             self._stopping = True
             self._wake.notify()
         self._thread.join()
+        if self._warmer is not None:
+            self._warmer.join()
 
     def _work(self) -> None:
         # Two BLAS threads make these small products many times slower.
@@ -149,6 +156,7 @@ class LiveSolver:
                     self._refuse_what_cannot_be_held()
                     if self._stages is not None and self._comparison is not None:
                         self._publish(make_frame(taken, self._stages, self._comparison, self._seconds))
+                        self._warm_up(self._stages)
                 except UserError as error:
                     self._fail(Failure(asked, error))
                 except Exception as error:
@@ -156,6 +164,12 @@ class LiveSolver:
                     self._comparison = None
                     self._fail(Failure(asked, error))
                 time.sleep(_NAP)
+
+    def _warm_up(self, stages: Stages) -> None:
+        """Load the compiled loops once a body is shown that is large enough to gain from them."""
+        if self._warmer is None and len(stages.moving.vertices) >= LARGE:
+            self._warmer = threading.Thread(target=kernels.warm, name="busk-warm", daemon=True)
+            self._warmer.start()
 
     def _something_to_do(self) -> bool:
         turning = self._comparison is not None and not self._comparison.resting

@@ -88,6 +88,8 @@ prepare_environment() {
     $pip install --only-binary :all: --require-hashes -r requirements.lock ||
         fail "The Python packages could not be installed; the reason stands above." "Call make again to go on from here."
     $pip install --no-index --no-deps --no-build-isolation --editable .
+    # Compiled once here, the loops are only read later; without them the program works too, only slower.
+    .venv/bin/python -c "from core import kernels; kernels.warm()" || true
 }
 
 is_ready() {

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from core import live
 from core.design import Design, ScanSource
 from core.errors import UserError
 from core.exact import solve_exact
@@ -22,9 +23,9 @@ PATIENCE = 60.0
 
 @pytest.fixture
 def solver() -> Iterator[LiveSolver]:
-    live = LiveSolver()
-    yield live
-    live.stop()
+    solving = LiveSolver()
+    yield solving
+    solving.stop()
 
 
 def answer(solver: LiveSolver, until: Callable[[Frame], bool]) -> Frame:
@@ -150,3 +151,17 @@ def test_each_control_shows_its_own_answer(solver: LiveSolver, built: Built, con
     }[control]
     assert low <= share <= high
     assert {"adaptive", "conventional"} <= set(frame.tracks)
+
+
+@pytest.mark.parametrize(("large", "calls"), [(1, 1), (10**9, 0)])
+def test_compiled_loops_are_loaded_once_and_only_for_a_large_body(
+    solver: LiveSolver, built: Built, monkeypatch: pytest.MonkeyPatch, large: int, calls: int
+) -> None:
+    warmed: list[str] = []
+    monkeypatch.setattr(live, "LARGE", large)
+    monkeypatch.setattr(live.kernels, "warm", lambda: warmed.append(threading.current_thread().name))
+    design = built("mannequin").design
+    settled(solver, solver.submit(design))
+    settled(solver, solver.submit(design.with_line("mid-bust", 0.95)))
+    solver.stop()
+    assert warmed == ["busk-warm"] * calls
