@@ -24,8 +24,9 @@ NEWTON_LIMIT = 200
 
 _STRIDE = 0.05
 _STRIDE_STEPS = 20
-_LEAST_STRIDE = 0.0005
+_SHORTEST_STRIDE = 0.01  # of the first one: a walk that must go more slowly has come to its end
 _TURNS = 3000
+_AT_REST, _AWAY = 1e-6, 1.0  # largest move of a turn that has come to rest, and that runs away [mm]
 
 
 def solve_exact(
@@ -64,12 +65,15 @@ def newton(
             yield last
         if last.found or last.steps >= limit:
             return
-    done = last.steps
-    for last in _walk(model, ratios, excess, limit - done):
+    done, spared = last.steps, _STRIDE_STEPS if _slides(model) else 0
+    for last in _walk(model, ratios, excess, max(limit - done - spared, 1)):
         yield replace(last, steps=done + last.steps)
-    if not last.found and _slides(model) and done + last.steps < limit:
+    done += last.steps
+    if not last.found and _slides(model) and limit - done >= spared:
         turned = _turned(potential, ratios)
-        yield replace(turned, steps=done + last.steps + turned.steps)
+        # Where turns run away, what the walk came to stays the answer.
+        if turned is not None:
+            yield replace(turned, steps=done + turned.steps)
 
 
 def _most_steps(model: ConstrainedModel) -> int:
@@ -93,9 +97,10 @@ def _walk(
     Each stride ends in a balance, so the walk keeps to the branch that leads there from rest.
     """
     way = max(abs(ratio - 1.0) for ratio in ratios)
-    done, stride, steps = 0.0, min(1.0, _STRIDE / max(way, 1e-9)), 0
+    first = stride = min(1.0, _STRIDE / max(way, 1e-9))
+    done, steps = 0.0, 0
     last = balance_at(Potential(model, ratios), at_rest(model).moved)
-    while done < 1.0 and steps < limit and stride * way > _LEAST_STRIDE:
+    while done < 1.0 and steps < limit and stride > _SHORTEST_STRIDE * first:
         share = min(done + stride, 1.0)
         between = tuple(1.0 + share * (ratio - 1.0) for ratio in ratios)
         potential = Potential(model, between, None if excess is None else share * excess)
@@ -112,15 +117,16 @@ def _walk(
         yield replace(last, steps=steps, residual=np.inf)
 
 
-def _turned(potential: Potential, ratios: tuple[float, ...]) -> Balance:
-    """Return what adaptive turns and a few Newton steps after them come to, balanced or not."""
+def _turned(potential: Potential, ratios: tuple[float, ...]) -> Balance | None:
+    """Return what adaptive turns and a few Newton steps after them come to, None if they run away."""
     moved = at_rest(potential.model).moved
     for state, measured in iterate(potential.model, lambda: Targets(ratios), turns=_TURNS):
         moved = state.moved
-        if measured.step < 1e-6:
+        if measured.step < _AT_REST:
             break
     place = potential.at(moved)
     forces, push = Skin(potential.model).projected(place)
     multipliers = np.asarray(np.linalg.lstsq(push.T, forces, rcond=1e-12)[0])
     start = balance_at(potential, moved, np.inf, multipliers)
-    return min(_steps(potential, start, _STRIDE_STEPS), key=lambda balance: balance.residual)
+    best = min(_steps(potential, start, _STRIDE_STEPS), key=lambda balance: balance.residual)
+    return best if best.found or measured.step < _AWAY else None

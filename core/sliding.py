@@ -42,7 +42,7 @@ def sliding_steps(potential: Potential, start: Balance, limit: int) -> Iterator[
         longest = float(np.sqrt(np.einsum("ij,ij->i", shift, shift).max()))
         if not np.isfinite(longest):
             return
-        moved = moved + shift * min(1.0, LONGEST_STEP / longest)
+        moved = moved + shift * (LONGEST_STEP / max(longest, LONGEST_STEP))
 
 
 class Skin:

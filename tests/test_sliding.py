@@ -1,5 +1,6 @@
 """Sliding lines: only the part of their force across the skin acts, in turns and in the exact answer."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -7,12 +8,15 @@ import pytest
 from models import LAWS, cable_force, law_of, line_force, settled, small, volume_slopes
 from shapes import central_difference, fitted, mid_bust, mirrored, torso
 
-from core.exact import newton, solve_exact
-from core.mechanics import Mechanics
+from core.design import OwnLine
+from core.exact import NEWTON_LIMIT, newton, solve_exact
+from core.mechanics import HOLDS, Mechanics
 from core.model import constrained_model
+from core.pipeline import with_own_lines
 from core.potential import Potential
 from core.sliding import Skin
 from core.solver import State, Targets, at_rest, turn
+from core.sphere import sphere_model
 from core.volume import CONTROLS, Pressure
 
 SLIDING = Mechanics(line_contact="sliding")
@@ -178,3 +182,41 @@ def test_a_sliding_line_cannot_shrink_on_and_on(sample):
     assert lengths[1] - lengths[2] < 0.02
     assert lengths[2] > 0.84
     assert bust_lift(sample, "glued", 0.6)[1] < 0.79
+
+
+@pytest.mark.parametrize("hold", HOLDS)
+def test_a_length_next_to_rest_is_found_in_a_few_steps(hold):
+    """Turns cannot help here: a force that is kept during the turn is not calm for so stiff a line."""
+    choice = replace(SLIDING, line_hold=hold, line_force="explicit", line_stiffness=500.0)
+    model = small(choice, worn=WORN)
+    for ratio in (0.9997, 0.99999, 1.0002):
+        balance = solve_exact(model, (1.0, ratio, 1.0))
+        assert balance.found
+        assert balance.steps <= 5
+
+
+def test_turns_find_what_the_walk_does_not():
+    """Two lines cross on the sphere: the walk from rest breaks off, and leaves enough for the last resort."""
+    choice = Mechanics("prestressed", line_contact="sliding")
+    balance = solve_exact(sphere_model(["horizontal", "vertical"], choice).model, (0.9, 0.95))
+    assert balance.found
+    assert balance.steps <= NEWTON_LIMIT
+
+
+def test_where_turns_run_away_too_the_end_of_the_walk_stays():
+    """A sliding line to a single free point and back can hardly be held: nothing is torn apart over it."""
+    there, mid = 13 * 2 + 4, 13 * 2 + 5
+    control = with_own_lines(torso(skew=0.3), (OwnLine("back", (there, mid, there)),))
+    model = constrained_model(control, worn=["back"], mechanics=replace(SLIDING, line_hold="held"))
+    balance = solve_exact(model, (1.0, 1.0, 1.0, 0.9))
+    assert not balance.found
+    assert np.abs(balance.state.moved).max() < 20.0
+
+
+@pytest.mark.parametrize("ratios", [(1.0, 0.85, 0.95), (1.0, 0.9, 0.95)])
+def test_where_newton_steps_fail_turns_are_the_last_resort(ratios):
+    """Two sliding lines side by side over few free points: a case that only turns arrived at once."""
+    model = small(Mechanics("prestressed", line_contact="sliding", volume_of="both"))
+    balance = solve_exact(model, ratios)
+    assert balance.found
+    np.testing.assert_allclose(balance.state.moved, settled(model, Targets(ratios)).moved, atol=1e-7)
