@@ -50,8 +50,8 @@ class Limits:
     ``present`` is the line as it is set, None if it is off; ``beyond`` names those of SIGNS that this setting
     already shows. ``begins`` tells for each of SIGNS the longest length that shows it, None where none does
     down to RATIO_LIMITS; a beginning at the rest length is the other lines' doing. ``last`` is the shortest
-    length with a balance, None if there is one down to where all SIGNS show. ``found`` is False if there is none anywhere: the
-    other lines ask for what cannot be.
+    length with a balance, None if there is one down to where all SIGNS show. ``found`` is False if there is
+    none anywhere: the other lines ask for what cannot be.
     """
 
     line: Line
