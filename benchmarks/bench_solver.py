@@ -29,6 +29,7 @@ from core.exact import solve_exact
 from core.gain import gain_limit
 from core.landmarks import find_landmarks
 from core.layout import layout_of
+from core.limits import shortest
 from core.mesh import Floats
 from core.model import ConstrainedModel, constrained_model
 from core.potential import Place, Potential
@@ -177,11 +178,12 @@ def measure(scan: str) -> None:
         f"exact, {100 * NEAR:.1f} % on": lambda: solve_exact(model, ratios, near=near),
         "one turn": lambda: turn(model, Targets(ratios), state),
         "gain limit": lambda: gain_limit(model),
+        "shortest line": lambda: shortest(model, (1.0, 1.0, 1.0), "mid-bust"),
         "model": make,
         "layout": lambda: layout_of(model.tensegric, model.segments, model.volume),
     }
     found = interleaved(parts)
-    print("  " + "   ".join(f"{name} {value:.3f}" for name, value in found.items()))
+    print("  " + "   ".join(f"{name} {value:.2f}" for name, value in found.items()))
 
 
 def contest(model: ConstrainedModel, ratios: tuple[float, ...]) -> None:
