@@ -14,6 +14,7 @@ import pytest
 from PySide6.QtCore import QSettings
 from PySide6.QtWidgets import QApplication
 from small_project import write_project
+from threadpoolctl import threadpool_limits
 
 from core.design import Design, ScanSource, WornLine
 from core.pipeline import Stages, build
@@ -41,6 +42,13 @@ def garbage_in_this_thread(request: pytest.FixtureRequest) -> Iterator[None]:
     gc.disable()
     yield
     gc.collect(2 if "qapp" in request.fixturenames else 0)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def one_blas_thread() -> Iterator[None]:
+    """As in the solver's thread: two make the wide matrices of a sphere many times slower."""
+    with threadpool_limits(1):
+        yield
 
 
 @pytest.fixture(scope="session")

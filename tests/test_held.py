@@ -96,6 +96,16 @@ def test_turns_come_to_the_exact_answer(law, contact):
     np.testing.assert_allclose(state.tensions, balance.tensions, rtol=1e-6)
 
 
+@pytest.mark.parametrize("stiffness", [4.0, 16.0, 64.0])
+def test_turns_bring_a_held_line_to_its_length_without_long_swings(stiffness):
+    """Without its damping such a line still misses its length by more than 0.01 % after 100 to 400 turns."""
+    choice = Mechanics(line_hold="held", line_stiffness=stiffness)
+    model = constrained_model(fitted("person"), worn=["mid-bust"], mechanics=choice)
+    _, records = run(model, Targets(mid_bust(model, 0.97)), 100)
+    reached = np.array([measured.lengths[1] for measured in records]) / model.lines[1].rest_length
+    assert np.abs(reached[30:] - 0.97).max() < 1e-4
+
+
 def test_a_soft_spring_gives_way_a_stiff_one_less_and_a_held_line_not_at_all():
     reached = []
     for choice in (*(Mechanics(line_stiffness=k) for k in (4.0, 16.0, 64.0, 256.0)), HELD):
