@@ -179,10 +179,14 @@ def test_adaptive_step_halves_when_the_volume_flips_and_recovers_slowly():
     flipped = next_pressure("adaptive", Pressure(error=0.01), -0.008, gain=0.0)
     assert flipped.step == 0.4
     assert next_pressure("adaptive", flipped, -0.007, gain=0.0).step == pytest.approx(0.42)
-    small_flip = next_pressure("adaptive", Pressure(error=0.01), -0.002, gain=0.0)
-    assert small_flip.step == 0.8
-    round_off = next_pressure("adaptive", Pressure(error=1e-8), -1e-8, gain=0.0)
-    assert round_off.step == 0.8
+    # A flip counts from three tenths of the error before it on, and above round-off.
+    for error, before, step in (
+        (0.0031, 0.01, 0.4),
+        (0.0029, 0.01, 0.8),
+        (1.1e-7, 3e-7, 0.4),
+        (0.9e-7, 3e-7, 0.8),
+    ):
+        assert next_pressure("adaptive", Pressure(error=before), -error, gain=0.0).step == step
 
 
 @settings(deadline=None)
