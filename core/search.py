@@ -27,6 +27,8 @@ LINE_HEIGHTS = (0.25, 0.5, 0.75)
 RATIOS = (0.97, 0.9, 0.6)
 FIRM = (0.0, 0.1)
 TURNS = 100
+"""Turns of a case; 300 give the same answer to both questions in every one of them."""
+
 FIRST_TURNS = 10
 """Turns that count as "the initial stage"."""
 
