@@ -40,7 +40,7 @@ class Actions:
         )
         self.about = self._make(tr("About Busk"))
         self.add_lines = {name: self._make(title) for name, title in self._line_titles().items()}
-        self.own_line = self._make(tr("Line through control points…"))
+        self.own_line = self._make(tr("Draw a line…"))
         self.samples = {name: self._make(tr(title)) for name, title in SAMPLES.items()}
         self.controls = self._group({name: self._control_title(name) for name in CONTROLS})
         self.templates = self._group(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from PySide6.QtWidgets import QFileDialog, QInputDialog, QMessageBox, QWidget
+from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from app.words import tr
 from core import __version__
@@ -52,17 +52,6 @@ def ask_about_changes(parent: QWidget, name: str) -> str:
     box.setDefaultButton(buttons.Save)
     answer = box.exec()
     return {buttons.Save.value: "save", buttons.Discard.value: "discard"}.get(answer, "stay")
-
-
-def ask_own_line(parent: QWidget) -> str:
-    """Return the name and the control points of a new line as text, or an empty text."""
-    what = tr("Name and control points, from point to point, for example:")
-    how = tr("r2c3 is row 2 from below, column 3 from the middle to the left; c-3 lies on the right.")
-    examples = "strap=r2c3:r6c3\nv=r6c-3,r3c0,r6c3\nring=r3c2:r3c4,r4c4:r4c2,closed"
-    text, wanted = QInputDialog.getText(
-        parent, tr("Line through control points"), f"{what}\n\n{examples}\n\n{how}\n"
-    )
-    return text if wanted else ""
 
 
 def about_busk(parent: QWidget) -> None:

@@ -6,12 +6,11 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QPoint
 
-from app.dialogs import ask_own_line
-from app.present import line_title
+from app.line_dialog import ask_own_line
+from app.present import LINE_COLOURS, line_title
 from app.words import tr
 from core.design import OwnLine
-from core.errors import UserError
-from core.own_lines import own_line, ready_made
+from core.own_lines import ready_made
 from core.template import read_template
 
 if TYPE_CHECKING:
@@ -37,14 +36,13 @@ class LineMaker(QObject):
             self._take(ready_made(read_template(design.template))[kind])
 
     def ask(self) -> None:
-        """Ask for control points and add the line through them."""
-        design = self._window.session.design
-        text = ask_own_line(self._window) if design is not None else ""
-        if text and design is not None:
-            try:
-                self._take((own_line(text, read_template(design.template)),))
-            except UserError as error:
-                self._window.desk.show_failure(error)
+        """Let a line be drawn, and add it."""
+        session = self._window.session
+        if session.design is not None:
+            names = {*LINE_COLOURS, *(line.name for line in session.design.own_lines)}
+            line = ask_own_line(self._window, read_template(session.design.template), names)
+            if line is not None:
+                self._take((line,))
 
     def remove(self, name: str) -> None:
         """Remove a line."""

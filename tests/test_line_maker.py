@@ -8,13 +8,19 @@ import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QWidget
+from pytestqt.qtbot import QtBot
 from window_tools import Script, points, run_main, settled
 
 from app import line_maker
+from app.line_dialog import LineDialog
 from app.main_window import MainWindow
-from core.own_lines import ready_made
+from core.design import OwnLine
+from core.own_lines import own_line, ready_made
 from core.pipeline import build
 from core.template import read_template
+
+BIG = read_template("168")
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -55,16 +61,14 @@ def test_slings_are_listed_drawn_shortened_and_removed() -> None:
 def test_a_line_goes_through_the_points_that_are_named(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    answers = ["v=r6c-3,r3c0,r6c3", "v=r9c0,r3c0", "edge=r6c-2:r6c2", ""]
-    monkeypatch.setattr(line_maker, "ask_own_line", lambda _: answers.pop(0))
+    answers = [own_line("v=r6c-3,r3c0,r6c3", BIG), own_line("edge=r6c-2:r6c2", BIG), None]
+    monkeypatch.setattr(line_maker, "ask_own_line", lambda *_: answers.pop(0))
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
         window.actions_.own_line.trigger()
         yield lambda: "v" in window.lines.rows and window.is_settled()
         assert window.session.design.own_lines[0].points == (81, 45, 87)
-        window.actions_.own_line.trigger()
-        assert "no place 'r9c0'" in window.notices.notice().sentence
         window.actions_.own_line.trigger()
         yield lambda: "edge" in window.lines.rows
         assert not window.lines.rows["edge"].view.constrained
@@ -80,6 +84,34 @@ def test_a_line_goes_through_the_points_that_are_named(
 
     run_main([], script)
     run_main([str(tmp_path / "v.busk")], again)
+
+
+def test_a_line_is_drawn_from_point_to_point(qtbot: QtBot) -> None:
+    parent = QWidget()
+    qtbot.addWidget(parent)
+    dialog = LineDialog(parent, BIG, {"mid-bust", "line 1"})
+
+    def press(*places: str) -> None:
+        for place in places:
+            at = dialog.map.place(own_line(f"x={place},0", BIG).points[0]).toPoint()
+            QTest.mouseClick(dialog.map, Qt.MouseButton.LeftButton, pos=at)
+
+    assert dialog.name.text() == "line 2"
+    press("r2c3")
+    assert dialog.line is None
+    press("r3c3", "r4c2")
+    assert dialog.line == OwnLine("line 2", (35, 48, 60))
+    dialog.closed.click()
+    assert dialog.line == OwnLine("line 2", (35, 48, 60), closed=True)
+    press("r4c2", "r4c4", "r4c3")
+    assert dialog.points.text() == "r2c3, r3c3, r4c4, r4c3"
+    dialog.name.setText("")
+    QTest.keyClicks(dialog.name, "mid-bust")
+    assert dialog.line is None
+    assert dialog._said.text() == "There is a line of that name already."
+    dialog.points.clear()
+    QTest.keyClicks(dialog.points, "r9c9, 3")
+    assert "no place 'r9c9'" in dialog._said.text()
 
 
 def test_the_accumulating_force_can_be_chosen() -> None:
