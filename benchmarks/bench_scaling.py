@@ -34,7 +34,7 @@ SIZES = ((7, 6), (21, 12), (42, 30), (63, 42))
 """Cells from bottom to top, and from the centre to one side."""
 
 SHORTEST, LONGEST = 0.85, 1.03
-MOST_STEPS = 100
+MOST_STEPS = 60
 Work = Callable[[], object]
 
 
