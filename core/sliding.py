@@ -11,7 +11,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from core.band import Entries, Operator
 from core.mesh import Floats, Indices, Points
 from core.model import ConstrainedModel
 from core.newton import RESIDUAL_LIMIT, Balance, balance_at, small_solve
@@ -50,21 +49,13 @@ class Skin:
 
     def __init__(self, model: ConstrainedModel) -> None:
         self.model = model
-        pairs = model.tensegric.place[model.segments.pairs]
         # Before the tensions of held lines come one pressure for both sides or one for each.
         self._first_line = 1 if model.volume.closed or model.mechanics.volume_of == "both" else 2
-        self.nodes: Indices = np.unique(pairs[pairs >= 0])
-        whole = model.volume.curvature(model.tensegric.place)
-        here = np.isin(whole.row // 3, self.nodes)
-        axis = np.arange(3)
-        row = (3 * (whole.row[here] // 3)[:, None] + axis).ravel()
-        count = 3 * len(model.tensegric.rest)
-        self._node, self._axis = whole.row[here] // 3, whole.row[here] % 3
-        self._source, self._value = whole.source[here] % count, whole.value[here]
-        entries = Entries(
-            row, np.repeat(whole.column[here], 3), np.arange(len(row)), np.ones(len(row)), len(row)
-        )
-        self._turning: Operator = model.layout.band.general(entries)
+        self.nodes = model.layout.nodes
+        corners = model.layout.corners_of_lines
+        self._node, self._axis = corners.row // 3, corners.row % 3
+        # Left and right alike: n is across the sum of both.
+        self._source, self._value = corners.source % (3 * len(model.tensegric.rest)), corners.value
 
     def _across(self, place: Place) -> tuple[Points, Floats]:
         """Return n at the points of the lines, 0 elsewhere, (f, 3), and the volume gradient's size, (f,)."""
@@ -102,7 +93,9 @@ class Skin:
         turning = turning @ (np.eye(3) - n[:, :, None] * n[:, None, :]) / size[:, None, None]
         centred = (place.points - model.volume.centre).ravel()
         figures = turning[self._node, :, self._axis] * (self._value * centred[self._source])[:, None]
-        return np.asarray(inner + model.layout.lines_general @ ends.ravel() + self._turning @ figures.ravel())
+        return np.asarray(
+            inner + model.layout.lines_general @ ends.ravel() + model.layout.turning_general @ figures.ravel()
+        )
 
 
 def _projector(n: Points, ends: Indices) -> Floats:
