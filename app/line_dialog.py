@@ -9,7 +9,6 @@ from itertools import pairwise
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import (
-    QCheckBox,
     QDialog,
     QDialogButtonBox,
     QFormLayout,
@@ -18,7 +17,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.parts import sentence
+from app.parts import Segment, sentence
 from app.present import OWN_COLOURS
 from app.theme import font, tokens_of
 from app.words import say, tr
@@ -116,7 +115,8 @@ class LineDialog(QDialog):
         self.map = PointMap(template)
         self.name, self.points = QLineEdit(self._free_name()), QLineEdit()
         self.points.setPlaceholderText("r2c3, r3c3, r4c2")
-        self.closed = QCheckBox(tr("Closed: it goes round, back to its first point"))
+        self.ends = Segment((("open", tr("Open ends")), ("closed", tr("Closed, goes round"))), small=True)
+        self.ends.set_choice("open")
         self._said = sentence("", "caption")
         self._buttons = QDialogButtonBox()
         add = self._buttons.addButton(tr("Add"), QDialogButtonBox.ButtonRole.AcceptRole)
@@ -126,7 +126,7 @@ class LineDialog(QDialog):
         self._add = add
         self._lay_out()
         self.map.pressed.connect(self._go_on)
-        self.closed.toggled.connect(self._read)
+        self.ends.chosen.connect(self._read)
         for field in (self.name, self.points):
             field.setMinimumHeight(28)
             field.textEdited.connect(self._read)
@@ -147,7 +147,7 @@ class LineDialog(QDialog):
         form = QFormLayout()
         form.addRow(tr("Name"), self.name)
         form.addRow(tr("Points"), self.points)
-        form.addRow("", self.closed)
+        form.addRow("", self.ends)
         column.addLayout(form)
         column.addWidget(self._said)
         column.addWidget(self._buttons)
@@ -165,9 +165,8 @@ class LineDialog(QDialog):
         text = self.points.text().strip().strip(",")
         line, said = None, ""
         try:
-            line = own_line(
-                f"{self.name.text()}={text}{',closed' if self.closed.isChecked() else ''}", self._template
-            )
+            closed = ",closed" if self.ends.button("closed").isChecked() else ""
+            line = own_line(f"{self.name.text()}={text}{closed}", self._template)
             if line.name in self._names:
                 line, said = None, tr("There is a line of that name already.")
         except UserError as error:

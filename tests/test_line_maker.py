@@ -101,7 +101,7 @@ def test_a_line_is_drawn_from_point_to_point(qtbot: QtBot) -> None:
     assert dialog.line is None
     press("r3c3", "r4c2")
     assert dialog.line == OwnLine("line 2", (35, 48, 60))
-    dialog.closed.click()
+    dialog.ends.button("closed").click()
     assert dialog.line == OwnLine("line 2", (35, 48, 60), closed=True)
     press("r4c2", "r4c4", "r4c3")
     assert dialog.points.text() == "r2c3, r3c3, r4c4, r4c3"
