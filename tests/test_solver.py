@@ -38,6 +38,20 @@ def test_a_tape_is_the_same_along_a_line():
     )
 
 
+def test_a_tape_of_unequal_segments_by_hand():
+    """A segment as long as the mean has the stiffness that was set, in units of the cables' mean."""
+    lengths = TORSO.segments.rest_lengths
+    assert np.ptp(lengths) > 1.0
+    by_hand = 16.0 * TORSO.tensegric.mean_stiffness * lengths.mean() / lengths
+    np.testing.assert_allclose(TORSO.segments.stiffness, by_hand, rtol=1e-12)
+
+
+def test_the_left_triangles_of_a_body_are_those_on_its_left():
+    middles = TORSO.tensegric.rest[TORSO.volume.faces].mean(axis=1)[:, 0]
+    assert np.abs(middles).min() > 1.0
+    np.testing.assert_array_equal(TORSO.volume.left, middles > 0.0)
+
+
 def test_hooke_force_by_hand():
     model = tent_model()
     k, length = model.segments.stiffness[0], np.sqrt(41.0)
