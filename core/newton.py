@@ -20,6 +20,12 @@ from core.solver import State
 RESIDUAL_LIMIT = 1e-10
 """Largest unbalanced force over the mean stiffness [mm] at which the balance counts as exact."""
 
+_QUICK = 0.25
+"""A step that leaves no more than this of what was amiss needs no safeguard: most do, at half the cost."""
+
+_BOLD = 8.0
+"""No point moves further than this in such a step [mm]."""
+
 
 @dataclass(frozen=True, eq=False)
 class Balance:
@@ -44,15 +50,18 @@ class Balance:
 def energy_steps(potential: Potential, start: Balance, limit: int) -> Iterator[Balance]:
     """Yield ``start`` and the Newton iterates after it, until exact, lost, or ``limit`` steps are made.
 
-    Every iterate but the start has the exact volumes and lengths, and the energy falls strictly.
+    A short step that leaves a quarter of what was amiss, or less, is taken as it is. Any other is brought
+    back to the exact volumes and lengths, and shortened until it lowers the energy.
     """
     place, multipliers = potential.at(start.state.moved), start.multipliers
     for step in range(limit + 1):
-        residual = potential.residual(place, place.gradient - place.slopes.T @ multipliers)
+        amiss = potential.amiss(place, multipliers)
+        held = (np.abs(place.held) <= 1e3 * potential.tolerance).all()
+        residual = amiss if held else np.inf
         yield balance_at(potential, place.moved, residual, multipliers, step)
         if residual < RESIDUAL_LIMIT or step == limit:
             return
-        taken = _step(potential, place, multipliers)
+        taken = _step(potential, place, multipliers, amiss)
         if taken is None:
             return
         place, multipliers = taken
@@ -73,26 +82,36 @@ def balance_at(
     return Balance(state, residual, pressures, steps, multipliers, tensions)
 
 
-def _step(potential: Potential, place: Place, multipliers: Floats) -> tuple[Place, Floats] | None:
+def _step(
+    potential: Potential, place: Place, multipliers: Floats, amiss: float
+) -> tuple[Place, Floats] | None:
     """Return where one Newton step leads, and the multipliers there; None if no step lowers the energy."""
-    solve = factor(potential, place, multipliers)
+    solve, true = factor(potential, place, multipliers)
     solved = solve(np.column_stack([-place.gradient, place.slopes.T]))
     free, push = solved[:, 0], solved[:, 1:]
+    new = -small_solve(place.slopes @ push, place.slopes @ free + place.held)
+    direction = free + push @ new
+    if true and np.abs(direction).max(initial=0.0) < _BOLD:
+        there = potential.at(place.moved + direction.reshape(-1, 3))
+        if potential.amiss(there, new) <= _QUICK * amiss:
+            return there, new
     if (np.abs(place.held) > potential.tolerance).any():
         start = _retract(potential, place.moved, push)
         return None if start is None else (start, multipliers)
-    multipliers = -small_solve(place.slopes @ push, place.slopes @ free)
-    there = _line_search(potential, place, free + push @ multipliers, push)
-    return None if there is None else (there, multipliers)
+    found = _line_search(potential, place, direction, push)
+    return None if found is None else (found, new)
 
 
-def factor(potential: Potential, place: Place, multipliers: Floats) -> Solve:
-    """Return a solver of the first positive definite Hessian: the full one, or without what spoils it."""
+def factor(potential: Potential, place: Place, multipliers: Floats) -> tuple[Solve, bool]:
+    """Return a solver of the first positive definite Hessian: the full one, or without what spoils it.
+
+    Also tells whether it is the full one.
+    """
     for clip, curved in ((False, True), (True, True), (True, False)):
         matrix = potential.hessian(place, multipliers, clip=clip, curved=curved)
         solve = potential.model.layout.band.cholesky(matrix)
         if solve is not None:
-            return solve
+            return solve, curved and not clip
     raise AssertionError("cables alone are positive definite")
 
 

@@ -95,6 +95,12 @@ class Potential:
             across = np.maximum(across, 0.0)
         return stretch_blocks(place.spans / place.lengths[:, None], self.tape, across)
 
+    def amiss(self, place: Place, multipliers: Floats) -> float:
+        """Return the largest of the unbalanced forces over the mean stiffness and of what is held [mm]."""
+        forces = np.abs(place.gradient - multipliers @ place.slopes).max(initial=0.0)
+        away = np.abs(place.held).max(initial=0.0)
+        return float(max(forces / self.model.tensegric.mean_stiffness, away))
+
     def residual(self, place: Place, forces: Floats) -> float:
         """Return the largest of the unbalanced ``forces`` (3 f,) over the mean stiffness [mm].
 

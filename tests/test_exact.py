@@ -110,23 +110,34 @@ def test_the_balance_is_force_against_pressure():
     assert (balance.pressures > 0.0).all()
 
 
-def test_every_iterate_keeps_the_volumes_and_lowers_the_energy():
+def assert_progress(potential, balances):
+    """Each step leaves a quarter of what was amiss or less, or it comes back to the volumes if it had left
+    them, or it keeps them and lowers the energy.
+    """
+    for before, after in pairwise(balances):
+        old, new = (potential.at(balance.state.moved) for balance in (before, after))
+        quick = potential.amiss(new, after.multipliers) <= 0.25 * potential.amiss(old, before.multipliers)
+        was_kept, kept = ((np.abs(at.held) <= 1e3 * potential.tolerance).all() for at in (old, new))
+        lower = potential.energy(new) <= (1.0 + 1e-11) * potential.energy(old)
+        assert quick or (kept and (lower or not was_kept))
+
+
+def test_every_step_leaves_a_quarter_or_keeps_the_volumes_and_lowers_the_energy():
     ratios = (1.0, 0.7, 0.8)
-    wanted = SKEW.volume.side_volumes(SKEW.tensegric.rest)
-    iterates = [balance.state.moved for balance in newton(SKEW, ratios)]
-    energies = [energy_of(Potential(SKEW, ratios), moved) for moved in iterates]
-    for moved in iterates:
-        found = SKEW.volume.side_volumes(SKEW.tensegric.expand(moved))
-        assert np.abs(found - wanted).max() / SKEW.volume.rest_volume < 1e-12
-    drops = np.diff(energies)
-    assert (drops <= 1e-12 * energies[0]).all()
-    assert drops[0] < -0.1 * energies[0]
+    potential, balances = Potential(SKEW, ratios), list(newton(SKEW, ratios))
+    assert_progress(potential, balances)
+    energies = [energy_of(potential, balance.state.moved) for balance in (balances[0], balances[-1])]
+    assert energies[1] < 0.9 * energies[0]
 
 
 def test_the_last_steps_converge_quadratically():
-    residuals = [balance.residual for balance in newton(TORSO, mid_bust(TORSO, 0.8))][2:]
-    fast = [after / before**2 for before, after in pairwise(residuals[:-1])]
-    assert residuals[-1] < 1e-10
+    potential = Potential(TORSO, mid_bust(TORSO, 0.8))
+    amiss = [
+        potential.amiss(potential.at(balance.state.moved), balance.multipliers)
+        for balance in newton(TORSO, mid_bust(TORSO, 0.8))
+    ][2:]
+    fast = [after / before**2 for before, after in pairwise(amiss[:-1])]
+    assert amiss[-1] < 1e-10
     assert max(fast) < 1.0
 
 
@@ -243,13 +254,11 @@ def test_a_model_of_one_breast_only():
 
 @pytest.mark.parametrize("worn", [["mid-bust"], ["mid-bust", "full-bust"]])
 def test_stiff_lines_that_push_are_found_too(worn):
-    """Lengthened stiff lines buckle: there full Newton steps would raise the energy."""
+    """Lengthened stiff lines buckle: there full Newton steps lead astray."""
     model = constrained_model(torso(skew=0.3), worn=worn, mechanics=Mechanics(line_stiffness=500.0))
-    energy = Potential(model, (1.0, 1.3, 1.3))
-    *balances, last = newton(model, (1.0, 1.3, 1.3))
-    assert last.found
-    energies = [energy_of(energy, balance.state.moved) for balance in [*balances, last]]
-    assert (np.diff(energies) <= 1e-11 * energies[0]).all()
+    balances = list(newton(model, (1.0, 1.3, 1.3)))
+    assert balances[-1].found
+    assert_progress(Potential(model, (1.0, 1.3, 1.3)), balances)
 
 
 @pytest.mark.parametrize("ratio", [0.5, 0.6, 1.2, 1.3])
