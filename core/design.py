@@ -194,6 +194,14 @@ def cannot_hold(design: Design) -> LineError:
     )
 
 
+def no_balance() -> LineError:
+    """Return what to say when no exact answer was found with lines that spring back."""
+    return LineError(
+        "No balance was found with the lines at these lengths.",
+        "Set them nearer to 100 %, or let turns hold the volume.",
+    )
+
+
 def to_json(design: Design) -> str:
     """Return the design as text, format number first."""
     values = asdict(design)

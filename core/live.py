@@ -16,7 +16,7 @@ from threadpoolctl import threadpool_limits
 
 from core import kernels
 from core.comparison import Comparison
-from core.design import Design, cannot_hold
+from core.design import Design, cannot_hold, no_balance
 from core.errors import UserError
 from core.mesh import Points
 from core.pipeline import Stages, build, targets_of
@@ -149,11 +149,11 @@ class LiveSolver:
                     if request is not None:
                         asked = request.revision
                         self._take(request)
-                        self._refuse_what_cannot_be_held()
+                        self._refuse_what_has_no_balance()
                         # Only now: the frames after a failure are still those of the design before it.
                         taken = asked
                     self._advance()
-                    self._refuse_what_cannot_be_held()
+                    self._refuse_what_has_no_balance()
                     if self._stages is not None and self._comparison is not None:
                         self._publish(make_frame(taken, self._stages, self._comparison, self._seconds))
                         self._warm_up(self._stages)
@@ -205,14 +205,16 @@ class LiveSolver:
                 comparison.advance()
                 self._seconds += time.perf_counter() - start
 
-    def _refuse_what_cannot_be_held(self) -> None:
-        """Rather than a body torn apart by lines that no balance can hold, the last frame stays."""
+    def _refuse_what_has_no_balance(self) -> None:
+        """Rather than a body half way to a balance, or torn apart by held lines, the last frame stays."""
         comparison, stages = self._comparison, self._stages
-        if comparison is None or stages is None or stages.design.line_hold != "held":
+        if comparison is None or stages is None:
             return
-        if not comparison.exact.found or (comparison.main and not comparison.main.sane):
+        held = stages.design.line_hold == "held"
+        lost = (held or comparison.main is None) and not comparison.exact.found
+        if lost or (held and comparison.main and not comparison.main.sane):
             self._comparison = None
-            raise cannot_hold(stages.design)
+            raise cannot_hold(stages.design) if held else no_balance()
 
     def _publish(self, frame: Frame) -> None:
         with self._wake:

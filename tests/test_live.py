@@ -165,3 +165,17 @@ def test_compiled_loops_are_loaded_once_and_only_for_a_large_body(
     settled(solver, solver.submit(design.with_line("mid-bust", 0.95)))
     solver.stop()
     assert warmed == ["busk-warm"] * calls
+
+
+def test_an_exact_answer_that_is_not_found_is_said_and_the_last_frame_stays(
+    solver: LiveSolver, built: Built, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    design = replace(built("mannequin").design, volume="exact")
+    settled(solver, solver.submit(design))
+    lost = replace(solve_exact(built("mannequin").model, (1.0, 1.0, 1.0)), residual=np.inf)
+    with monkeypatch.context() as patch:
+        patch.setattr("core.comparison.solve_exact", lambda *_, **__: lost)
+        solver.submit(design.with_line("mid-bust", 0.8))
+        with pytest.raises(UserError, match="No balance was found"):
+            answer(solver, lambda frame: frame.stages.design.ratio("mid-bust") == 0.8)
+    assert settled(solver, solver.submit(design)).verdict.motion == "settled"
