@@ -23,6 +23,9 @@ RESIDUAL_LIMIT = 1e-10
 _QUICK = 0.25
 """A step that leaves no more than this of what was amiss needs no safeguard: most do, at half the cost."""
 
+_PATIENCE = 8
+_SHIFT = 1e-3
+
 _BOLD = 8.0
 """No point moves further than this in such a step [mm]."""
 
@@ -54,6 +57,7 @@ def energy_steps(potential: Potential, start: Balance, limit: int) -> Iterator[B
     back to the exact volumes and lengths, and shortened until it lowers the energy.
     """
     place, multipliers = potential.at(start.state.moved), start.multipliers
+    spoilt = 0
     for step in range(limit + 1):
         amiss = potential.amiss(place, multipliers)
         held = (np.abs(place.held) <= 1e3 * potential.tolerance).all()
@@ -61,7 +65,9 @@ def energy_steps(potential: Potential, start: Balance, limit: int) -> Iterator[B
         yield balance_at(potential, place.moved, residual, multipliers, step)
         if residual < RESIDUAL_LIMIT or step == limit:
             return
-        taken = _step(potential, place, multipliers, amiss)
+        solve, true = factor(potential, place, multipliers, shifted=spoilt >= _PATIENCE)
+        spoilt += not true
+        taken = _step(potential, place, multipliers, solve, amiss if true else 0.0)
         if taken is None:
             return
         place, multipliers = taken
@@ -83,15 +89,17 @@ def balance_at(
 
 
 def _step(
-    potential: Potential, place: Place, multipliers: Floats, amiss: float
+    potential: Potential, place: Place, multipliers: Floats, solve: Solve, amiss: float
 ) -> tuple[Place, Floats] | None:
-    """Return where one Newton step leads, and the multipliers there; None if no step lowers the energy."""
-    solve, true = factor(potential, place, multipliers)
+    """Return where one Newton step leads, and the multipliers there; None if no step lowers the energy.
+
+    ``amiss`` is what is amiss in ``place``, 0 to allow no step without safeguard.
+    """
     solved = solve(np.column_stack([-place.gradient, place.slopes.T]))
     free, push = solved[:, 0], solved[:, 1:]
     new = -small_solve(place.slopes @ push, place.slopes @ free + place.held)
     direction = free + push @ new
-    if true and np.abs(direction).max(initial=0.0) < _BOLD:
+    if amiss and np.abs(direction).max(initial=0.0) < _BOLD:
         there = potential.at(place.moved + direction.reshape(-1, 3))
         if potential.amiss(there, new) <= _QUICK * amiss:
             return there, new
@@ -102,17 +110,29 @@ def _step(
     return None if found is None else (found, new)
 
 
-def factor(potential: Potential, place: Place, multipliers: Floats) -> tuple[Solve, bool]:
-    """Return a solver of the first positive definite Hessian: the full one, or without what spoils it.
+def factor(
+    potential: Potential, place: Place, multipliers: Floats, shifted: bool = False
+) -> tuple[Solve, bool]:
+    """Return a solver of the first positive definite Hessian, and whether it is the full one.
 
-    Also tells whether it is the full one.
+    The others leave out what spoils it; that is quick at first, but crawls where a fine mesh wrinkles. If
+    ``shifted``, the full one is stiffened against the ground instead, no more than is needed.
     """
-    for clip, curved in ((False, True), (True, True), (True, False)):
-        matrix = potential.hessian(place, multipliers, clip=clip, curved=curved)
-        solve = potential.model.layout.band.cholesky(matrix)
-        if solve is not None:
-            return solve, curved and not clip
-    raise AssertionError("cables alone are positive definite")
+    band = potential.model.layout.band
+    full = potential.hessian(place, multipliers, clip=False, curved=True)
+    solve = band.cholesky(full)
+    if solve is not None:
+        return solve, True
+    shift = _SHIFT * potential.model.tensegric.mean_stiffness
+    while shifted and solve is None:
+        stiffened = full.copy()
+        stiffened[:: band.reach + 1] += shift
+        solve, shift = band.cholesky(stiffened), 3.0 * shift
+    for curved in (True, False):
+        if solve is None:
+            solve = band.cholesky(potential.hessian(place, multipliers, clip=True, curved=curved))
+    assert solve is not None, "cables alone are positive definite"
+    return solve, False
 
 
 def _line_search(potential: Potential, place: Place, direction: Floats, push: Floats) -> Place | None:
