@@ -172,7 +172,7 @@ def test_two_closed_lines_at_once() -> None:
 @pytest.mark.parametrize("hold", ["spring", "held"])
 @pytest.mark.parametrize("ratio", [1.15, 1.2, 1.3])
 def test_a_line_that_buckles_the_sphere_is_found_in_few_steps(hold, ratio):
-    """A stiff ring that is longer than its rest pushes: there the true stiffness is nowhere positive definite."""
+    """A ring that is longer than its rest pushes: there the true stiffness is seldom positive definite."""
     model = sphere_model(("vertical",), mechanics=Mechanics(line_hold=hold)).model
     balance = solve_exact(model, tuple(ratio if line.name == "vertical" else 1.0 for line in model.lines))
     assert balance.found
