@@ -151,19 +151,21 @@ class _Walk:
                 stops.append(here)
             elif stride > PRECISION:
                 stride /= 2.0
-            elif (there := self._jumped(here.length.ratio - 0.1 * _STRIDE)) is not None:
+            elif (there := self._jumped(here.length.ratio)) is not None:
                 here, stride = there, _STRIDE
                 stops.append(here)
             else:
                 return stops, here.length
         return stops, None
 
-    def _jumped(self, ratio: float) -> _Stop | None:
+    def _jumped(self, above: float) -> _Stop | None:
         """Return a balance far from the last one: where lines are springs the shape may snap there, once."""
-        if self._snapped or ratio < _LEAST or self._model.mechanics.line_hold == "held":
+        if self._snapped or self._model.mechanics.line_hold == "held":
             return None
         self._snapped = True
-        return self.solved(ratio)
+        ratios = (above - strides * _STRIDE for strides in (0.1, 1.0, 2.0, 4.0))
+        tries = (self.solved(ratio) for ratio in ratios if ratio >= _LEAST)
+        return next((there for there in tries if there is not None), None)
 
     def beginning(self, stops: list[_Stop], sign: str) -> Length | None:
         """Return the longest length that shows ``sign``; adds to ``stops`` those made to close in on it."""

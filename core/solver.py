@@ -15,8 +15,8 @@ from core.mesh import Floats, Points
 from core.model import ConstrainedModel
 from core.volume import Pressure, next_pressure
 
-HELD_DAMPING = 2.0
-"""How much harder a held line pulls while it is too long, in parts of its tension's growth [1]; ours."""
+HELD_GROWTH = 0.1
+"""What of a held line's pull for being too long stays in its tension after the turn [1]; ours."""
 
 
 @dataclass(frozen=True)
@@ -116,18 +116,18 @@ def turn(
 def aims(model: ConstrainedModel, targets: Targets, state: State, lengths: Floats) -> tuple[Floats, Floats]:
     """Return the natural lengths of the worn segments in the coming turn, (s,) [mm], and the lines' tensions.
 
-    A spring has its own (paper section 3). A line whose length is held has one tension all along, which grows
-    by what the line is still too long (the method of multipliers; ours). While it is too long it pulls harder
-    still: without that damping it swings about the length for hundreds of turns.
+    A spring has its own (paper section 3). A line whose length is held pulls with one tension all along and,
+    while it is too long, as a spring of its tape besides; a part of that pull stays in the tension (the
+    method of multipliers, damped: if all of it stayed the line would swing about its length for hundreds of
+    turns; if it pulled harder short lines would run away; ours).
     """
     natural = model.natural_lengths(targets.ratios)
     if model.mechanics.line_hold == "spring":
         return natural, state.tensions
     before = state.tensions if len(state.tensions) else np.zeros(len(model.lines))
     excess = model.tapes * model.sums(lengths - natural)
-    tensions = before + excess
-    pull = tensions + HELD_DAMPING * excess
-    return lengths - pull[model.owner] / model.segments.stiffness, tensions
+    pull = (before + excess)[model.owner]
+    return lengths - pull / model.segments.stiffness, before + HELD_GROWTH * excess
 
 
 def iterate(

@@ -78,10 +78,12 @@ def judge(records: Sequence[Record], condition: Condition | None = None) -> Verd
         return Verdict("settling", 0, 0.0, condition=condition)
     last, recent = records[-1], records[-_LOOK_BACK:]
     errors = np.array([record.error for record in recent])
-    if not np.isfinite(errors).all() or abs(last.error) > _DIVERGED:
+    if not np.isfinite(errors).all():
         return Verdict("diverging", last.turn, last.error, condition=condition)
     if len(recent) >= _QUIET_TURNS and max(record.step for record in recent[-_QUIET_TURNS:]) < SETTLED_STEP:
         return Verdict("settled", last.turn, last.error, condition=condition)
+    if abs(last.error) > _DIVERGED:
+        return Verdict("diverging", last.turn, last.error, condition=condition)
     swing = _strongest_swing(errors) or _shape_swing(recent)
     if swing is None:
         return Verdict("settling", last.turn, float(errors[-2:].mean()), condition=condition)

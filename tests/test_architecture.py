@@ -30,9 +30,10 @@ FLOORS = {
     "dress": "icons theme parts",
     "showing": "background canvas overlay pointer viewport live_plot verdict_chip convergence notice "
     "panels.length_slider panels.number_field panels.line_row panels.lines panels.landmarks panels.rail "
-    "housekeeping panels.setting_field panels.model panels.result panels.scan panels.status panels.top_bar panels.view_tools",
-    "roof": "present view_area actions recent dialogs application desk line_dialog line_maker main_window window picture demo "
-    "self_test limits trials settings cli __main__",
+    "housekeeping panels.setting_field panels.model panels.result panels.scan panels.status panels.top_bar "
+    "panels.view_tools",
+    "roof": "present view_area actions recent dialogs application desk line_dialog line_maker main_window window picture "
+    "demo self_test limits trials settings cli __main__",
 }
 CORE = ("ground", "anatomy", "mechanics", "solving", "document")
 NUMBERS = {"numpy", "scipy"}

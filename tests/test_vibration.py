@@ -73,21 +73,23 @@ def test_the_limit_is_sharp_where_moves_are_small():
         assert (swing[-1] > swing[-41]) == grows
 
 
-def test_the_limit_is_where_the_loop_of_one_turn_flips():
+@pytest.mark.parametrize("contact", ["glued", "sliding"])
+def test_the_limit_is_where_the_loop_of_one_turn_flips(contact):
     """Turns differentiated numerically: the answer to a push that flips from turn to turn."""
+    model = constrained_model(torso(), worn=["mid-bust"], mechanics=Mechanics(line_contact=contact))
     still = (1.0, 1.0, 1.0)
-    shape = (len(TORSO.tensegric.free), 3)
+    shape = (len(model.tensegric.free), 3)
 
     def after(moved, pressure):
         state = State(moved.reshape(shape), Pressure(value=pressure))
-        return turn(TORSO, Targets(still, "conventional"), state)[0].moved.ravel()
+        return turn(model, Targets(still, "conventional"), state)[0].moved.ravel()
 
     zero = np.zeros(np.prod(shape))
     follow = central_difference(lambda d: after(d, 0.0), zero, 1e-4)
     push = central_difference(lambda p: after(zero, p[0]), np.zeros(1), 1e-6)[:, 0]
     flipping = np.linalg.solve(np.eye(len(zero)) + follow, push)
-    per_unit = flipping @ TORSO.volume.gradient(TORSO.tensegric.rest).ravel() / TORSO.volume.rest_volume
-    assert gain_limit(TORSO) == pytest.approx(1.0 / per_unit, rel=1e-5)
+    per_unit = flipping @ model.rest_gradient.ravel() / model.volume.rest_volume
+    assert gain_limit(model) == pytest.approx(1.0 / per_unit, rel=1e-5)
 
 
 @pytest.mark.parametrize("ratio", [0.6, 0.8, 0.97, 1.1])
