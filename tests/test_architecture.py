@@ -32,8 +32,8 @@ FLOORS = {
     "panels.length_slider panels.number_field panels.line_row panels.lines panels.landmarks panels.rail "
     "housekeeping panels.setting_field panels.model panels.result panels.scan panels.status panels.top_bar "
     "panels.view_tools",
-    "roof": "present view_area actions recent dialogs application desk line_dialog line_maker main_window window picture "
-    "demo self_test limits trials settings cli __main__",
+    "roof": "present view_area actions recent dialogs application desk line_dialog line_maker main_window "
+    "window picture demo self_test limits trials settings cli __main__",
 }
 CORE = ("ground", "anatomy", "mechanics", "solving", "document")
 NUMBERS = {"numpy", "scipy"}
