@@ -17,6 +17,7 @@ from app.dialogs import about_busk, ask_about_changes, ask_open, ask_save
 from app.present import (
     exact_answer,
     facts,
+    kept_volume,
     landmark_views,
     line_title,
     line_views,
@@ -53,6 +54,7 @@ class Desk(QObject):
         self._window = window
         self._session = window.session
         self._frame: Frame | None = None
+        self._fell_back_to: Design | None = None
         self._plotted: Frame | None = None
         self._asked = ""
         self._plot_due = 0.0
@@ -90,14 +92,17 @@ class Desk(QObject):
     def show_frame(self, frame: Frame) -> None:
         """Show how far the solver has come."""
         design = frame.stages.design
+        if not frame.at_work and self._fell_back_to not in (None, design) and design is self._session.design:
+            # What was decided since is solved: a refusal from before speaks of no design any more.
+            self._fell_back_to = None
+            self._window.notices.withdraw("bad")
         if self._frame is None or frame.stages.landmarks is not self._frame.stages.landmarks:
             self._show_found(frame.stages)
         self._frame = frame
         self._window.model.set_gain(frame.stages.gain, frame.stages.gain_limit)
         self._window.view.show_frame(frame, design)
         self._window.lines.set_lines(line_views(design, frame, self._window.view.hidden_lines))
-        percent = 1e5 * frame.error_ml / frame.stages.model.volume.rest_volume
-        self._window.status.set_volume(percent, frame.error_ml)
+        self._window.status.set_volume(*kept_volume(frame))
         self._window.status.set_facts(facts(frame))
         # Drawn together with the body while frames come, else a moment after the last one.
         if time.monotonic() >= self._plot_due:
@@ -126,6 +131,7 @@ class Desk(QObject):
 
     def show_failure(self, error: Exception) -> None:
         """Say what went wrong; what is on the screen stays."""
+        self._fell_back_to = self._session.design
         if isinstance(error, UserError):
             self._window.notices.show_notice("bad", error.message, error.hint, lasting=True)
             if self._frame is not None:

@@ -88,6 +88,13 @@ class NoticeBar(QWidget):
         self._waiting.clear()
         self.close_notice()
 
+    def withdraw(self, tone: str) -> None:
+        """Take away what was said in a tone: it is no longer so."""
+        self._waiting = deque(each for each in self._waiting if each.tone != tone)
+        if self._shown is not None and self._shown.tone == tone:
+            self.close_notice()
+        self._show_waiting()
+
     def paintEvent(self, event: QPaintEvent) -> None:
         if self._shown is None:
             return

@@ -176,8 +176,19 @@ def strip_verdict(frame: Frame) -> StripVerdict:
     )
 
 
+def kept_volume(frame: Frame) -> tuple[float, float]:
+    """Return how far the volume that is kept is from the one at rest, of that of the control mesh [%, ml].
+
+    It is the body's own where the exact answer keeps that, else that of the control mesh.
+    """
+    design = frame.stages.design
+    own = design.dense_volume and design.volume == "exact"
+    error = frame.stages.moving.volume_change(frame.points) / 1000.0 if own else frame.error_ml
+    return 1e5 * error / frame.stages.model.volume.rest_volume, error
+
+
 def _headline(frame: Frame) -> list[tuple[str, str]]:
-    verdict, volume = frame.verdict, frame.stages.model.volume.rest_volume
+    verdict = frame.verdict
     lift = frame.marks.apex_z - frame.stages.rest_marks.apex_z
     if verdict.state == "vibrating":
         percent = f"{number(100.0 * verdict.error, 2)} ± {number(100.0 * verdict.amplitude, 2)} %"
@@ -186,8 +197,8 @@ def _headline(frame: Frame) -> list[tuple[str, str]]:
             (tr("Volume error"), percent),
             (tr("Growth per turn"), f"{number(100.0 * (verdict.growth - 1.0), 1, signed=True)} %"),
         ]
-    percent = number(1e5 * frame.error_ml / volume, 2, signed=True)
-    kept = (tr("Volume error"), f"{percent} % · {number(frame.error_ml, 1, signed=True)} ml")
+    error, ml = kept_volume(frame)
+    kept = (tr("Volume error"), f"{number(error, 2, signed=True)} % · {number(ml, 1, signed=True)} ml")
     if verdict.condition and verdict.state == "folded":
         return [kept, (tr("Turned skin"), f"{number(verdict.condition.largest_turn, 0)}°")]
     if verdict.condition and verdict.state == "overstrained":

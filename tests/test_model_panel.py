@@ -11,6 +11,7 @@ from window_tools import Script, points, run_main, settled
 from app.main_window import MainWindow
 from app.model_choices import consequences, defaults, groups, summary
 from app.panels.setting_field import AmountField, MenuField, SegmentField
+from app.present import kept_volume
 from core.design import Design, OwnLine, ScanSource
 from core.live import Frame
 
@@ -99,6 +100,25 @@ def test_what_cannot_be_held_is_said_and_the_last_good_state_stays() -> None:
         assert np.abs(points(window) - at_start).max() < 0.2
         assert window.session.undo_stack.count() == 2
         assert window.lines.rows["mid-bust"].slider.ratio() == pytest.approx(0.95)
+        window.lines.length_committed.emit("mid-bust", 0.92)
+        yield settled(window)
+        assert window.notices.notice() is None, "what is solved since is not refused"
+
+    run_main([], script)
+
+
+def test_the_volume_that_is_told_is_the_one_that_is_kept() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        choose(window, "volume", "exact")
+        choose(window, "dense_volume", True)
+        yield settled(window)
+        assert abs(frame_of(window).error_ml) > 0.1
+        assert kept_volume(frame_of(window)) == pytest.approx((0.0, 0.0), abs=1e-4)
+        assert window.status._volume.text() == "Volume 0.00 % (0.0 ml)"
+        choose(window, "volume", "adaptive")
+        yield settled(window)
+        assert kept_volume(frame_of(window))[1] == frame_of(window).error_ml
 
     run_main([], script)
 
