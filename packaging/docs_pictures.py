@@ -45,6 +45,15 @@ def nothing(window: MainWindow) -> None:
     pass
 
 
+def model_page(window: MainWindow) -> None:
+    window.desk.show_model()
+
+
+def sliding() -> Design:
+    design = replace(sample_design("person"), line_contact="sliding", firm_chest=0.1)
+    return design.with_line("mid-bust", 0.93)
+
+
 def vibrating() -> Design:
     return replace(sample_design().with_line("mid-bust", 0.62), volume="conventional")
 
@@ -58,6 +67,7 @@ SHOTS: tuple[tuple[str, Design, dict[str, object], Callable[[MainWindow], None]]
         nothing,
     ),
     ("vibrating", vibrating(), {"dark": True, "size": (1280, 800)}, with_control_mesh),
+    ("model", sliding(), {"size": (1280, 800)}, model_page),
     ("scan", sample_design("person"), {"size": (1280, 800)}, step("scan")),
     ("landmarks", sample_design("person"), {"size": (1280, 800)}, step("landmarks")),
     ("result", sample_design(), {"size": (1280, 800)}, from_the_side),
