@@ -70,7 +70,7 @@ def newton(
         yield replace(last, steps=done + last.steps)
     done += last.steps
     if not last.found and _slides(model) and limit - done >= spared:
-        turned = _turned(potential, ratios)
+        turned = _turned(model, ratios, excess)
         # Where turns run away, what the walk came to stays the answer.
         if turned is not None:
             yield replace(turned, steps=done + turned.steps)
@@ -117,16 +117,35 @@ def _walk(
         yield replace(last, steps=steps, residual=np.inf)
 
 
-def _turned(potential: Potential, ratios: tuple[float, ...]) -> Balance | None:
-    """Return what adaptive turns and a few Newton steps after them come to, None if they run away."""
-    moved = at_rest(potential.model).moved
-    for state, measured in iterate(potential.model, lambda: Targets(ratios), turns=_TURNS):
+def _turned(model: ConstrainedModel, ratios: tuple[float, ...], excess: Floats | None) -> Balance | None:
+    """Return what adaptive turns and a few Newton steps after them come to, None if they run away.
+
+    Turns hold the sum of both breasts, so that is balanced first; then each is given what it should have.
+    """
+    moved = at_rest(model).moved
+    for state, measured in iterate(model, lambda: Targets(ratios), turns=_TURNS):
         moved = state.moved
         if measured.step < _AT_REST:
             break
+    both = replace(model.tensegric, mechanics=replace(model.mechanics, volume_of="both"))
+    potential = Potential(replace(model, tensegric=both), ratios, excess)
     place = potential.at(moved)
     forces, push = Skin(potential.model).projected(place)
     multipliers = np.asarray(np.linalg.lstsq(push.T, forces, rcond=1e-12)[0])
     start = balance_at(potential, moved, np.inf, multipliers)
     best = min(_steps(potential, start, _STRIDE_STEPS), key=lambda balance: balance.residual)
+    if best.found and len(Potential(model, ratios).sides) == 2:
+        best = _shared_out(model, ratios, np.zeros(2) if excess is None else excess, best)
     return best if best.found or measured.step < _AWAY else None
+
+
+def _shared_out(model: ConstrainedModel, ratios: tuple[float, ...], excess: Floats, both: Balance) -> Balance:
+    """Return the balance in which each breast has its volume, from one in which the sum is right."""
+    gap = model.volume.side_volumes(model.tensegric.expand(both.state.moved)) - model.rest_sides - excess
+    last = replace(both, multipliers=np.concatenate([both.multipliers[:1], both.multipliers]))
+    for share in np.linspace(0.95, 0.0, 20):
+        potential = Potential(model, ratios, excess + share * gap)
+        *_, last = _steps(potential, last, _STRIDE_STEPS)
+        if not last.found:
+            break
+    return last

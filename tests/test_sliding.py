@@ -5,6 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from hard_cases import hard_case
 from models import LAWS, cable_force, law_of, line_force, settled, small, volume_slopes
 from shapes import central_difference, fitted, mid_bust, mirrored, torso
 
@@ -220,3 +221,14 @@ def test_where_newton_steps_fail_turns_are_the_last_resort(ratios):
     balance = solve_exact(model, ratios)
     assert balance.found
     np.testing.assert_allclose(balance.state.moved, settled(model, Targets(ratios)).moved, atol=1e-7)
+
+
+def test_turns_that_balance_the_sum_are_shared_out_to_each_breast():
+    """A case in which no walk from rest arrives, but turns do; they hold the sum of both breasts alone."""
+    case = hard_case(672)
+    assert case.mechanics.volume_of == "each"
+    balance = solve_exact(case.model, case.targets)
+    points = case.model.tensegric.expand(balance.state.moved)
+    away = case.model.volume.side_volumes(points) - case.model.rest_sides
+    assert balance.found
+    assert np.abs(away).max() < 1e-9 * case.model.volume.rest_volume
