@@ -23,6 +23,7 @@ from core.template import read_template
 from core.volume import CONTROLS
 
 SETTLED, PIPE_CLOSED, BAD_INPUT, NOT_SETTLED = 0, 1, 2, 3
+RAN_AWAY = "The turns ran away: what is written is no body. Set line_stiffness lower, or --volume exact."
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -77,8 +78,7 @@ class _Parser(argparse.ArgumentParser):
 
 def design_of(path: str, options: argparse.Namespace) -> Design:
     """Return the design of a project, or a new one for a scan, with what the options overrule."""
-    scan = ScanSource(str(Path(path).absolute()))
-    design = open_project(path) if is_project(path) else Design(scan)
+    design = open_project(path) if is_project(path) else Design(ScanSource(str(Path(path).absolute())))
     axes = {key: getattr(options, key) for key in ("unit", "up", "front") if getattr(options, key, None)}
     if axes:
         design = replace(design, scan=replace(design.scan, **axes))
@@ -96,17 +96,17 @@ def solve(options: argparse.Namespace) -> int:
     from core.solution import run
 
     design = design_of(options.input, options)
-    if options.volume:
-        design = replace(design, volume=options.volume)
+    design = replace(design, volume=options.volume or design.volume)
     stages = build(design)
     design = dressed(design, stages.model.lines, options.line or [])
-    out = _folder(options.out)
     solution = run(build(design, stages), options.turns)
     lost = ("diverging", "settling") if design.volume == "exact" else ("diverging",)
     if design.line_hold == "held" and solution.verdict.motion in lost:
         raise cannot_hold(design)
+    out = _folder(options.out)
     figures = write_solution(solution, out)
-    for sentence in [*still_lines(solution.stages), *shape_warnings(solution)]:
+    ran_away = [RAN_AWAY] * (solution.verdict.motion == "diverging")
+    for sentence in [*still_lines(solution.stages), *shape_warnings(solution), *ran_away]:
         print(f"busk: {sentence}", file=sys.stderr)
     for name, line in figures["lines"].items():
         if line["worn"]:
@@ -116,10 +116,12 @@ def solve(options: argparse.Namespace) -> int:
                 f"({line['set_percent']:.1f} %), reached {line['reached_mm']:.1f} mm"
                 + ("" if own else f"; whole band {line['whole_band_reached_mm']:.1f} mm")
             )
-    volume, verdict = figures["volume"], solution.verdict
+    volume, verdict, count = figures["volume"], solution.verdict, solution.last.turn
+    step = "turn" if design.volume != "exact" else "Newton step"
+    kept = "body_change" if design.volume == "exact" and design.dense_volume else "error"
     print(
-        f"{verdict.words} after {solution.last.turn} turns, volume error "
-        f"{volume['error_percent']:+.4f} % ({volume['error_ml']:+.2f} ml); written to {out}"
+        f"{verdict.words} after {count} {step}{'s' if count != 1 else ''}, volume error "
+        f"{volume[f'{kept}_percent']:+z.4f} % ({volume[f'{kept}_ml']:+z.2f} ml); written to {out}"
     )
     return SETTLED if verdict.motion == "settled" and verdict.state != "folded" else NOT_SETTLED
 
@@ -212,10 +214,8 @@ def _folder(name: str) -> Path:
     folder = Path(name)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError as problem:
-        raise UserError(
-            f"The folder {name} cannot be made: {problem.strerror}.", "Choose another one."
-        ) from problem
+    except OSError as why:
+        raise UserError(f"The folder {name} cannot be made: {why.strerror}.", "Choose another one.") from why
     return folder
 
 

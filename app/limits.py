@@ -37,7 +37,7 @@ def _table(limits: Limits, stages: Stages) -> Iterator[str]:
     for sign, meaning in MEANING.items():
         yield f"  {sign:12}  {_beginning(limits, sign):39}  {meaning}"
     if limits.last is not None:
-        yield f"  below {_length(limits.last, rest).lstrip()} no balance is found"
+        yield f"  below {_inline(limits.last, rest)} no balance is found"
 
 
 def _present(limits: Limits, stages: Stages) -> str:
@@ -46,7 +46,7 @@ def _present(limits: Limits, stages: Stages) -> str:
     if limits.present is None:
         return "as it is set no balance is found"
     beyond = f"; already {' and '.join(limits.beyond)}" if limits.beyond else ""
-    return f"set to {_length(limits.present, limits.line.rest_length).lstrip()}{beyond}"
+    return f"set to {_inline(limits.present, limits.line.rest_length)}{beyond}"
 
 
 def _beginning(limits: Limits, sign: str) -> str:
@@ -60,6 +60,10 @@ def _beginning(limits: Limits, sign: str) -> str:
 def _length(length: Length, rest: float) -> str:
     reached = length.reached
     return f"{100.0 * length.ratio:5.1f} %, reached {reached:6.1f} mm = {100.0 * reached / rest:5.1f} %"
+
+
+def _inline(length: Length, rest: float) -> str:
+    return " ".join(_length(length, rest).split())
 
 
 def _figures_of(found: Sequence[Limits], stages: Stages) -> dict[str, Any]:

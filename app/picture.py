@@ -40,7 +40,7 @@ def draw_picture(
 
     side = {"side": "left"}.get(view, view)
     if side not in VIEWS:
-        raise UserError(f"There is no view '{view}'.", f"Choose one of: {', '.join(VIEWS)}.")
+        raise UserError(f"There is no view '{view}'.", f"Choose one of: {', '.join(VIEWS)}, side.")
     solution = run(build(design))
     plotter = pv.Plotter(off_screen=True, window_size=list(size), lighting="none")
     try:
@@ -127,7 +127,7 @@ def save_window(window: MainWindow, out: Path) -> None:
 
 def _check_name(out: Path) -> None:
     if out.suffix.lower() != ".png":
-        raise UserError(f"{out} is no name for a picture.", "Choose one that ends in .png.")
+        raise UserError(f"'{out}' is no name for a picture.", "Choose one that ends in .png.")
     if not out.absolute().parent.is_dir():
         raise UserError(f"There is no folder {out.absolute().parent}.", "Make it, or choose another one.")
 

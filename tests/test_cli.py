@@ -64,6 +64,9 @@ def test_the_written_body_is_the_scan_with_a_moved_bust(mannequin: Path, tmp_pat
     assert len(control.faces) == 168
 
 
+HELD = ["--settings", "line_hold=held", "--settings", "line_contact=sliding"]
+
+
 @pytest.mark.parametrize(("volume", "line", "code"), [("none", "97%", 0), ("conventional", "60%", 3)])
 def test_the_exit_code_says_whether_it_settled(
     mannequin: Path, tmp_path: Path, volume: str, line: str, code: int
@@ -133,6 +136,7 @@ def test_settings_reach_the_solver(mannequin: Path, tmp_path: Path) -> None:
         (["--settings", "template=200"], "168, 120"),
         (["--settings", "scaled-normals=perhaps"], "yes, no"),
         (["--settings", "firm_chest=rock"], "not a number"),
+        (["--line", "mid-bust=60%", *HELD], "cannot be held at 60.0 %"),
         (["--path", "strap=r9c0,r3c0"], "no place 'r9c0'"),
         (["--path", "mid-bust=r2c0,r3c0"], "two lines 'mid-bust'"),
         (["--path", "strap=r2c0,r3c0", "--line", "sling=97%"], "full-bust, strap"),
@@ -145,7 +149,7 @@ def test_bad_requests_get_one_sentence(
     said = capsys.readouterr()
     assert sentence in said.err
     assert said.err.count("\n") == 1
-    assert not (tmp_path / "out" / "body.ply").exists()
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize(

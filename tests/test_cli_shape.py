@@ -49,3 +49,33 @@ def test_a_shape_that_is_no_body_is_named_and_the_line_to_blame(
     assert figures["volume"]["body_change_ml"] == pytest.approx(
         (after.volume - before.volume) / 1e3, abs=0.05
     )
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "told", "warned"),
+    [
+        (["--settings", "line_force=explicit"], 3, "diverging after ", "The turns ran away: "),
+        (["--volume", "exact"], 0, " Newton steps, volume error +0.0000 % (+0.00 ml)", ""),
+        (
+            ["--volume", "exact", "--settings", "dense_volume=yes"],
+            0,
+            " volume error +0.0000 % (+0.00 ml)",
+            "",
+        ),
+        (["--turns", "1"], 3, "settling after 1 turn, ", ""),
+    ],
+)
+def test_the_last_line_tells_how_it_ended(
+    mannequin: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    words: list[str],
+    code: int,
+    told: str,
+    warned: str,
+) -> None:
+    assert main(["solve", str(mannequin), "--line", "mid-bust=95%", *words, "--out", str(tmp_path)]) == code
+    said = capsys.readouterr()
+    assert told in said.out
+    assert warned in said.err
+    assert bool(said.err) == bool(warned)
