@@ -188,9 +188,12 @@ class Design:
 def cannot_hold(design: Design) -> LineError:
     """Return what to say when there is no balance with the lines held at the lengths of a design."""
     line = max(design.lines, key=lambda line: abs(math.log(line.ratio)), default=WornLine("The line", 1.0))
+    late = design.line_force == "explicit"
     return LineError(
         f"{line.name} cannot be held at {100 * line.ratio:.1f} % of its rest length.",
-        "Set it nearer to 100 %, or let lines spring back.",
+        "Let the force of lines act in step, or let lines spring back."
+        if late
+        else "Set it nearer to 100 %, or let lines spring back.",
     )
 
 

@@ -16,6 +16,7 @@ from core.design import (
     OwnLine,
     ScanSource,
     WornLine,
+    cannot_hold,
     from_json,
     to_json,
 )
@@ -241,3 +242,11 @@ def test_a_design_cannot_be_changed():
 def test_a_scan_is_called_by_its_file_name():
     assert ScanSource("/scans/body.ply").name == "body.ply"
     assert ScanSource("/customers/project.busk", member="scan/body.ply").name == "body.ply"
+
+
+@pytest.mark.parametrize(("force", "advice"), [("implicit", "nearer to 100 %"), ("explicit", "act in step")])
+def test_a_length_that_cannot_be_held_comes_with_the_advice_that_helps(force, advice):
+    design = replace(Design(ScanSource("a.ply")), line_force=force).with_line("mid-bust", 0.7)
+    refusal = cannot_hold(design)
+    assert "mid-bust cannot be held at 70.0 %" in refusal.message
+    assert advice in refusal.hint
