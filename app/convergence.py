@@ -15,7 +15,7 @@ from app.live_plot import Curve, LivePlot, Numbers
 from app.parts import Segment, ToolButton, sentence
 from app.theme import font, label, tokens_of
 from app.verdict_chip import VerdictChip
-from app.words import number, tr
+from app.words import tr
 
 CONTROLS = ("adaptive", "conventional", "none", "exact")
 """Ways to control the volume, as named in the run."""
@@ -48,7 +48,7 @@ class Exact:
 class VerdictView(Protocol):
     """What the strip says of a run: a state of the chip, up to three (label, value) pairs, what to do.
 
-    Then turns, seconds, and whether the run is still on its way.
+    Then what it took, and whether the run is still on its way.
     """
 
     @property
@@ -58,9 +58,7 @@ class VerdictView(Protocol):
     @property
     def hint(self) -> str: ...
     @property
-    def turns(self) -> int: ...
-    @property
-    def seconds(self) -> float: ...
+    def pace(self) -> str: ...
     @property
     def settling(self) -> bool: ...
 
@@ -117,9 +115,7 @@ class Strip(QWidget):
         self._state, self._settling = verdict.state, verdict.settling
         self.chip.set_state(verdict.state)
         self._small_chip.set_state(verdict.state)
-        count = tr("{turns} turns · {seconds} s")
-        turns = count.format(turns=number(verdict.turns, 0), seconds=number(verdict.seconds))
-        self._turns.setText(turns)
+        self._turns.setText(verdict.pace)
         pairs = verdict.numbers[: len(self._pairs)]
         for place, (name, value) in enumerate(self._pairs):
             pair = pairs[place] if place < len(pairs) else ("", "")
@@ -128,7 +124,7 @@ class Strip(QWidget):
                 each.setVisible(bool(text))
         self._hint.setText(verdict.hint)
         said = "   ".join(f"{name} {value}" for name, value in pairs[:2])
-        self._said.setText(f"{turns}     {said}     {verdict.hint}")
+        self._said.setText(f"{verdict.pace}     {said}     {verdict.hint}")
 
     def set_control(self, control: str) -> None:
         """Show which of ``CONTROLS`` is on; nothing is emitted."""

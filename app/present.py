@@ -158,8 +158,7 @@ class StripVerdict:
     state: str
     numbers: list[tuple[str, str]]
     hint: str
-    turns: int
-    seconds: float
+    pace: str
     settling: bool
 
 
@@ -170,10 +169,16 @@ def strip_verdict(frame: Frame) -> StripVerdict:
         verdict.state,
         _headline(frame),
         _hint(frame),
-        verdict.turns,
-        frame.seconds,
+        _pace(frame),
         verdict.motion == "settling",
     )
+
+
+def _pace(frame: Frame) -> str:
+    """Return what it took: turns, or Newton's steps to the exact answer, and seconds."""
+    exact = frame.stages.design.volume == "exact"
+    text = tr("{turns} Newton steps · {seconds} s") if exact else tr("{turns} turns · {seconds} s")
+    return text.format(turns=number(frame.verdict.turns, 0), seconds=number(frame.seconds))
 
 
 def kept_volume(frame: Frame) -> tuple[float, float]:
@@ -197,6 +202,8 @@ def _headline(frame: Frame) -> list[tuple[str, str]]:
             (tr("Volume error"), percent),
             (tr("Growth per turn"), f"{number(100.0 * (verdict.growth - 1.0), 1, signed=True)} %"),
         ]
+    if verdict.state == "diverging":
+        return []  # the figures would be those of the body shown, as it was before
     error, ml = kept_volume(frame)
     kept = (tr("Volume error"), f"{number(error, 2, signed=True)} % · {number(ml, 1, signed=True)} ml")
     if verdict.condition and verdict.state == "folded":
@@ -214,7 +221,7 @@ def _hint(frame: Frame) -> str:
         "overstrained": tr("The skin strains by more than 30 %: hardly a body."),
     }.get(frame.verdict.state, "")
     if frame.verdict.state == "diverging":
-        return tr("The turns run away: the body is shown as it was before.")
+        return tr("The turns run away: the body is shown as it was before. Lengthen or soften the lines.")
     line = blamed_line(frame.stages)
     if not what or line is None:
         return what

@@ -61,8 +61,7 @@ class Said:
 
     state: str
     numbers: list[tuple[str, str]]
-    turns: int
-    seconds: float
+    pace: str
     hint: str = ""
     settling: bool = False
 
@@ -206,7 +205,7 @@ class Mock(QWidget):
             (tr("Volume error"), "1.6 ± 1.8 %" if vibrating else "−0.02 % · −1.1 ml"),
             (tr("Lift of the bust points"), "+14.4 mm"),
         ]
-        self.strip.set_verdict(Said("vibrating" if vibrating else "settled", numbers, 120, 0.9))
+        self.strip.set_verdict(Said("vibrating" if vibrating else "settled", numbers, "120 turns · 0.9 s"))
         main = "conventional" if vibrating else "adaptive"
         self.strip.set_control(main)
         self.strip.set_run(invented_tracks(), main, Exact(0.0, 24.3))

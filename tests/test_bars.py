@@ -193,8 +193,7 @@ class Said:
     state: str
     numbers: list[tuple[str, str]] = field(default_factory=lambda: [("Volume error", "0.1 %")])
     hint: str = ""
-    turns: int = 1200
-    seconds: float = 0.9
+    pace: str = "1,200 turns · 0.9 s"
     settling: bool = False
 
 

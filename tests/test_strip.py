@@ -1,0 +1,34 @@
+"""What the strip below the view says of a run, taken from a real frame."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from app.present import StripVerdict, strip_verdict
+from core.comparison import Comparison
+from core.live import make_frame
+from core.pipeline import Stages, build, targets_of
+
+
+def said(stages: Stages, **settings: object) -> StripVerdict:
+    """What is said once everything rests, with the mid-bust line at 80 %."""
+    design = replace(stages.design.with_line("mid-bust", 0.8), **settings)  # type: ignore[arg-type]
+    stages = build(design, stages)
+    comparison = Comparison(stages.model, targets_of(design, stages), stages.watch)
+    while not comparison.resting:
+        comparison.advance()
+    return strip_verdict(make_frame(1, stages, comparison, 0.3))
+
+
+def test_the_exact_answer_takes_newton_steps_and_not_turns(built: Callable[[str], Stages]) -> None:
+    assert said(built("mannequin"), volume="exact").pace.endswith(" Newton steps · 0.3 s")
+    assert said(built("mannequin"), volume="adaptive").pace.endswith(" turns · 0.3 s")
+
+
+def test_a_run_that_ran_away_has_no_figures_but_advice(built: Callable[[str], Stages]) -> None:
+    verdict = said(built("mannequin"), line_force="explicit")
+    assert verdict.state == "diverging"
+    assert verdict.numbers == []
+    assert "as it was before" in verdict.hint
+    assert "soften the lines" in verdict.hint
