@@ -131,19 +131,17 @@ class Desk(QObject):
 
     def show_failure(self, error: Exception) -> None:
         """Say what went wrong; what is on the screen stays."""
-        self._fell_back_to = self._session.design
+        self._fell_back_to, notices = self._session.design, self._window.notices
         if isinstance(error, UserError):
-            self._window.notices.show_notice("bad", error.message, error.hint, lasting=True)
+            # What was refused before was asked for before: the last refusal is the one that counts.
+            notices.withdraw("bad")
+            notices.show_notice("bad", error.message, error.hint, lasting=True)
             if self._frame is not None:
                 self._show_found(self._frame.stages)
             return
         logging.error("unexpected fault\n%s", "".join(traceback.format_exception(error)))
-        self._window.notices.show_notice(
-            "bad",
-            tr("Something went wrong inside Busk."),
-            tr("Your design is kept. The log tells more."),
-            lasting=True,
-        )
+        said = tr("Something went wrong inside Busk."), tr("Your design is kept. The log tells more.")
+        notices.show_notice("bad", *said, lasting=True)
 
     def show_work(self, stage: str) -> None:
         """Name the work that takes its time."""
