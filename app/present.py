@@ -16,7 +16,7 @@ from app.scene_bands import Band
 from app.verdict_chip import state_title
 from app.words import number, tr
 from core.design import Design
-from core.landmarks import Landmarks
+from core.landmark import Landmarks
 from core.lines import Line
 from core.live import Frame
 from core.mesh import Points

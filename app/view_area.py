@@ -16,7 +16,7 @@ from app.viewport import Viewport
 from core.body import Body
 from core.control_mesh import ControlMesh
 from core.design import Design
-from core.landmarks import Landmarks
+from core.landmark import Landmarks
 from core.lines import Line
 from core.live import Frame
 

@@ -21,7 +21,8 @@ from threadpoolctl import threadpool_limits
 from core import kernels
 from core.body import read_scan
 from core.control_mesh import ControlMesh, fit_control_mesh
-from core.landmarks import Landmarks, find_landmarks
+from core.landmark import Landmarks
+from core.landmarks import find_landmarks
 from core.mesh import Mesh, Points
 from core.moving import MovingFaces, moving_faces
 from core.patch import patch_fade

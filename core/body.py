@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
+from core.calm import calmed
 from core.errors import ScanError
 from core.mesh import Mesh
 from core.repair import repair
@@ -20,6 +22,11 @@ class Body:
     pose: Pose
     repairs: tuple[str, ...]
     name: str
+
+    @cached_property
+    def calm(self) -> Mesh:
+        """The skin without the noise of the scanner: what is measured [mm]."""
+        return calmed(self.mesh)
 
 
 def read_scan(

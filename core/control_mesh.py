@@ -8,14 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.body import Body
+from core.calm import calmed
 from core.errors import FitError
 from core.fit_check import faulty_faces
-from core.landmarks import Landmarks
+from core.landmark import Landmarks
 from core.laying import Ground, bridged, find_creases, lay_outline, lay_rest, survey_ground
 from core.mesh import Flags, Floats, Indices, Mesh, Points
 from core.template import Template
 from core.torso import cropped
-from core.trunk import calmed, trunk_levels
+from core.trunk import trunk_levels
 
 AROUND = 40.0
 """The skin within this of a level is calmed before it is measured there [mm]."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
@@ -11,12 +9,11 @@ from scipy.ndimage import gaussian_filter1d
 
 from core.body import Body
 from core.errors import LandmarkError
-from core.mesh import Floats, Mesh, Points, frozen
+from core.landmark import SIDES, Landmark, Landmarks
+from core.mesh import Floats, Mesh, Points
 from core.relief import Anchor, Nipple, Pole, breast_patch, find_anchor, find_nipples, find_poles
 from core.sections import arc_length, chains, cut, resample
-from core.trunk import Survey, calmed, stable_level, survey, trunk_levels
-
-SIDES = ("left", "right")
+from core.trunk import Survey, stable_level, survey, trunk_levels
 
 OFFSETS = (-8.0, -4.0, 0.0, 4.0, 8.0)
 """The fold is read on profiles so far beside the bust point [mm]."""
@@ -29,42 +26,12 @@ NO_CREASE = "The most hollow place below the breast: the upright profile shows n
 LOWEST = "The lowest point of the breast between the bust point and the fold."
 
 
-@dataclass(frozen=True, eq=False)
-class Landmark:
-    """A named point of the body, shape (3,) [mm], with how sure it is (0..1) and the rule that found it."""
-
-    name: str
-    position: Points
-    confidence: float
-    rule: str
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "position", frozen(self.position))
-        object.__setattr__(self, "confidence", float(np.clip(self.confidence, 0.0, 1.0)))
-
-
-@dataclass(frozen=True, eq=False)
-class Landmarks:
-    """The landmarks by name, and the heights of the bust and of the under-bust level [mm].
-
-    Names: bust_point, fold and lowest, each with _left (+x) and _right (-x).
-    """
-
-    points: Mapping[str, Landmark]
-    bust_level: float
-    underbust_level: float
-
-    def position(self, name: str) -> Points:
-        """Return where landmark ``name`` is, shape (3,) [mm]."""
-        return self.points[name].position
-
-
 def find_landmarks(body: Body) -> Landmarks:
     """Return the bust landmarks of ``body``.
 
     Raises LandmarkError if the body shows no bust. Source: ours.
     """
-    calm = calmed(body.mesh)
+    calm = body.calm
     trunk = survey(calm)
     anchor = find_anchor(trunk)
     if anchor.kink < 8.0 or anchor.middle_kink > 0.5 * anchor.kink:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.errors import FitError
-from core.landmarks import Landmarks
+from core.landmark import Landmarks
 from core.mesh import Flags, Floats, Indices, Mesh, Points, unit
 from core.profiles import Profile, exits, find_fold, heading, profile
 from core.template import Template

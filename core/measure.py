@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from core.body import Body
-from core.landmarks import Landmarks
+from core.landmark import Landmarks
 from core.mesh import Mesh
-from core.trunk import Level, calmed, stable_level, trunk_levels
+from core.trunk import Level, stable_level, trunk_levels
 
 
 @dataclass(frozen=True)
@@ -32,11 +32,10 @@ def girths(body: Body, landmarks: Landmarks) -> Mapping[str, Girth]:
     That is the first height from the under-bust level down which no longer nicks the breasts: there the girth
     hardly changes with the height. Source: ours.
     """
-    calm = calmed(body.mesh)
     return MappingProxyType(
         {
-            "bust": girth_at(calm, landmarks.bust_level),
-            "underbust": _girth(stable_level(calm, landmarks.underbust_level)),
+            "bust": girth_at(body.calm, landmarks.bust_level),
+            "underbust": _girth(stable_level(body.calm, landmarks.underbust_level)),
         }
     )
 

@@ -16,7 +16,8 @@ from core.control_mesh import ControlMesh, back_length, fit_control_mesh
 from core.design import Design, OwnLine, ScanSource
 from core.errors import FitError, LineError
 from core.gain import gain_limit
-from core.landmarks import Landmarks, find_landmarks
+from core.landmark import Landmarks
+from core.landmarks import find_landmarks
 from core.mechanics import Mechanics
 from core.mesh import Floats, Mesh, Points
 from core.model import ConstrainedModel, constrained_model

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.errors import FitError
-from core.landmarks import Landmarks
+from core.landmark import Landmarks
 from core.mesh import Flags, Floats, Mesh, Points
 from core.trunk import trunk_levels
 

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial import ConvexHull, cKDTree
 
 from core.control_mesh import ControlMesh
-from core.landmarks import Landmarks
+from core.landmark import Landmarks
 from core.mesh import Flags, Floats, Indices, Mesh, Points
 from core.moving import MovingFaces
 from core.sections import cut, hull_perimeter

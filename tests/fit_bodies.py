@@ -9,7 +9,7 @@ from types import MappingProxyType
 import numpy as np
 
 from core.body import Body, read_scan
-from core.landmarks import Landmark, Landmarks
+from core.landmark import Landmark, Landmarks
 from core.mesh import Mesh
 
 HERE = Path(__file__).parent

@@ -12,7 +12,8 @@ import trimesh
 
 from core.body import Body
 from core.errors import LandmarkError
-from core.landmarks import MIRRORED, NIPPLE, PROMINENT, Landmarks, find_landmarks
+from core.landmark import Landmarks
+from core.landmarks import MIRRORED, NIPPLE, PROMINENT, find_landmarks
 from core.mesh import Mesh
 from core.relief import relief_kernels
 from core.upright import Pose

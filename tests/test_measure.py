@@ -10,10 +10,11 @@ import pytest
 import trimesh
 
 from core.body import Body
-from core.landmarks import Landmarks
+from core.calm import calmed
+from core.landmark import Landmarks
 from core.measure import girth_at, girths
 from core.mesh import Mesh
-from core.trunk import calmed, stable_level, trunk_levels
+from core.trunk import stable_level, trunk_levels
 from core.upright import Pose
 
 ROOT = Path(__file__).parents[1]

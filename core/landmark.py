@@ -1,0 +1,49 @@
+"""Landmarks: named points of the body, each with its rule, its evidence and how sure it is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from core.mesh import Points, frozen
+
+SIDES = ("left", "right")
+
+
+@dataclass(frozen=True, eq=False)
+class Landmark:
+    """A named point of the body, shape (3,) [mm], with how sure it is (0..1) and the rule that found it.
+
+    ``evidence`` is the curve on the skin that it was read from, shape (k, 3) [mm], empty if there is none.
+    ``by_hand`` tells that the designer placed it.
+    """
+
+    name: str
+    position: Points
+    confidence: float
+    rule: str
+    evidence: Points = field(default_factory=lambda: np.empty((0, 3)))
+    by_hand: bool = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "position", frozen(self.position))
+        object.__setattr__(self, "evidence", frozen(self.evidence))
+        object.__setattr__(self, "confidence", float(np.clip(self.confidence, 0.0, 1.0)))
+
+
+@dataclass(frozen=True, eq=False)
+class Landmarks:
+    """The landmarks by name, and the heights of the bust and of the under-bust level [mm].
+
+    Names: bust_point, fold and lowest, each with _left (+x) and _right (-x).
+    """
+
+    points: Mapping[str, Landmark]
+    bust_level: float
+    underbust_level: float
+
+    def position(self, name: str) -> Points:
+        """Return where landmark ``name`` is, shape (3,) [mm]."""
+        return self.points[name].position
