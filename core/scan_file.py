@@ -11,6 +11,7 @@ import numpy as np
 
 from core.errors import ScanError
 from core.mesh import Faces, Points
+from core.progress import Progress, quiet
 
 FORMATS = ("ply", "obj", "stl")
 
@@ -36,12 +37,13 @@ def scan_bytes(path: Path) -> bytes:
         ) from problem
 
 
-def read_triangles(name: str, data: bytes) -> tuple[Points, Faces]:
+def read_triangles(name: str, data: bytes, progress: Progress = quiet) -> tuple[Points, Faces]:
     """Return the vertices, shape (n, 3) [file units], and triangles, shape (m, 3), of a scan file's bytes.
 
     The ending of ``name`` tells the format. All objects and groups of the file are put together; larger
-    polygons are cut into triangles. Raises ScanError.
+    polygons are cut into triangles. Raises ScanError, Cancelled.
     """
+    progress("reading", 0.0)
     kind = Path(name).suffix.lower().removeprefix(".")
     if kind not in FORMATS:
         raise ScanError(f"{name} is not a PLY, OBJ or STL file.", "Export the scan in one of these formats.")
