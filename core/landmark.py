@@ -11,6 +11,15 @@ from core.mesh import Points, frozen
 
 SIDES = ("left", "right")
 
+PAIRS = ("bust_point", "fold", "lowest", "root_inner", "root_outer", "side", "armpit")
+SINGLE = (
+    *("front_centre", "front_centre_underbust", "back_centre", "back_centre_underbust"),
+    *("waist_front", "hip_front", "neck_front", "neck_back"),
+)
+
+NAMES = (*(f"{pair}_{side}" for pair in PAIRS for side in SIDES), *SINGLE)
+"""The names of all landmarks. One that the scan does not show is absent from what is found."""
+
 
 @dataclass(frozen=True, eq=False)
 class Landmark:
@@ -37,12 +46,13 @@ class Landmark:
 class Landmarks:
     """The landmarks by name, and the heights of the bust and of the under-bust level [mm].
 
-    Names: bust_point, fold and lowest, each with _left (+x) and _right (-x).
+    ``points`` have names of ``NAMES``; _left is +x. ``warnings`` hold one sentence each.
     """
 
     points: Mapping[str, Landmark]
     bust_level: float
     underbust_level: float
+    warnings: tuple[str, ...] = ()
 
     def position(self, name: str) -> Points:
         """Return where landmark ``name`` is, shape (3,) [mm]."""

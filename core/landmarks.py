@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from types import MappingProxyType
 
 import numpy as np
@@ -11,9 +12,12 @@ from core.body import Body
 from core.errors import LandmarkError
 from core.landmark import SIDES, Landmark, Landmarks
 from core.mesh import Floats, Mesh, Points
+from core.placed import placed_marks
 from core.relief import Anchor, Nipple, Pole, breast_patch, find_anchor, find_nipples, find_poles
 from core.sections import arc_length, chains, cut, resample
 from core.trunk import Survey, stable_level, survey, trunk_levels
+
+NOTHING: Mapping[str, Points] = MappingProxyType({})
 
 OFFSETS = (-8.0, -4.0, 0.0, 4.0, 8.0)
 """The fold is read on profiles so far beside the bust point [mm]."""
@@ -26,26 +30,36 @@ NO_CREASE = "The most hollow place below the breast: the upright profile shows n
 LOWEST = "The lowest point of the breast between the bust point and the fold."
 
 
-def find_landmarks(body: Body) -> Landmarks:
-    """Return the bust landmarks of ``body``.
+def find_landmarks(body: Body, placed: Mapping[str, Points] = NOTHING) -> Landmarks:
+    """Return the bust landmarks of ``body``; ``placed`` points, by name, shape (3,) [mm], replace found ones.
 
-    Raises LandmarkError if the body shows no bust. Source: ours.
+    What depends on a placed point follows it. Raises LandmarkError if the body shows no bust, unless bust
+    points and folds are all placed, or if a place or its name makes no sense. Source: ours.
     """
     calm = body.calm
+    by_hand = placed_marks(calm, placed)
     trunk = survey(calm)
-    anchor = find_anchor(trunk)
-    if anchor.kink < 8.0 or anchor.middle_kink > 0.5 * anchor.kink:
-        raise _refusal("no fold lies under a left and a right breast")
-    poles = find_poles(trunk, anchor)
-    found = _bust_points(calm, poles)
+    busts = [by_hand.get(f"bust_point_{side}") for side in SIDES]
+    folds = [by_hand.get(f"fold_{side}") for side in SIDES]
+    if all(busts) and all(folds):
+        low = min(mark.position[2] for mark in folds if mark)
+        anchor, found = Anchor(low - 14.0, 0.0, 0.0, 0.0), [mark for mark in busts if mark]
+    else:
+        anchor = find_anchor(trunk)
+        if anchor.kink < 8.0 or anchor.middle_kink > 0.5 * anchor.kink:
+            raise _refusal("no fold lies under a left and a right breast")
+        poles = find_poles(trunk, anchor)
+        found = [by_hand or mark for by_hand, mark in zip(busts, _bust_points(calm, poles), strict=True)]
     for side, bust in zip(SIDES, found[:2], strict=True):
-        found += _fold_and_lowest(calm, bust.position, anchor, side)
+        found += _fold_and_lowest(calm, bust.position, anchor, side, by_hand.get(f"fold_{side}"))
+    found = [by_hand.get(mark.name, mark) for mark in found]
     bust_level = 0.5 * (found[0].position[2] + found[1].position[2])
     underbust_level = min(mark.position[2] for mark in found[2:])
-    landmarks = Landmarks(
-        MappingProxyType({mark.name: mark for mark in found}), float(bust_level), float(underbust_level)
-    )
-    _check(calm, trunk, poles, landmarks)
+    points = {mark.name: mark for mark in found}
+    # Here come the further landmarks of the trunk, each replaced by the placed one of its name.
+    landmarks = Landmarks(MappingProxyType(points | by_hand), float(bust_level), float(underbust_level))
+    if not (all(busts) and all(folds)):
+        _check(calm, trunk, poles, landmarks)
     return landmarks
 
 
@@ -105,7 +119,9 @@ def _nipple_confidence(nipple: Nipple) -> float:
     return clear * float(np.exp(-max(nipple.offset - 8.0, 0.0) / 15.0))
 
 
-def _fold_and_lowest(mesh: Mesh, bust: Points, anchor: Anchor, side: str) -> list[Landmark]:
+def _fold_and_lowest(
+    mesh: Mesh, bust: Points, anchor: Anchor, side: str, placed: Landmark | None
+) -> list[Landmark]:
     """Find the fold on the profiles through and beside the bust point, and the lowest point above it."""
     x = mesh.vertices[:, 0][mesh.faces.T] - bust[0]
     crossed = (x.min(axis=0) <= max(OFFSETS)) & (x.max(axis=0) >= min(OFFSETS))
@@ -117,6 +133,9 @@ def _fold_and_lowest(mesh: Mesh, bust: Points, anchor: Anchor, side: str) -> lis
     own, mean = curves[len(curves) // 2][:count], bends.mean(axis=0)
     high = np.abs(own[:, 2] - anchor.z - 14.0)
     arc = np.arange(count)
+    if placed is not None:
+        end = int(np.argmin(((own - placed.position) ** 2).sum(axis=1)))
+        return [placed, Landmark(f"lowest_{side}", own[: end + 1][np.argmin(own[: end + 1, 2])], 1.0, LOWEST)]
     allowed = (arc > 22) & (arc < count - 12) & (high < 60.0)
     if not allowed.any():
         raise _refusal(f"the surface below the {side} breast is missing")

@@ -16,7 +16,7 @@ ROOT = Path(__file__).parent.parent
 # From the ground up, each floor in order: a module may import what stands to its left or on a floor below.
 FLOORS = {
     "ground": "errors progress mesh sections proximity kernels moving",
-    "anatomy": "scan_file repair calm symmetry stance upright body trunk relief landmark landmarks "
+    "anatomy": "scan_file repair calm symmetry stance upright body trunk relief landmark placed landmarks "
     "torso template profiles fit_check laying control_mesh measure detect",
     "mechanics": "mechanics band springs cells tensegric lines volume patch tffd",
     "solving": "condition layout sweep model solver gain potential newton sliding exact body_volume "
