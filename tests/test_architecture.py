@@ -16,24 +16,25 @@ ROOT = Path(__file__).parent.parent
 # From the ground up, each floor in order: a module may import what stands to its left or on a floor below.
 FLOORS = {
     "ground": "errors progress mesh sections proximity kernels moving",
-    "anatomy": "scan_file repair calm symmetry stance upright body trunk relief landmark placed landmarks "
-    "torso template profiles fit_check laying control_mesh measure detect",
+    "anatomy": "scan_file skin pieces repair calm symmetry stance upright body outline arms trunk_guide trunk relief landmark placed landmarks "
+    "torso template profiles fit_check laying control_mesh doubts measure detect truth accuracy",
     "mechanics": "mechanics band springs cells tensegric lines volume patch tffd",
     "solving": "condition layout sweep model solver gain potential newton sliding exact body_volume "
     "verdict comparison watch",
-    "document": "design own_lines project pipeline limits trial search sphere live export solution report",
-    "seeing": "camera scene_stage scene_body scene_bands scene_control scene",
-    "wording": "display tokens words samples model_choices",
+    "document": "placing design own_lines project pipeline limits trial search sphere live export solution "
+    "report",
+    "seeing": "camera scene_stage scene_body scene_bands scene_control scene_trace scene portrait ways",
+    "wording": "display tokens words samples model_choices scan_formats",
     "printing": "figure_style figure_scene figure_study figure_bodies figure_sphere figure_side figure_turns "
-    "figure_map figure_slings figure_claims figure_search figure_page figures",
+    "figure_map figure_slings figure_claims figure_search figure_page figures figure_accuracy",
     "asking": "edit session",
     "dress": "icons theme parts",
     "showing": "background canvas overlay pointer viewport live_plot verdict_chip convergence notice "
     "panels.length_slider panels.number_field panels.line_row panels.lines panels.landmarks panels.rail "
-    "housekeeping panels.setting_field panels.model panels.result panels.scan panels.status panels.top_bar "
-    "panels.view_tools",
-    "roof": "present view_area actions recent dialogs application desk line_dialog line_maker main_window "
-    "window picture demo self_test limits trials settings cli __main__",
+    "housekeeping panels.setting_field panels.model panels.result panels.scan panels.status panels.busy "
+    "panels.question panels.top_bar panels.view_tools",
+    "roof": "present present_scan view_area actions recent dialogs application scan_desk desk line_dialog "
+    "line_maker main_window window picture demo self_test limits trials accuracy found settings cli_parser cli __main__",
 }
 CORE = ("ground", "anatomy", "mechanics", "solving", "document")
 NUMBERS = {"numpy", "scipy"}

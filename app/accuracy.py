@@ -1,0 +1,181 @@
+"""How well a folder of bodies with known answers is understood: a table, and pictures of every body."""
+
+from __future__ import annotations
+
+import json as json_text
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+from app.figure_accuracy import save_sheets, verdict
+from core.accuracy import OFF, TRUSTED, Case, Mark, Spread, judged, spreads
+from core.project import whole_file
+from core.truth import read_truths
+
+ALL_RIGHT, NOT_ALL_RIGHT = 0, 3
+BY_KIND = ("bust point to nipple-apex", "fold height", "bust girth", "underbust girth")
+
+
+def run_accuracy(folder: Path, out: Path | None, json: bool) -> int:
+    """Find the landmarks of every file that truth.json in ``folder`` knows, and print how far off they are.
+
+    With ``out``, tables and pictures of every body are written there as well. Returns 0 if every file was
+    read the right way round and nothing crashed, else 3. Raises UserError.
+    """
+    folder = Path(folder)
+    truths, strange = read_truths(folder)
+    cases = []
+    for case in judged(folder, truths):
+        cases.append(case)
+        print(f"\r{len(cases)} of {len(truths)} files ", end="", file=sys.stderr, flush=True)
+    print(file=sys.stderr)
+    text = "\n".join(accuracy_text(cases, strange)) + "\n"
+    values = json_text.dumps(accuracy_values(cases), indent=1, allow_nan=False)
+    print(values if json else text, end="\n" if json else "")
+    if out is not None:
+        out = Path(out)
+        out.mkdir(parents=True, exist_ok=True)
+        for name, content in (("accuracy.md", text), ("accuracy.json", values + "\n")):
+            with whole_file((out / name).absolute()) as partial:
+                partial.write_text(content, encoding="utf-8")
+        save_sheets(cases, folder, out)
+        print(f"tables and pictures written to {out}", file=sys.stderr)
+    return ALL_RIGHT if all(_as_wished(case) for case in cases) else NOT_ALL_RIGHT
+
+
+def accuracy_text(cases: Sequence[Case], strange: Sequence[str] = ()) -> Iterator[str]:
+    """Yield the lines of the report, in Markdown."""
+    bodies = [case for case in cases if not case.truth.refuse]
+    yield from ("# How well the bodies are understood", "", *_counts(cases, bodies))
+    if strange:
+        yield f"Not judged, for their names are unknown here: {', '.join(strange)}."
+    yield from ("", "## How far off", "", "Of the files that were read the right way round.", "")
+    heads = ("what", "count", "mean", "95 %", "worst", "signed mean", "worst in")
+    yield from _table(heads, [_spread_row(spread) for spread in spreads(bodies)])
+    yield from ("", "## Confidence", "", *_confidence(bodies))
+    kinds = sorted({kind for case in bodies for kind in case.truth.kinds})
+    if kinds:
+        yield from ("", "## By kind", "", "Means [mm]; a file may be of several kinds.", "")
+        yield from _table(("kind", "files", "right", *BY_KIND), [_kind_row(kind, bodies) for kind in kinds])
+    failures = [case for case in cases if not _as_wished(case)]
+    yield from ("", "## Failures", "")
+    yield from (f"* {case.truth.name}: {verdict(case)}" for case in failures)
+    if not failures:
+        yield "None."
+    yield from ("", "## Landmarks that are far off", "")
+    yield from _far(bodies)
+
+
+def accuracy_values(cases: Sequence[Case]) -> dict[str, Any]:
+    """Return the same as plain values, ready for JSON."""
+    return {
+        "files": [_case_values(case) for case in cases],
+        "spreads": [spread.__dict__ for spread in spreads([case for case in cases if not case.truth.refuse])],
+    }
+
+
+def _case_values(case: Case) -> dict[str, Any]:
+    return {
+        "name": case.truth.name,
+        "file": case.truth.file,
+        "kinds": list(case.truth.kinds),
+        "right": case.right,
+        "sure": case.sure,
+        "failed": case.failed,
+        "crashed": case.crashed,
+        "turned_degrees": case.turned,
+        "unit_right": case.unit_right,
+        "sides_right": case.sides_right,
+        "seconds": round(case.seconds, 3),
+        "errors": {name: float(error) for name, error in case.errors.items()},
+        "landmarks": {m.name: {"off_mm": m.off, "confidence": m.confidence} for m in case.marks},
+        "invented": {m.name: m.confidence for m in case.invented},
+    }
+
+
+def _as_wished(case: Case) -> bool:
+    return bool(case.failed) and not case.crashed if case.truth.refuse else case.right
+
+
+def _counts(cases: Sequence[Case], bodies: Sequence[Case]) -> Iterator[str]:
+    read = [case for case in bodies if not case.failed]
+    right = [case for case in read if case.right]
+    wrong = [case for case in read if not case.right]
+    crashed = sum(case.crashed for case in cases)
+    seconds = [case.seconds for case in cases]
+    yield (
+        f"{len(bodies)} bodies: {len(right)} read the right way round, {sum(not c.sure for c in right)} of "
+        f"these asked about; {len(wrong)} the wrong way round, {sum(not c.sure for c in wrong)} of these "
+        f"asked about ({sum(not c.unit_right for c in wrong)} in a wrong unit, "
+        f"{sum(not c.sides_right for c in wrong)} with sides swapped); "
+        f"{sum(bool(c.failed) and not c.crashed for c in bodies)} refused; {crashed} crashed."
+    )
+    others = [case for case in cases if case.truth.refuse]
+    if others:
+        refused = sum(_as_wished(case) for case in others)
+        yield f"{len(others)} files without a body: {refused} refused, as they should be."
+    yield f"Processor time a file: {median(seconds):.1f} s in the middle, {max(seconds):.1f} s at most."
+
+
+def _spread_row(spread: Spread) -> tuple[str, ...]:
+    numbers = (spread.mean, spread.most, spread.worst)
+    signed = f"{spread.bias:+.1f}" if abs(spread.bias) < spread.mean * 0.9995 or spread.bias < 0.0 else ""
+    what = spread.what if "[" in spread.what else f"{spread.what} [mm]"
+    return (what, str(spread.count), *(f"{number:.1f}" for number in numbers), signed, spread.where)
+
+
+def _confidence(bodies: Sequence[Case]) -> Iterator[str]:
+    """Say how many landmarks that are off are unsure, and how many that are sure are off."""
+    groups = {"bust points": "bust_point", "folds": "fold", "lowest points": "lowest"}
+    marks = [mark for case in bodies if case.right for mark in case.marks]
+    others = [m for m in marks if not m.name.startswith(tuple(groups.values()))]
+    named = {**{k: [m for m in marks if m.name.startswith(v)] for k, v in groups.items()}, "others": others}
+    rows = [_confidence_row(name, group) for name, group in named.items() if group]
+    heads = ("landmarks", "count", f"off > {OFF:g} mm", f"of these < {TRUSTED:g}")
+    yield from _table((*heads, f"all >= {TRUSTED:g}", f"of these off > {OFF:g} mm"), rows)
+    invented = [mark.confidence for case in bodies if case.right for mark in case.invented]
+    if invented:
+        yield ""
+        yield (
+            f"Breasts found where there is none: {len(invented)}, with confidence "
+            f"{np.mean(invented):.2f} on average, {max(invented):.2f} at most."
+        )
+
+
+def _confidence_row(name: str, marks: Sequence[Mark]) -> tuple[str, ...]:
+    off = [mark for mark in marks if mark.off > OFF]
+    sure = [mark for mark in marks if mark.confidence >= TRUSTED]
+    unsure = sum(mark.confidence < TRUSTED for mark in off)
+    return (name, *map(str, (len(marks), len(off), unsure, len(sure), sum(mark.off > OFF for mark in sure))))
+
+
+def _kind_row(kind: str, bodies: Sequence[Case]) -> tuple[str, ...]:
+    of_it = [case for case in bodies if kind in case.truth.kinds]
+    means = {spread.what: f"{spread.mean:.1f}" for spread in spreads(of_it)}
+    right = sum(case.right for case in of_it)
+    return (kind, str(len(of_it)), str(right), *(means.get(what, "-") for what in BY_KIND))
+
+
+def _far(bodies: Sequence[Case]) -> Iterator[str]:
+    far = [(mark, case) for case in bodies if case.right for mark in case.marks if mark.off > OFF]
+    for mark, case in sorted(far, key=lambda pair: -pair[0].off):
+        name = mark.name.replace("_", " ")
+        yield f"* {case.truth.name}: {name} {mark.off:.1f} mm off, confidence {mark.confidence:.2f}"
+    if not far:
+        yield "None."
+
+
+def _table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[str]:
+    """Yield a Markdown table whose columns line up."""
+    widths = [max(len(row[k]) for row in (heads, *rows)) for k in range(len(heads))]
+    lines = [heads, ["-" * width for width in widths], *rows]
+    for line in lines:
+        cells = [
+            cell.ljust(w) if k == 0 else cell.rjust(w)
+            for k, (cell, w) in enumerate(zip(line, widths, strict=True))
+        ]
+        yield f"| {' | '.join(cells)} |"

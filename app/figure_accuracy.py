@@ -1,0 +1,176 @@
+"""The contact sheet of an accuracy run: every body from the front and from its left, with its landmarks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from textwrap import shorten, wrap
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure as Sheet
+from scipy.ndimage import gaussian_filter, grey_erosion
+
+from app.figure_style import print_style
+from app.tokens import LIGHT
+from core.accuracy import DOUBTED, TRUSTED, Case
+from core.errors import UserError
+from core.mesh import Faces, Floats, Points
+from core.project import whole_file
+from core.scan_file import read_triangles, scan_bytes
+
+COLUMNS, ROWS = 5, 4
+CELL = (3.9, 4.3)
+"""Width and height of a body on the sheet [inch]."""
+
+DOTS = 100  # per inch
+PIXELS = (176, 330)
+"""Width and height of one view of a body."""
+
+SAMPLES = 250_000
+ALONG = {"front": (0, 1, 1.0), "left": (1, 0, -1.0)}
+"""Per view: the axis to the right, the one into the picture, and whether that one grows into it."""
+
+
+def save_sheets(cases: Sequence[Case], folder: Path, out: Path) -> list[Path]:
+    """Write one picture for each ``COLUMNS`` x ``ROWS`` bodies to ``out``; return their names.
+
+    Rings are true landmarks, dots found ones: green if sure, amber if not quite, red if unsure.
+    """
+    each = COLUMNS * ROWS
+    pages = [cases[first : first + each] for first in range(0, len(cases), each)]
+    written = []
+    for number, page in enumerate(pages, start=1):
+        name = out / f"accuracy-{number}.png"
+        with print_style(), whole_file(name.absolute()) as partial:
+            _page(page, folder).savefig(partial, format="png", dpi=DOTS, metadata={"Software": "Busk"})
+        written.append(name)
+    return written
+
+
+def _page(cases: Sequence[Case], folder: Path) -> Sheet:
+    rows = -(-len(cases) // COLUMNS)
+    drawn = Sheet(figsize=(COLUMNS * CELL[0], rows * CELL[1]))
+    FigureCanvasAgg(drawn)
+    for place, case in enumerate(cases):
+        row, column = divmod(place, COLUMNS)
+        axes = drawn.add_axes(
+            (
+                (column + 0.02) / COLUMNS,
+                1.0 - (row + 0.83) / rows,
+                0.96 / COLUMNS,
+                0.74 / rows,
+            )
+        )
+        _draw(axes, case, folder)
+    return drawn
+
+
+def _draw(axes: Axes, case: Case, folder: Path) -> None:
+    """Draw one body from two sides with its name above and its verdict below."""
+    axes.set_axis_off()
+    axes.set_title(shorten(case.truth.name.replace("_", " "), 60), loc="center", fontsize=9)
+    good = case.right and case.sure
+    colour = LIGHT.text_quiet if good else LIGHT.warn if case.right else LIGHT.bad
+    words = "\n".join(wrap(verdict(case), 56)[:3])
+    axes.text(0.5, -0.02, words, transform=axes.transAxes, ha="center", va="top", fontsize=8, color=colour)
+    try:
+        vertices, faces = read_triangles(case.truth.file, scan_bytes(folder / case.truth.file))
+    except UserError:
+        return
+    skin = vertices @ case.to_mm[:3, :3].T + case.to_mm[:3, 3]
+    samples = _samples(skin, faces)
+    low, high = np.percentile(samples, (0.5, 99.5), axis=0)
+    middle, size = 0.5 * (low + high), 1.1 * float(max((high - low)[2], (high - low)[:2].max() * 1.9))
+    images = []
+    for number, view in enumerate(ALONG):
+        images.append(_picture(samples, middle, size, view, has_faces=len(faces) > 0))
+        _landmarks(axes, case, view, middle, size, number * PIXELS[0])
+    axes.imshow(np.concatenate(images, axis=1), cmap="gray", vmin=0.0, vmax=1.0, aspect="equal")
+    axes.set_xlim(0, 2 * PIXELS[0])
+    axes.set_ylim(PIXELS[1], 0)
+
+
+def verdict(case: Case) -> str:
+    """Return in a few words what came of a file."""
+    if case.truth.refuse:
+        return f"refused, as it should be: {case.failed}" if case.failed else "should have been refused"
+    if case.failed:
+        return case.failed
+    if not case.right:
+        wrong = [] if case.unit_right else ["unit"]
+        wrong += [] if case.sides_right else ["sides"]
+        return f"{' and '.join(wrong) or f'turned by {case.turned:.0f} degrees'}: wrong" + (
+            ", and sure of it" if case.sure else ", but asks"
+        )
+    worst = sorted(case.marks, key=lambda mark: -mark.off)[:2]
+    words = [f"{mark.name.replace('_', ' ')} {mark.off:.1f} mm ({mark.confidence:.2f})" for mark in worst]
+    return "; ".join(words) + ("" if case.sure else "; asks")
+
+
+def _samples(vertices: Points, faces: Faces) -> Points:
+    """Return points spread over the triangles, shape (n, 3); the vertices of a cloud as they are."""
+    if len(faces) == 0:
+        return vertices
+    a, b, c = (vertices[faces[:, k]] for k in range(3))
+    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    times = np.ceil(SAMPLES * areas / max(float(areas.sum()), 1e-12)).astype(np.int64)
+    row = np.repeat(np.arange(len(faces)), np.minimum(times, 4000))
+    u, v = np.random.default_rng(0).random((2, len(row), 1))
+    over = u + v > 1.0
+    u, v = np.where(over, 1.0 - u, u), np.where(over, 1.0 - v, v)
+    return np.asarray(a[row] + u * (b - a)[row] + v * (c - a)[row])
+
+
+def _pixels(points: Points, middle: Points, size: float, view: str) -> Floats:
+    """Return where points, shape (n, 3) [mm], lie in a view, shape (n, 2) [pixels right, down]."""
+    right, _, _ = ALONG[view]
+    scale = PIXELS[1] / size
+    across = 0.5 * PIXELS[0] + scale * (points[:, right] - middle[right])
+    return np.stack([across, 0.5 * PIXELS[1] - scale * (points[:, 2] - middle[2])], axis=1)
+
+
+def _picture(
+    samples: Points, middle: Points, size: float, view: str, *, has_faces: bool
+) -> npt.NDArray[np.float64]:
+    """Return a shaded picture of the skin that is in front, shape PIXELS [0..1]."""
+    _, into, sign = ALONG[view]
+    at = np.floor(_pixels(samples, middle, size, view)).astype(np.int64)
+    inside = ((at >= 0) & (at < PIXELS)).all(axis=1)
+    depth = np.full(PIXELS[::-1], np.inf)
+    np.minimum.at(depth, (at[inside, 1], at[inside, 0]), sign * samples[inside, into])
+    if not has_faces:
+        depth = grey_erosion(depth, size=(3, 3))
+    seen = np.isfinite(depth)
+    weight = gaussian_filter(seen.astype(float), 0.8)
+    smooth = gaussian_filter(np.where(seen, depth, 0.0), 0.8) / np.where(weight > 0.0, weight, 1.0)
+    down, right = np.gradient(smooth * PIXELS[1] / size)
+    light = (0.35 * right + 0.5 * down + 0.8) / np.sqrt(1.0 + right**2 + down**2)
+    return np.where(seen, np.clip(0.25 + 0.65 * light, 0.1, 0.97), 1.0)
+
+
+def _landmarks(axes: Axes, case: Case, view: str, middle: Points, size: float, shift: int) -> None:
+    confidence: Mapping[str, float] = {mark.name: mark.confidence for mark in (*case.marks, *case.invented)}
+    for name, at in _seen(case.true, view):
+        x, y = _pixels(at[None], middle, size, view)[0]
+        axes.plot(shift + x, y, "o", ms=6.5, mfc="none", mec=LIGHT.text, mew=0.9)
+        if name in case.found:
+            u, v = _pixels(case.found[name][None], middle, size, view)[0]
+            axes.plot([shift + x, shift + u], [y, v], color=LIGHT.text, lw=0.7)
+    for name, at in _seen(case.found, view):
+        sure = confidence.get(name)
+        colour = LIGHT.exact_curve if sure is None else _colour(sure)
+        x, y = _pixels(at[None], middle, size, view)[0]
+        axes.plot(shift + x, y, "o", ms=3.4, mfc=colour, mec="white", mew=0.4)
+
+
+def _seen(points: Mapping[str, Points], view: str) -> Iterator[tuple[str, Points]]:
+    return ((name, at) for name, at in points.items() if view == "front" or not name.endswith("right"))
+
+
+def _colour(confidence: float) -> str:
+    if confidence >= TRUSTED:
+        return LIGHT.ok
+    return LIGHT.warn_mark if confidence >= DOUBTED else LIGHT.bad
