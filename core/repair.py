@@ -5,21 +5,33 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy import sparse
-from scipy.sparse.csgraph import connected_components
 
-from core.mesh import Faces, Flags, Floats, Indices, Points, area_vectors
+from core.mesh import Faces, Flags, Indices, Points
+from core.pieces import drop_furniture, drop_inner, drop_specks, size_of
+from core.skin import Skin, components, first_equal
 
-Step = Callable[[Points, Faces], tuple[Points, Faces, int]]
+Step = Callable[[Skin], tuple[Skin, int]]
 
 FARTHEST = 1e9
 """A coordinate beyond this [file units] is a mistake: squares and cubes of it would not stay finite."""
 
+FAR_OFF = 50.0
+"""A vertex farther from the middle than so many times the median vertex [1] is a mistake."""
+
 SAME_PLACE = 2e-6
 """Vertices nearer than this share of the body's diagonal [1] are one."""
 
-SPECK = 0.005
-"""A loose piece with less than this share of the largest piece's area [1] is a speck."""
+LARGE = 0.25
+"""A patch of at least this share of the area of the largest [1] is never taken for a fin."""
+
+MANY = 8
+"""Two closed sheets that touch in a vertex give it at least so many triangles, but for rare cases."""
+
+DENT = 0.1
+"""A piece is hollow if it faces its own middle by more than this [1]."""
+
+SPIKE, SHARP = 0.1, 1.2
+"""The shortest edge at a spike, in parts of the body's size [1]; the sum of the angles at its tip [rad]."""
 
 
 def repair(vertices: Points, faces: Faces) -> tuple[Points, Faces, tuple[str, ...]]:
@@ -30,138 +42,229 @@ def repair(vertices: Points, faces: Faces) -> tuple[Points, Faces, tuple[str, ..
     steps: tuple[tuple[Step, str, str], ...] = (
         (_drop_positionless, "Dropped {} without a position.", "vertex"),
         (_drop_unused, "Dropped {} outside any face.", "vertex"),
+        (_drop_far, "Dropped {} far away from all others.", "vertex"),
         (_merge_equal, "Merged {} with others at the same place.", "vertex"),
         (_drop_empty_faces, "Dropped {} without an area or listed before.", "face"),
         (_drop_fins, "Dropped {} standing off the skin like a fin.", "face"),
-        (_drop_specks, "Dropped {} beside the body.", "speck"),
+        (_part_sheets, "Parted the skin at {} in which two sheets touched.", "vertex"),
+        (drop_furniture, "Dropped {} shaped like a floor, a wall or a stand.", "piece"),
+        (drop_specks, "Dropped {} beside the body.", "speck"),
+        (_drop_spikes, "Dropped {} sticking out of the skin like a spike.", "vertex"),
         (_wind_outward, "Turned {} to look outward.", "face"),
+        (drop_inner, "Dropped {} inside the body or doubling its skin.", "piece"),
     )
-    sentences = []
+    skin, sentences = Skin(vertices, faces), []
     for step, words, noun in steps:
-        vertices, faces, count = step(vertices, faces)
+        skin, count = step(skin)
         if count:
-            plural = {"vertex": "vertices"}.get(noun, noun + "s")
-            sentences.append(words.format(f"{count:,} {noun if count == 1 else plural}"))
-    return vertices, faces, tuple(sentences)
+            sentences.append(words.format(counted(count, noun)))
+    return skin.vertices, skin.faces, tuple(sentences)
 
 
-def _drop_positionless(vertices: Points, faces: Faces) -> tuple[Points, Faces, int]:
-    good = np.all(np.abs(vertices) < FARTHEST, axis=1)  # False for NaN too
-    count = int((~good).sum())
-    return (
-        (*_compact(vertices, faces[good[faces].all(axis=1)], good), count) if count else (vertices, faces, 0)
-    )
+def counted(count: int, noun: str) -> str:
+    """Return how many of something there are, in words."""
+    plural = {"vertex": "vertices"}.get(noun, noun + "s")
+    return f"{count:,} {noun if count == 1 else plural}"
 
 
-def _drop_unused(vertices: Points, faces: Faces) -> tuple[Points, Faces, int]:
-    used = np.zeros(len(vertices), dtype=bool)
-    used[faces] = True
-    return (*_compact(vertices, faces, used), int((~used).sum()))
+def _drop_positionless(skin: Skin) -> tuple[Skin, int]:
+    good = np.all(np.abs(skin.vertices) < FARTHEST, axis=1)  # False for NaN too
+    return skin.with_vertices(good), int((~good).sum())
 
 
-def _merge_equal(vertices: Points, faces: Faces) -> tuple[Points, Faces, int]:
-    if len(vertices) == 0:
-        return vertices, faces, 0
-    low, high = np.percentile(vertices, (1, 99), axis=0)
-    grain = SAME_PLACE * float(np.linalg.norm(high - low))
-    first = _first_equal(np.round(vertices / grain) if grain > 0.0 else vertices)
-    keep = first == np.arange(len(vertices))
-    return (*_compact(vertices, first[faces], keep), int((~keep).sum()))
+def _drop_unused(skin: Skin) -> tuple[Skin, int]:
+    used = skin.compact()
+    return used, len(skin.vertices) - len(used.vertices)
 
 
-def _drop_empty_faces(vertices: Points, faces: Faces) -> tuple[Points, Faces, int]:
-    corners = np.sort(faces, axis=1)
-    keep = (corners[:, 0] < corners[:, 1]) & (corners[:, 1] < corners[:, 2])
-    keep &= _first_equal(corners) == np.arange(len(faces))
-    return _keep_faces(vertices, faces, keep)
+def _drop_far(skin: Skin) -> tuple[Skin, int]:
+    if len(skin.vertices) == 0:
+        return skin, 0
+    some = skin.vertices[:: len(skin.vertices) // 100_000 + 1]
+    middle = np.median(some, axis=0)
+    usual = float(np.median(np.linalg.norm(some - middle, axis=1)))
+    near = np.abs(skin.vertices - middle).max(axis=1) <= FAR_OFF * usual
+    if near.all() or not near.any():
+        return skin, 0
+    return skin.with_vertices(near).compact(), int((~near).sum())
 
 
-def _drop_fins(vertices: Points, faces: Faces) -> tuple[Points, Faces, int]:
-    """Drop the faces that hang with one side on an inner edge of the skin, the other two sides free."""
-    _, edge, count = np.unique(_edge_keys(faces, len(vertices)), return_inverse=True, return_counts=True)
-    sharing = count[edge].reshape(3, -1)
-    return _keep_faces(vertices, faces, ~(((sharing == 1).sum(axis=0) == 2) & (sharing.max(axis=0) > 2)))
+def _merge_equal(skin: Skin) -> tuple[Skin, int]:
+    if len(skin.vertices) == 0:
+        return skin, 0
+    low, high = np.percentile(skin.vertices[:: len(skin.vertices) // 100_000 + 1], (1, 99), axis=0)
+    lowest = skin.vertices.min(axis=0)
+    extent = float(np.ptp(skin.vertices, axis=0).max())
+    # three places of 20 bits make one number to sort by
+    grain = max(SAME_PLACE * float(np.linalg.norm(high - low)), extent / (2**20 - 1))
+    if not grain > 0.0:
+        return skin, 0
+    cell = np.rint((skin.vertices - lowest) / grain).astype(np.int64)
+    first = first_equal((cell[:, 0] << 40) | (cell[:, 1] << 20) | cell[:, 2])
+    keep = first == np.arange(len(first))
+    if keep.all():
+        return skin, 0
+    return Skin(skin.vertices[keep], (np.cumsum(keep) - 1)[first[skin.faces]]), int((~keep).sum())
 
 
-def _drop_specks(vertices: Points, faces: Faces) -> tuple[Points, Faces, int]:
-    corner = np.repeat(faces[:, 0], 2)
-    piece_count, piece = _pieces(corner, faces[:, 1:].ravel(), len(vertices))
-    piece = piece[faces[:, 0]]
-    area = np.bincount(piece, np.linalg.norm(area_vectors(vertices, faces), axis=1), piece_count)
-    small = area < SPECK * area.max(initial=0.0)
-    kept, faces, _ = _keep_faces(vertices, faces, ~small[piece])
-    return kept, faces, int(small.sum())
+def _drop_empty_faces(skin: Skin) -> tuple[Skin, int]:
+    low, middle, high = np.sort(skin.faces, axis=1).T
+    keep = (low < middle) & (middle < high)
+    # faces with the same two lower corners are few: their upper corners are compared among these alone
+    pair = first_equal(low * len(skin.vertices) + middle)
+    twin = np.bincount(pair, minlength=len(pair))[pair] > 1
+    where = np.flatnonzero(twin)
+    ranked = where[np.lexsort((where, high[where], pair[where]))]
+    same = (pair[ranked[1:]] == pair[ranked[:-1]]) & (high[ranked[1:]] == high[ranked[:-1]])
+    keep[ranked[1:][same]] = False
+    return skin.with_faces(keep), int((~keep).sum())
 
 
-def _wind_outward(vertices: Points, faces: Faces) -> tuple[Points, Faces, int]:
-    """Make neighbours run the same way round, then each piece look away from the middle of the body.
+def _drop_fins(skin: Skin) -> tuple[Skin, int]:
+    """Where more than two faces share an edge, drop the smallest patches until two are left.
+
+    A patch is what hangs together over edges of two faces. Those with a free side go first.
+    """
+    sides = skin.sides
+    if sides.count.max(initial=0) <= 2:
+        return skin, 0
+    first, second, _ = sides.neighbours
+    patch = components(first, second, len(skin.faces))
+    area = np.bincount(patch, skin.areas)
+    free = np.zeros(len(area), dtype=bool)
+    free[patch[sides.border % len(skin.faces)]] = True
+    bad = np.flatnonzero(sides.count > 2)
+    edge = np.repeat(bad, sides.count[bad])
+    rows = np.concatenate([np.arange(sides.start[i], sides.start[i] + sides.count[i]) for i in bad])
+    hung = patch[sides.order[rows] % len(skin.faces)]
+    order = np.argsort(hung, kind="stable")
+    starts = np.searchsorted(hung[order], np.arange(len(area) + 1))
+    left, dropped = sides.count.copy(), np.zeros(len(area), dtype=bool)
+    candidates = np.unique(hung[area[hung] < LARGE * area.max()])
+    for number in candidates[np.lexsort((area[candidates], ~free[candidates]))]:
+        edges = edge[order[starts[number] : starts[number + 1]]]
+        if (left[edges] > 2).any():
+            np.subtract.at(left, edges, 1)
+            dropped[number] = True
+    keep = ~dropped[patch]
+    return skin.with_faces(keep), int((~keep).sum())
+
+
+def _part_sheets(skin: Skin) -> tuple[Skin, int]:
+    """Give each sheet its own vertex where sheets touch in nothing but a vertex."""
+    n, sides = len(skin.vertices), skin.sides
+    start, end = sides.ends(sides.border)
+    low, high = np.full(n, len(skin.faces)), np.full(n, -1)
+    for k in range(3) if skin.piece.any() else ():
+        np.minimum.at(low, skin.faces[:, k], skin.piece)
+        np.maximum.at(high, skin.faces[:, k], skin.piece)
+    several = np.bincount(np.concatenate([start, end]), minlength=n) > 2
+    several |= (low < high) | (np.bincount(skin.faces.ravel(), minlength=n) >= MANY)
+    near = skin.faces[several[skin.faces].any(axis=1)]
+    if len(near) == 0:
+        return skin, 0
+    fan = _fans(Skin(skin.vertices, near))
+    # the first fan of a vertex keeps it, each other gets a copy
+    corner = near.ravel()
+    order = np.argsort(fan, kind="stable")
+    fan_vertex = corner[order][np.unique(fan[order], return_index=True)[1]]
+    first = np.full(n, len(fan_vertex))
+    np.minimum.at(first, fan_vertex, np.arange(len(fan_vertex)))
+    extra = (first[fan_vertex] != np.arange(len(fan_vertex))) & several[fan_vertex]
+    if not extra.any():
+        return skin, 0
+    number = np.where(extra, n + np.cumsum(extra) - 1, fan_vertex)
+    faces = skin.faces.copy()
+    faces[several[skin.faces].any(axis=1)] = number[fan].reshape(-1, 3)
+    vertices = np.concatenate([skin.vertices, skin.vertices[fan_vertex[extra]]])
+    return Skin(vertices, faces), len(np.unique(fan_vertex[extra]))
+
+
+def _fans(skin: Skin) -> Indices:
+    """Return the fan of each corner, shape (3 m,): corners at a vertex that meet over edges are one fan."""
+    sides, m = skin.sides, len(skin.faces)
+    later = np.ones(3 * m, dtype=bool)
+    later[sides.start] = False
+    rows = np.flatnonzero(later)
+    one, other = sides.order[rows - 1], sides.order[rows]
+    a, b = (3 * (side % m) + side // m for side in (one, other))
+    a_end, b_end = (3 * (side % m) + (side // m + 1) % 3 for side in (one, other))
+    same = sides.ends(one)[0] == sides.ends(other)[0]
+    starts, ends = np.where(same, b, b_end), np.where(same, b_end, b)
+    return components(np.concatenate([a, a_end]), np.concatenate([starts, ends]), 3 * m)
+
+
+def _drop_spikes(skin: Skin) -> tuple[Skin, int]:
+    """Drop inner vertices that stand far off between faces that are all narrow there."""
+    if len(skin.faces) == 0:
+        return skin, 0
+    n, least = len(skin.vertices), np.full(len(skin.vertices), np.inf)
+    a, b, c = (skin.vertices[skin.faces[:, k]] for k in range(3))
+    long = SPIKE * size_of(skin)
+    length = np.stack([np.einsum("ij,ij->i", d, d) for d in (b - a, c - b, a - c)], axis=1)
+    far = np.minimum(length, np.roll(length, 1, axis=1)) > long * long
+    if not far.any():
+        return skin, 0
+    rows = np.flatnonzero(far.any(axis=1))
+    for k in range(3):
+        np.minimum.at(least, skin.faces[:, k], far[:, k].astype(float))
+    angle = np.zeros(n)
+    corners = skin.vertices[skin.faces[rows]]
+    for k in range(3):
+        to, fro = corners[:, (k + 1) % 3] - corners[:, k], corners[:, (k + 2) % 3] - corners[:, k]
+        cosine = np.einsum("ij,ij->i", to, fro) / np.maximum(
+            np.sqrt(np.einsum("ij,ij->i", to, to) * np.einsum("ij,ij->i", fro, fro)), 1e-300
+        )
+        angle += np.bincount(skin.faces[rows, k], np.arccos(np.clip(cosine, -1.0, 1.0)), n)
+    start, end = skin.sides.ends(skin.sides.border)
+    spike = (least == 1.0) & (angle < SHARP)
+    spike[start] = spike[end] = False
+    return skin.with_vertices(~spike).compact(), int(spike.sum())
+
+
+def _wind_outward(skin: Skin) -> tuple[Skin, int]:
+    """Make neighbours run the same way round, then each piece look outward.
 
     Two sheets of the skin are laid over each other, one with every face as it is, one with every face turned,
     and joined where neighbours agree: each connected sheet is then one consistent winding of a piece.
     """
-    if len(faces) == 0:
-        return vertices, faces, 0
-    first, second, clash = _neighbours(faces, len(vertices))
-    m = len(faces)
-    start = np.concatenate([first, first + m])
-    end = np.concatenate([second + m * clash, second + m * ~clash])
-    _, sheet = _pieces(start, end, 2 * m)
-    piece = np.minimum(sheet[:m], sheet[m:])
-    turned = sheet[m:] == piece
-    turned &= sheet[:m] != piece  # a piece with one side only has no winding: leave it
-    areas = area_vectors(vertices, faces)
-    weight = np.linalg.norm(areas, axis=1)
-    centres = vertices[faces].mean(axis=1)
-    outward = np.einsum("ij,ij->i", areas, centres - np.average(centres, axis=0, weights=weight))
-    volume = np.bincount(piece, np.where(turned, -outward, outward))
-    turned ^= (volume < 0.0)[piece]
-    if turned.any():
-        faces = np.where(turned[:, None], faces[:, ::-1], faces)
-    return vertices, faces, int(turned.sum())
+    m = len(skin.faces)
+    if m == 0:
+        return skin, 0
+    first, second, clash = skin.sides.neighbours
+    turned = np.zeros(m, dtype=bool)
+    if clash.any():
+        start = np.concatenate([first, first + m])
+        end = np.concatenate([second + m * clash, second + m * ~clash])
+        sheet = components(start, end, 2 * m)
+        turned = sheet[m:] < sheet[:m]  # a piece with one side only has no winding: it stays
+    turned ^= _inward(skin, turned)[skin.piece]
+    if not turned.any():
+        return skin, 0
+    return Skin(skin.vertices, np.where(turned[:, None], skin.faces[:, ::-1], skin.faces)), int(turned.sum())
 
 
-def _neighbours(faces: Faces, vertex_count: int) -> tuple[Indices, Indices, Flags]:
-    """Return the faces on both sides of each edge that has two, and whether they run against each other."""
-    keys = _edge_keys(faces, vertex_count)
-    order = np.argsort(keys, kind="stable")
-    starts = np.flatnonzero(np.diff(keys[order], prepend=-1, append=-1))
-    pair = order[starts[:-1][np.diff(starts) == 2][:, None] + [0, 1]]
-    rising = (faces < np.roll(faces, -1, axis=1)).T.ravel()
-    face = pair % len(faces)
-    return face[:, 0], face[:, 1], rising[pair[:, 0]] == rising[pair[:, 1]]
+def _inward(skin: Skin, turned: Flags) -> Flags:
+    """Tell which pieces look inward with their faces ``turned``, shape (k,).
 
-
-def _edge_keys(faces: Faces, vertex_count: int) -> Indices:
-    """Return one number an edge, the same from both sides, shape (3 m,): first all first sides, and so on."""
-    ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)]), axis=0)
-    return np.asarray((ends[0] * vertex_count + ends[1]).T.ravel())
-
-
-def _pieces(start: Indices, end: Indices, count: int) -> tuple[int, Indices]:
-    links = sparse.coo_array((np.ones(len(start), dtype=np.int8), (start, end)), shape=(count, count))
-    pieces, label = connected_components(links, directed=False)
-    return int(pieces), np.asarray(label, dtype=np.int64)
-
-
-def _first_equal(rows: Floats | Indices) -> Indices:
-    """Return for each row the index of the first row equal to it, shape (n,)."""
-    order = np.lexsort(rows.T)
-    new = np.ones(len(rows), dtype=bool)
-    new[1:] = (rows[order[1:]] != rows[order[:-1]]).any(axis=1)
-    first = np.empty(len(rows), dtype=np.int64)
-    first[order] = order[new][np.cumsum(new) - 1]
-    return first
-
-
-def _keep_faces(vertices: Points, faces: Faces, keep: Flags) -> tuple[Points, Faces, int]:
-    count = int((~keep).sum())
-    if count == 0:
-        return vertices, faces, 0
-    vertices, faces, _ = _drop_unused(vertices, faces[keep])
-    return vertices, faces, count
-
-
-def _compact(vertices: Points, faces: Faces, keep: Flags) -> tuple[Points, Faces]:
-    if keep.all():
-        return vertices, faces
-    return vertices[keep], (np.cumsum(keep) - 1)[faces]
+    A closed piece has its volume for it, an open one its place round the middle of the body. If its own
+    bulge says the opposite, as inside an arm, it keeps to the winding that the file has elsewhere.
+    """
+    piece, weight = skin.piece, np.maximum(skin.areas, 1e-300)
+    vectors = np.where(turned[:, None], -skin.area_vectors, skin.area_vectors)
+    total = np.bincount(piece, weight)
+    own = np.stack([np.bincount(piece, weight * skin.centres[:, k]) for k in range(3)], axis=1)
+    from_own = skin.centres - (own / total[:, None])[piece]
+    from_body = skin.centres - own.sum(axis=0) / total.sum()
+    around, bulge = (
+        np.bincount(piece, np.einsum("ij,ij->i", vectors, way))
+        / np.maximum(np.bincount(piece, weight * np.linalg.norm(way, axis=1)), 1e-300)
+        for way in (from_body, from_own)
+    )
+    as_given = np.sign(np.bincount(piece, np.where(turned, -weight, weight)))
+    is_open = np.zeros(len(total), dtype=bool)
+    is_open[piece[skin.sides.border % len(piece)]] = True
+    around = np.where(is_open, around, bulge)
+    doubtful = is_open & (bulge * np.sign(around) < -DENT) & (total < total.max())
+    file = 1.0 if (total * around * as_given)[~doubtful].sum() >= 0.0 else -1.0
+    return np.asarray(np.where(doubtful, as_given * file < 0.0, around < 0.0))
