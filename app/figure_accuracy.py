@@ -26,12 +26,12 @@ CELL = (3.9, 4.3)
 """Width and height of a body on the sheet [inch]."""
 
 DOTS = 100  # per inch
-PIXELS = (176, 330)
-"""Width and height of one view of a body."""
+TALL, WIDE = 320, {"front": 232, "left": 148}
+"""Height and widths of the views of a body [pixels]."""
 
-SAMPLES = 250_000
+SAMPLES = 300_000
 ALONG = {"front": (0, 1, 1.0), "left": (1, 0, -1.0)}
-"""Per view: the axis to the right, the one into the picture, and whether that one grows into it."""
+"""Per view: the axis to the right, the one into the picture, and its sign: whether it grows into it."""
 
 
 def save_sheets(cases: Sequence[Case], folder: Path, out: Path) -> list[Path]:
@@ -56,14 +56,8 @@ def _page(cases: Sequence[Case], folder: Path) -> Sheet:
     FigureCanvasAgg(drawn)
     for place, case in enumerate(cases):
         row, column = divmod(place, COLUMNS)
-        axes = drawn.add_axes(
-            (
-                (column + 0.02) / COLUMNS,
-                1.0 - (row + 0.83) / rows,
-                0.96 / COLUMNS,
-                0.74 / rows,
-            )
-        )
+        box = ((column + 0.02) / COLUMNS, 1.0 - (row + 0.83) / rows, 0.96 / COLUMNS, 0.74 / rows)
+        axes = drawn.add_axes(box)
         _draw(axes, case, folder)
     return drawn
 
@@ -83,14 +77,16 @@ def _draw(axes: Axes, case: Case, folder: Path) -> None:
     skin = vertices @ case.to_mm[:3, :3].T + case.to_mm[:3, 3]
     samples = _samples(skin, faces)
     low, high = np.percentile(samples, (0.5, 99.5), axis=0)
-    middle, size = 0.5 * (low + high), 1.1 * float(max((high - low)[2], (high - low)[:2].max() * 1.9))
-    images = []
-    for number, view in enumerate(ALONG):
-        images.append(_picture(samples, middle, size, view, has_faces=len(faces) > 0))
-        _landmarks(axes, case, view, middle, size, number * PIXELS[0])
+    width, depth, height = high - low
+    middle, size = 0.5 * (low + high), max(height / TALL, width / WIDE["front"], depth / WIDE["left"])
+    images, shift = [], 0
+    for view in ALONG:
+        images.append(_picture(samples, middle, 1.05 * size, view))
+        _landmarks(axes, case, view, middle, 1.05 * size, shift)
+        shift += WIDE[view]
     axes.imshow(np.concatenate(images, axis=1), cmap="gray", vmin=0.0, vmax=1.0, aspect="equal")
-    axes.set_xlim(0, 2 * PIXELS[0])
-    axes.set_ylim(PIXELS[1], 0)
+    axes.set_xlim(0, shift)
+    axes.set_ylim(TALL, 0)
 
 
 def verdict(case: Case) -> str:
@@ -127,26 +123,22 @@ def _samples(vertices: Points, faces: Faces) -> Points:
 def _pixels(points: Points, middle: Points, size: float, view: str) -> Floats:
     """Return where points, shape (n, 3) [mm], lie in a view, shape (n, 2) [pixels right, down]."""
     right, _, _ = ALONG[view]
-    scale = PIXELS[1] / size
-    across = 0.5 * PIXELS[0] + scale * (points[:, right] - middle[right])
-    return np.stack([across, 0.5 * PIXELS[1] - scale * (points[:, 2] - middle[2])], axis=1)
+    across = 0.5 * WIDE[view] + (points[:, right] - middle[right]) / size
+    return np.stack([across, 0.5 * TALL - (points[:, 2] - middle[2]) / size], axis=1)
 
 
-def _picture(
-    samples: Points, middle: Points, size: float, view: str, *, has_faces: bool
-) -> npt.NDArray[np.float64]:
-    """Return a shaded picture of the skin that is in front, shape PIXELS [0..1]."""
+def _picture(samples: Points, middle: Points, size: float, view: str) -> npt.NDArray[np.float64]:
+    """Return a shaded picture of the skin that is in front; ``size`` is that of a pixel [mm]."""
     _, into, sign = ALONG[view]
     at = np.floor(_pixels(samples, middle, size, view)).astype(np.int64)
-    inside = ((at >= 0) & (at < PIXELS)).all(axis=1)
-    depth = np.full(PIXELS[::-1], np.inf)
+    inside = ((at >= 0) & (at < (WIDE[view], TALL))).all(axis=1)
+    depth = np.full((TALL, WIDE[view]), np.inf)
     np.minimum.at(depth, (at[inside, 1], at[inside, 0]), sign * samples[inside, into])
-    if not has_faces:
-        depth = grey_erosion(depth, size=(3, 3))
+    depth = grey_erosion(depth, size=(3, 3))  # no skin behind is seen between two samples
     seen = np.isfinite(depth)
     weight = gaussian_filter(seen.astype(float), 0.8)
     smooth = gaussian_filter(np.where(seen, depth, 0.0), 0.8) / np.where(weight > 0.0, weight, 1.0)
-    down, right = np.gradient(smooth * PIXELS[1] / size)
+    down, right = np.gradient(smooth / size)
     light = (0.35 * right + 0.5 * down + 0.8) / np.sqrt(1.0 + right**2 + down**2)
     return np.where(seen, np.clip(0.25 + 0.65 * light, 0.1, 0.97), 1.0)
 

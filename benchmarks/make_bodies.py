@@ -29,6 +29,10 @@ from worn_scans import Scan, Standing  # noqa: E402
 from core.mesh import Mesh  # noqa: E402
 
 Rng = np.random.Generator
+
+FAR = 2000.0
+"""A body whose file has its origin further away than this [mm] is of the kind "far"."""
+
 Shape = Callable[[Rng], list[Alteration]]
 Damage = Callable[[Scan, Rng, KnownBody], Scan]
 
@@ -175,7 +179,8 @@ def make(source: Path, out: Path, seed: int, rounds: int = 2) -> int:
             placed = scan[0] @ turn_to[:3, :3].T + turn_to[:3, 3]
             write = worn.stl_bytes if damage == "soup" else worn.ply_bytes
             (out / file).write_bytes(write((placed, scan[1])))
-            kinds = [word for word in (form, damage, "tilt" if tilted else "") if word]
+            far = "far" if np.linalg.norm(stand.shift) > FAR else ""
+            kinds = [word for word in (form, damage, "tilt" if tilted else "", far) if word]
             about = {"file": file, "body": name, "note": " + ".join(kinds), "kinds": kinds}
             scans[label] = entry(body, stand, scan, about)
     truth = {"frame": "mm, Z up, subject faces -Y, +X = left of subject", "bodies": {}, "scans": scans}
