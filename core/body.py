@@ -8,10 +8,14 @@ from pathlib import Path
 
 from core.calm import calmed
 from core.errors import ScanError
-from core.mesh import Mesh
+from core.holes import Hole, find_holes
+from core.mending import mended
+from core.mesh import Faces, Mesh, Points
 from core.progress import Progress, quiet
+from core.raw_scan import RawScan
 from core.repair import repair
-from core.scan_file import read_triangles, scan_bytes
+from core.scan_file import read_raw, scan_bytes
+from core.surface import FEWEST_POINTS, is_cloud, surface_of
 from core.upright import Pose, find_pose
 
 
@@ -32,6 +36,11 @@ class Body:
     def calm(self) -> Mesh:
         """The skin without the noise of the scanner: what is measured [mm]."""
         return calmed(self.mesh)
+
+    @cached_property
+    def holes(self) -> tuple[Hole, ...]:
+        """The holes that stay open, longest first; where a neck, an arm or the hips were cut is none."""
+        return tuple(hole for hole in find_holes(self.mesh) if not hole.opening)
 
 
 def read_scan(
@@ -61,13 +70,40 @@ def body_of(
     ``name`` is that of the file and ``data`` what it holds; ``unit`` ("mm", "cm", "m", "inch"), ``up`` and
     ``front`` ("+x" .. "-z", axes of the file) overrule what the shape tells. Raises ScanError, Cancelled.
     """
-    triangles = read_triangles(name, data, progress)
-    progress("repairing", 0.4)
-    vertices, faces, repairs = repair(*triangles)
+    scan = read_raw(name, data, progress)
+    rebuilt = is_cloud(scan)
+    said: tuple[str, ...] = ()
+    if rebuilt:
+        said = (f"Laid a surface through {len(scan.vertices):,} points.",)
+        scan = RawScan(*_surface(name, scan, progress))
+    progress("repairing", 0.0)
+    vertices, faces, repairs = repair(scan.vertices, scan.faces)
     if len(faces) == 0:
         raise ScanError(f"{name} has no sound triangles.", "Export the scan again.")
-    progress("finding up and front", 0.6)
+    progress("finding up and front", 0.0)
     pose = find_pose(vertices, faces, unit=unit, up=up, front=front)
     progress("finding up and front", 1.0)
     turn = pose.file_to_mm[:3, :3]
-    return Body(Mesh(vertices @ turn.T, faces), pose, repairs, Path(name).stem)
+    mesh, mendings = mended(Mesh(vertices @ turn.T, faces))
+    return Body(mesh, pose, (*said, *repairs, *mendings), scan_name(name), rebuilt)
+
+
+def scan_name(name: str) -> str:
+    """Return the name of a scan without what its file's name ends in."""
+    path = Path(name)
+    return (path.with_suffix("") if path.suffix.lower() == ".gz" else path).stem
+
+
+def _surface(name: str, scan: RawScan, progress: Progress) -> tuple[Points, Faces]:
+    if len(scan.vertices) < FEWEST_POINTS:
+        raise ScanError(
+            f"{name} has no sound triangles: it is a cloud of only {len(scan.vertices):,} points.",
+            f"Scan with at least {FEWEST_POINTS:,} points, better 30,000.",
+        )
+    try:
+        return surface_of(scan.vertices, scan.normals, progress)
+    except (ArithmeticError, ValueError, IndexError) as problem:
+        raise ScanError(
+            f"No surface can be laid through the points of {name}.",
+            "Mesh the points first, in the program of the scanner.",
+        ) from problem

@@ -193,7 +193,7 @@ def test_a_count_that_the_file_cannot_hold_is_refused_without_reserving_memory(t
 TRIANGLE = "0 0 0\n1 0 0\n0 1 0\n"
 ASCII_PLY = PLY_HEADER.format(kind="ascii", n=3, m=1)
 BAD_FILES = [
-    ("scan.xyz", b"1 2 3", "not a PLY, OBJ or STL file"),
+    ("scan.doc", b"1 2 3", "not a scan that can be read"),
     ("scan.ply", b"", "is empty"),
     ("scan.ply", b"hello", "not a PLY file"),
     ("scan.ply", b"ply\nformat ascii 1.0\nelement vertex", "not a PLY file, or its header is cut short"),
@@ -202,8 +202,8 @@ BAD_FILES = [
     ("scan.ply", (ASCII_PLY + TRIANGLE + "3 0 1 7\n").encode(), "corners that do not exist"),
     ("scan.ply", (ASCII_PLY.replace("vertex 3", "vertex -3") + TRIANGLE).encode(), "makes no sense"),
     ("scan.ply", (ASCII_PLY.replace("float z", "number z") + TRIANGLE).encode(), "makes no sense"),
-    ("scan.ply", (PLY_HEADER.format(kind="ascii", n=3, m=0) + TRIANGLE).encode(), "cloud of 3 points"),
-    ("scan.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "no triangles"),
+    ("scan.ply", (PLY_HEADER.format(kind="ascii", n=3, m=0) + TRIANGLE).encode(), "cloud of only 3 points"),
+    ("scan.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "no sound triangles"),
     ("scan.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "do not exist|damaged"),
     ("scan.obj", b"v 0 0 0\nv 1 0 0\nf 1 1 2\n", "no sound triangles"),
     ("scan.stl", b"\x00" * 80 + b"\x09\x00\x00\x00" + b"\x00" * 60, "cut short, or it is not an STL file"),
