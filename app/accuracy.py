@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json as json_text
 import sys
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from statistics import median
@@ -17,6 +18,7 @@ from core.project import whole_file
 from core.truth import read_truths
 
 ALL_RIGHT, NOT_ALL_RIGHT = 0, 3
+SIGNED = ("height", "level", "girth")
 BY_KIND = ("bust point to nipple-apex", "fold height", "bust girth", "underbust girth")
 
 
@@ -56,6 +58,12 @@ def accuracy_text(cases: Sequence[Case], strange: Sequence[str] = ()) -> Iterato
     yield from ("", "## How far off", "", "Of the files that were read the right way round.", "")
     heads = ("what", "count", "mean", "95 %", "worst", "signed mean", "worst in")
     yield from _table(heads, [_spread_row(spread) for spread in spreads(bodies)])
+    lacking = Counter(name.replace("_", " ") for case in bodies if case.right for name in case.lacking)
+    if lacking:
+        yield from (
+            "",
+            f"Known but not found: {', '.join(f'{n} ({k})' for n, k in sorted(lacking.items()))}.",
+        )
     yield from ("", "## Confidence", "", *_confidence(bodies))
     kinds = sorted({kind for case in bodies for kind in case.truth.kinds})
     if kinds:
@@ -93,6 +101,7 @@ def _case_values(case: Case) -> dict[str, Any]:
         "seconds": round(case.seconds, 3),
         "errors": {name: float(error) for name, error in case.errors.items()},
         "landmarks": {m.name: {"off_mm": m.off, "confidence": m.confidence} for m in case.marks},
+        "lacking": list(case.lacking),
         "invented": {m.name: m.confidence for m in case.invented},
     }
 
@@ -117,13 +126,14 @@ def _counts(cases: Sequence[Case], bodies: Sequence[Case]) -> Iterator[str]:
     others = [case for case in cases if case.truth.refuse]
     if others:
         refused = sum(_as_wished(case) for case in others)
-        yield f"{len(others)} files without a body: {refused} refused, as they should be."
+        files = "file" if len(others) == 1 else "files"
+        yield f"{len(others)} {files} without a body: {refused} refused, as it should be."
     yield f"Processor time a file: {median(seconds):.1f} s in the middle, {max(seconds):.1f} s at most."
 
 
 def _spread_row(spread: Spread) -> tuple[str, ...]:
     numbers = (spread.mean, spread.most, spread.worst)
-    signed = f"{spread.bias:+.1f}" if abs(spread.bias) < spread.mean * 0.9995 or spread.bias < 0.0 else ""
+    signed = f"{spread.bias:+.1f}" if any(word in spread.what for word in SIGNED) else ""
     what = spread.what if "[" in spread.what else f"{spread.what} [mm]"
     return (what, str(spread.count), *(f"{number:.1f}" for number in numbers), signed, spread.where)
 

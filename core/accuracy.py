@@ -17,7 +17,7 @@ from core.errors import UserError
 from core.landmark import SIDES
 from core.mesh import Floats, Points
 from core.scan_file import scan_bytes
-from core.truth import Truth
+from core.truth import APEXES, Truth
 
 UPRIGHT = 20.0
 """Up and front [degrees] that are nearer than this to the true ones count as right."""
@@ -70,6 +70,12 @@ class Case:
     def right(self) -> bool:
         """Whether the file was read in the right unit, upright, facing front."""
         return not self.failed and self.turned <= UPRIGHT and self.unit_right and self.sides_right
+
+    @property
+    def lacking(self) -> tuple[str, ...]:
+        """Known landmarks that were not found though the body was."""
+        names = () if self.failed else self.true
+        return tuple(name for name in names if name not in self.found and name not in APEXES)
 
 
 @dataclass(frozen=True)
