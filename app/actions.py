@@ -25,6 +25,7 @@ class Actions:
         self.export = self._make(
             tr("Export body…"), "Ctrl+E", tr("Write the body as it is shown: PLY, OBJ or STL")
         )
+        self.cancel = self._make(tr("Cancel the work in hand"), "Esc")
         self.quit = self._make(tr("Quit"), "Ctrl+Q")
         self.undo = undo_stack.createUndoAction(parent, tr("Undo"))
         self.undo.setShortcut(keys.Undo)
@@ -48,7 +49,7 @@ class Actions:
         )
         self.themes = self._group({"system": tr("As the system"), "light": tr("Light"), "dark": tr("Dark")})
         self.languages = self._group(dict(LANGUAGES))
-        for action in self._of_document():
+        for action in (*self._of_document(), self.cancel):
             action.setEnabled(False)
 
     def menu_bar(self, view: Mapping[str, QAction]) -> QMenuBar:
@@ -58,7 +59,7 @@ class Actions:
         file.addAction(self.open)
         self.recent = file.addMenu(tr("Open recent"))
         self._fill(file.addMenu(tr("Open sample")), *self.samples.values())
-        self._fill(file, None, self.save, self.save_as, self.export, None, self.quit)
+        self._fill(file, None, self.save, self.save_as, self.export, None, self.cancel, None, self.quit)
         self._fill(bar.addMenu(tr("Edit")), self.undo, self.redo, None, self.reset)
         look = bar.addMenu(tr("View"))
         self._fill(look, self.flip, None, *view.values(), None, self.strip)

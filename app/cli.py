@@ -6,21 +6,19 @@ import argparse
 import gc
 import json
 import os
-import re
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import NoReturn
 
-from app.settings import dressed, help_text, settings_of
-from core import __version__
+from app.cli_parser import command_options, window_options
+from app.settings import dressed, settings_of
 from core.design import Design, ScanSource, cannot_hold
 from core.errors import UserError
-from core.own_lines import HELP, own_line
+from core.own_lines import own_line
+from core.placing import placed_mark
 from core.project import is_project, open_project
 from core.template import read_template
-from core.volume import CONTROLS
 
 SETTLED, PIPE_CLOSED, BAD_INPUT, NOT_SETTLED = 0, 1, 2, 3
 RAN_AWAY = "The turns ran away: what is written is no body. Set line_stiffness lower, or --volume exact."
@@ -46,9 +44,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _run(words: list[str]) -> int:
     if words and words[0] in COMMANDS:
-        options = _parser(words[0]).parse_args(_joined(words[1:]))
-        return COMMANDS[words[0]][1](options)
-    options = _window_parser().parse_args(words)
+        return COMMANDS[words[0]](command_options(words[0], words[1:]))
+    options = window_options(words)
     if options.file is not None and not Path(options.file).exists():
         raise UserError(f"There is no file {options.file}, and no such command.", "See 'busk --help'.")
     # Thousands of modules come now and stay: looking for garbage among them costs a tenth of the start.
@@ -56,24 +53,6 @@ def _run(words: list[str]) -> int:
     from app.window import run_window
 
     return run_window(options.file)
-
-
-def _joined(words: Sequence[str]) -> list[str]:
-    """Join an axis to its option: in '--front -y' the parser takes -y for another option."""
-    joined: list[str] = []
-    for word in words:
-        if joined and joined[-1] in ("--up", "--front"):
-            joined[-1] = f"{joined[-1]}={word}"
-        else:
-            joined.append(word)
-    return joined
-
-
-class _Parser(argparse.ArgumentParser):
-    """Says what is wrong with the words of a command as all other bad input is said."""
-
-    def error(self, message: str) -> NoReturn:
-        raise UserError(f"{message[:1].upper()}{message[1:]}.", f"See '{self.prog} --help'.")
 
 
 def design_of(path: str, options: argparse.Namespace) -> Design:
@@ -86,11 +65,19 @@ def design_of(path: str, options: argparse.Namespace) -> Design:
     design = replace(design.with_template(settings.pop("template", design.template)), **settings)
     for text in getattr(options, "path", None) or []:
         design = design.with_own_line(own_line(text, read_template(design.template)))
+    for mark in map(placed_mark, getattr(options, "landmark", None) or []):
+        design = design.with_placed(mark.name, mark.position)
     return design
+
+
+def _warn(sentences: Iterable[str]) -> None:
+    for sentence in sentences:
+        print(f"busk: {sentence}", file=sys.stderr)
 
 
 def solve(options: argparse.Namespace) -> int:
     """Solve a design with no window and write what came out."""
+    from core.doubts import doubts
     from core.pipeline import build
     from core.report import shape_warnings, still_lines, write_solution
     from core.solution import run
@@ -106,8 +93,8 @@ def solve(options: argparse.Namespace) -> int:
     out = _folder(options.out)
     figures = write_solution(solution, out)
     ran_away = [RAN_AWAY] * (solution.verdict.motion == "diverging")
-    for sentence in [*still_lines(solution.stages), *shape_warnings(solution), *ran_away]:
-        print(f"busk: {sentence}", file=sys.stderr)
+    unclear = doubts(stages.body, stages.landmarks)
+    _warn([*unclear, *still_lines(solution.stages), *shape_warnings(solution), *ran_away])
     for name, line in figures["lines"].items():
         if line["worn"]:
             own = line["whole_band_rest_mm"] == line["rest_mm"]
@@ -150,20 +137,17 @@ def sweep(options: argparse.Namespace) -> int:
 
 def detect(options: argparse.Namespace) -> int:
     """Find the landmarks of a scan and print them."""
+    from app.found import found_text
     from core.detect import detection
-    from core.pipeline import read_body
+    from core.doubts import doubts
+    from core.pipeline import find, read_body
 
-    _, body = read_body(design_of(options.input, options).scan)
-    found = detection(body)
-    if options.json:
-        print(json.dumps(found, indent=1))
-        return SETTLED
-    print(f"unit {found['unit']}, up {found['up']}, front {found['front']}")
-    for name, mark in found["landmarks"].items():
-        x, y, z = mark["mm"]
-        print(f"{name:18} {x:8.1f} {y:8.1f} {z:8.1f} mm  {100 * mark['confidence']:3.0f} %  {mark['rule']}")
-    for name, girth in found["girths"].items():
-        print(f"{name:18} tape {girth['tape_mm']:.1f} mm at height {girth['level_mm']:.1f} mm")
+    design = design_of(options.input, options)
+    _, body = read_body(design.scan)
+    landmarks = find(body, design.placed)
+    found = detection(body, landmarks)
+    print(json.dumps(found, indent=1) if options.json else found_text(found), flush=True)
+    _warn(doubts(body, landmarks))
     return SETTLED
 
 
@@ -201,6 +185,13 @@ def figures(options: argparse.Namespace) -> int:
     return SETTLED
 
 
+def accuracy(options: argparse.Namespace) -> int:
+    """Measure how well a folder of bodies with known answers is understood."""
+    from app.accuracy import run_accuracy
+
+    return int(run_accuracy(options.folder, options.out, options.json) or SETTLED)
+
+
 def self_test(options: argparse.Namespace) -> int:
     """Check the installed program on the sample, one line a part."""
     from app.self_test import run_self_test
@@ -219,82 +210,14 @@ def _folder(name: str) -> Path:
     return folder
 
 
-def _window_parser() -> argparse.ArgumentParser:
-    commands = "\n".join(f"  busk {name:10} {help_}" for name, (help_, _) in COMMANDS.items())
-    parser = _Parser(
-        prog="busk",
-        description="See how a foundation garment reshapes a body.",
-        epilog=f"without a window:\n{commands}\n\n'busk COMMAND --help' tells more.",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument("file", nargs="?", metavar="FILE", help="a project (.busk) or a scan to open")
-    parser.add_argument("--version", action="version", version=f"busk {__version__}")
-    return parser
-
-
-def _parser(command: str) -> argparse.ArgumentParser:
-    parser = _Parser(prog=f"busk {command}", description=COMMANDS[command][0])
-    if command in ("solve", "limits", "detect", "picture"):
-        parser.add_argument("input", metavar="SCAN_OR_PROJECT", help="PLY, OBJ, STL or .busk")
-        parser.add_argument(
-            "--unit", choices=("mm", "cm", "m", "inch"), help="the scan's unit, if not guessed well"
-        )
-        parser.add_argument("--up", help="the scan's axis that points up, like +z")
-        parser.add_argument("--front", help="the scan's axis that the body faces, like -y")
-    if command in ("solve", "limits", "picture"):
-        parser.add_argument("--settings", action="append", metavar="KEY=VALUE", help=help_text())
-        parser.add_argument("--path", action="append", metavar="NAME=POINTS", help=HELP)
-    if command in ("solve", "limits"):
-        parser.add_argument(
-            "--line",
-            action="append",
-            metavar="NAME=LENGTH",
-            help="97%% of the rest length, -20mm shorter, 400mm absolute; of the front part, side to side",
-        )
-    if command == "solve":
-        parser.add_argument("--volume", choices=CONTROLS)
-        parser.add_argument(
-            "--turns", type=_turns, metavar="N", help="exactly N turns; else until settled, at most 300"
-        )
-    if command in ("limits", "detect"):
-        parser.add_argument("--json", action="store_true", help="print JSON")
-    if command == "picture":
-        parser.add_argument(
-            "--view", default="three-quarter", help="front, left, right, back, three-quarter, top, side"
-        )
-        parser.add_argument("--window", action="store_true", help="the whole window, not just the body")
-        parser.add_argument("--dark", action="store_true")
-        parser.add_argument("--language", choices=("en", "ja"), default="en")
-        parser.add_argument("--size", type=_size, default=(1600, 1000), metavar="WIDTHxHEIGHT")
-    if command == "sweep":
-        parser.add_argument("--quick", action="store_true", help="a few cases only")
-    if command == "figures":
-        parser.add_argument("--only", action="append", metavar="N", help="this figure alone; may be repeated")
-    if command in ("solve", "picture", "demo", "figures", "sweep"):
-        parser.add_argument("--out", required=command != "demo", default="out", metavar="PLACE")
-    return parser
-
-
-def _turns(text: str) -> int:
-    if not (text.isdecimal() and 1 <= int(text) <= 100_000):
-        raise argparse.ArgumentTypeError(f"'{text}' is no number of turns from 1 to 100000")
-    return int(text)
-
-
-def _size(text: str) -> tuple[int, int]:
-    match = re.fullmatch(r"([1-9]\d{1,3})x([1-9]\d{1,3})", text)
-    if match is None:
-        raise argparse.ArgumentTypeError(f"'{text}' is no size like 1600x1000")
-    return int(match[1]), int(match[2])
-
-
-COMMANDS: dict[str, tuple[str, Callable[[argparse.Namespace], int]]] = {
-    "solve": ("solve a design and write body, control mesh, turns and report", solve),
-    "limits": ("tell how short each line can be made", limits),
-    "detect": ("find the bust landmarks of a scan", detect),
-    "picture": ("render a scan or project to a PNG file", picture),
-    "demo": ("do the sample session off-screen and write what comes out", demo),
-    "figures": ("make the figures of the paper again, with their tables and a page", figures),
-    "sweep": ("try every volume control on the samples and the sphere, with a table", sweep),
-    "self-test": ("check this installation", self_test),
+COMMANDS: dict[str, Callable[[argparse.Namespace], int]] = {
+    "solve": solve,
+    "limits": limits,
+    "detect": detect,
+    "picture": picture,
+    "demo": demo,
+    "figures": figures,
+    "sweep": sweep,
+    "accuracy": accuracy,
+    "self-test": self_test,
 }

@@ -18,23 +18,19 @@ from app.present import (
     exact_answer,
     facts,
     kept_volume,
-    landmark_views,
     line_title,
     line_views,
     measure_views,
-    scan_view,
-    stage_words,
     strip_verdict,
     tracks,
 )
 from app.recent import remember_file
 from app.samples import sample_design
-from app.theme import apply_theme, tone_of
+from app.theme import apply_theme
 from app.words import tr
 from core.design import Design
 from core.errors import UserError
 from core.live import Frame
-from core.pipeline import Stages
 from core.report import warnings
 
 if TYPE_CHECKING:
@@ -81,11 +77,7 @@ class Desk(QObject):
         self.show_title()
         self.select_line(window.view.selected_line)
         window.view.viewport.setFocus()
-        pose = frame.stages.body.pose
-        if not pose.sure:
-            window.notices.show_notice(
-                "warn", tr("Busk is not sure how this scan stands."), pose.reason, lasting=True
-            )
+        window.scan_desk.show_opened(frame.stages)
         for sentence in warnings(frame.stages):
             window.notices.show_notice("warn", sentence, lasting=True)
 
@@ -97,7 +89,7 @@ class Desk(QObject):
             self._fell_back_to = None
             self._window.notices.withdraw("bad")
         if self._frame is None or frame.stages.landmarks is not self._frame.stages.landmarks:
-            self._show_found(frame.stages)
+            self._window.scan_desk.show_found(frame.stages)
         self._frame = frame
         self._window.model.set_gain(frame.stages.gain, frame.stages.gain_limit)
         self._window.view.show_frame(frame, design)
@@ -109,15 +101,6 @@ class Desk(QObject):
             self.plot_now()
         elif not self._plot_clock.isActive():
             self._plot_clock.start()
-
-    def _show_found(self, stages: Stages) -> None:
-        """Show what was understood of the scan, and found on it."""
-        window, marks = self._window, stages.landmarks.points.values()
-        window.landmarks.set_landmarks(landmark_views(stages.landmarks))
-        window.scan.set_scan(scan_view(stages))
-        weak = sum(tone_of(mark.confidence) != "ok" for mark in marks)
-        window.rail.set_state("scan", "done" if stages.body.pose.sure else "look", 1)
-        window.rail.set_state("landmarks", "look" if weak else "done", weak)
 
     def show_design(self, design: Design) -> None:
         """Show what was decided."""
@@ -137,17 +120,11 @@ class Desk(QObject):
             notices.withdraw("bad")
             notices.show_notice("bad", error.message, error.hint, lasting=True)
             if self._frame is not None:
-                self._show_found(self._frame.stages)
+                self._window.scan_desk.show_found(self._frame.stages)
             return
         logging.error("unexpected fault\n%s", "".join(traceback.format_exception(error)))
         said = tr("Something went wrong inside Busk."), tr("Your design is kept. The log tells more.")
         notices.show_notice("bad", *said, lasting=True)
-
-    def show_work(self, stage: str) -> None:
-        """Name the work that takes its time."""
-        words = stage_words(stage)
-        self._window.status.set_job(words)
-        self._window.view.show_waiting(f"{words}…" if words else "")
 
     def show_saved(self, path: str) -> None:
         """Say when the project was saved."""
@@ -211,6 +188,7 @@ class Desk(QObject):
     def open_sample(self, name: str) -> None:
         """Open one of the sample bodies."""
         if self.may_leave():
+            self._asked = ""
             self._session.open_design(sample_design(name))
 
     def save(self) -> bool:

@@ -7,17 +7,17 @@ from pathlib import Path
 
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
+from app.scan_formats import PATTERNS
 from app.words import tr
 from core import __version__
-
-SCANS = "*.ply *.obj *.stl"
 
 _ENDING = re.compile(r"\*(\.\w+)")
 
 
 def ask_open(parent: QWidget) -> str:
     """Return the file that the user wants to open, or an empty text."""
-    kinds = f"{tr('Projects and scans')} (*.busk {SCANS});;{tr('Projects')} (*.busk);;{tr('Scans')} ({SCANS})"
+    both, projects, scans = tr("Projects and scans"), tr("Projects"), tr("Scans")
+    kinds = f"{both} (*.busk {PATTERNS});;{projects} (*.busk);;{scans} ({PATTERNS})"
     path, _ = QFileDialog.getOpenFileName(parent, tr("Open"), "", kinds)
     return path
 

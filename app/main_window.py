@@ -22,6 +22,7 @@ from app.panels.status import StatusBar
 from app.panels.top_bar import TopBar
 from app.parts import hairline
 from app.recent import fill_recent_menu
+from app.scan_desk import ScanDesk
 from app.session import Session
 from app.view_area import ViewArea
 
@@ -51,6 +52,7 @@ class MainWindow(QMainWindow):
         self.model, self.door = ModelPanel(), ModelDoor()
         self.inspector = QStackedWidget()
         self._lay_out()
+        self.scan_desk = ScanDesk(self)
         self.desk = Desk(self)
         self.line_maker = LineMaker(self)
         self.housekeeping = Housekeeping(self)
@@ -87,12 +89,13 @@ class MainWindow(QMainWindow):
 
     def _connect(self) -> None:
         """Connect everything: the session to the desk, the parts to the session, the actions to both."""
-        session, desk, view, do = self.session, self.desk, self.view, self.actions_
+        session, desk, scan_desk = self.session, self.desk, self.scan_desk
         session.opened.connect(desk.show_opened)
         session.frame_ready.connect(desk.show_frame)
         session.design_changed.connect(desk.show_design)
         session.failed.connect(desk.show_failure)
-        session.working.connect(desk.show_work)
+        session.asked.connect(scan_desk.show_question)
+        session.working.connect(scan_desk.show_work)
         session.saved.connect(desk.show_saved)
         session.undo_stack.cleanChanged.connect(desk.show_title)
 
@@ -110,21 +113,35 @@ class MainWindow(QMainWindow):
         self.model.left.connect(lambda: desk.go_to("lines"))
         self.model.changed.connect(session.change)
         self.scan.open_asked.connect(desk.open)
-        self.scan.unit_chosen.connect(session.choose_unit)
+        self.scan.told.connect(scan_desk.tell)
+        self.scan.front_asked.connect(scan_desk.ask)
         self.landmarks.landmark_selected.connect(desk.select_landmark)
+        self.landmarks.reset_asked.connect(scan_desk.reset_landmarks)
 
+        self._connect_view()
+        self._connect_actions()
+
+    def _connect_view(self) -> None:
+        desk, scan_desk, view = self.desk, self.scan_desk, self.view
         view.viewport.band_clicked.connect(desk.select_line)
         view.viewport.pin_pressed.connect(desk.select_landmark)
+        view.viewport.pin_moved.connect(view.drag_landmark)
+        view.viewport.pin_released.connect(scan_desk.place_landmark)
+        view.busy.cancelled.connect(scan_desk.cancel)
+        view.question.answered.connect(scan_desk.answer)
         view.tools.view_chosen.connect(view.viewport.set_view)
         view.tools.fit_asked.connect(view.viewport.frame_all)
         view.tools.toggled.connect(view.set_layer)
         view.tools.picture_asked.connect(desk.save_picture)
         view.compare.after_chosen.connect(view.set_after)
 
+    def _connect_actions(self) -> None:
+        session, desk, view, do = self.session, self.desk, self.view, self.actions_
         do.open.triggered.connect(desk.open)
         do.save.triggered.connect(desk.save)
         do.save_as.triggered.connect(desk.save_as)
         do.export.triggered.connect(desk.export)
+        do.cancel.triggered.connect(self.scan_desk.cancel)
         do.quit.triggered.connect(self.close)
         do.reset.triggered.connect(session.reset_lines)
         do.flip.triggered.connect(lambda: view.set_after(not view.after))
@@ -177,6 +194,7 @@ class MainWindow(QMainWindow):
         # The solver may be in the middle of reading a scan: nobody has to watch the window wait for it.
         self.hide()
         self.desk.close()
+        self.scan_desk.close()
         self.session.close()
         self.view.close_view()
         self.housekeeping.close()

@@ -173,6 +173,12 @@ def _normals() -> Choice:
     return Choice("scaled_normals", tr("Distance to the mesh"), tip, options)
 
 
+def control_words(control: str) -> str:
+    """Return the name of an edit that chooses a volume control."""
+    choice = _control()
+    return f"{choice.title}: {choice.words(control)}"
+
+
 def _control() -> Choice:
     tip = tr(
         "What keeps the volume: the paper's two forces, conventional and adaptive (our formula), a plain "

@@ -159,6 +159,39 @@ def _segment_font(on: bool, small: bool) -> QFont:
     return font("name" if on else "body")
 
 
+class Disclosure(QAbstractButton):
+    """A heading that opens and closes what stands under it; ``toggled`` says which."""
+
+    def __init__(self, title: str) -> None:
+        super().__init__()
+        self.setText(title)
+        self.setCheckable(True)
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.setCursor(Qt.CursorShape.PointingHandCursor)
+        self.setFixedHeight(32)
+
+    def sizeHint(self) -> QSize:
+        return QSize(self.fontMetrics().horizontalAdvance(self.text()) + 40, 32)
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        tokens = tokens_of(self)
+        painter = QPainter(self)
+        if self.hasFocus():
+            painter.setPen(QPen(QColor(tokens.accent), 2))
+            painter.drawRoundedRect(QRectF(self.rect()).adjusted(1, 1, -1, -1), 6, 6)
+        caret = pixmap(
+            "caret-down" if self.isChecked() else "caret-right",
+            tokens.text_quiet,
+            12,
+            self.devicePixelRatioF(),
+        )
+        painter.drawPixmap(QPointF(8, self.height() / 2 - 6), caret)
+        painter.setFont(font("secondary"))
+        painter.setPen(QColor(tokens.text_quiet))
+        words = QRectF(self.rect()).adjusted(28, 0, 0, 0)
+        painter.drawText(words, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, self.text())
+
+
 class FloatingPanel(QWidget):
     """A translucent rounded panel with a soft shadow, to lie on the view."""
 

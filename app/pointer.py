@@ -93,7 +93,7 @@ class Pointer(QObject):
             self.turned.emit(self._scene.view.orbit(-TURN * step.x(), TURN * step.y()))
         elif self._grip == "pan":
             self.shifted.emit(self._scene.view.pan(step.x(), step.y(), self._canvas.height()))
-        elif self._grip == "pin":
+        elif self._grip == "pin" and (event.position() - self._pressed).manhattanLength() > _CLICK:
             self._drag_pin(event.position())
         elif not self._grip:
             self._hover(event.position())

@@ -8,19 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.convergence import Exact, Track
-from app.panels.landmarks import LandmarkView
 from app.panels.line_row import LineView
 from app.panels.result import MeasureView
-from app.panels.scan import ScanView
 from app.scene_bands import Band
 from app.verdict_chip import state_title
 from app.words import number, tr
 from core.design import Design
-from core.landmark import Landmarks
 from core.lines import Line
 from core.live import Frame
 from core.mesh import Points
-from core.pipeline import Stages
 from core.report import blamed_line
 from core.solver import Marks
 
@@ -56,19 +52,6 @@ def line_title(name: str) -> str:
         "ring right": tr("Ring right"),
     }
     return titles.get(name, name[:1].upper() + name[1:])
-
-
-def landmark_title(name: str) -> str:
-    """Return a landmark's name in the window's language."""
-    titles = {
-        "bust_point_left": tr("Bust point left"),
-        "bust_point_right": tr("Bust point right"),
-        "fold_left": tr("Under-bust fold left"),
-        "fold_right": tr("Under-bust fold right"),
-        "lowest_left": tr("Lowest point left"),
-        "lowest_right": tr("Lowest point right"),
-    }
-    return titles.get(name, name)
 
 
 def line_colours(names: Iterable[str]) -> dict[str, str]:
@@ -229,29 +212,6 @@ def _hint(frame: Frame) -> str:
     return f"{what} {wish.format(line=line_title(line.name))}"
 
 
-def landmark_views(landmarks: Landmarks) -> list[LandmarkView]:
-    """Return the rows of the list of landmarks."""
-    return [
-        LandmarkView(mark.name, landmark_title(mark.name), mark.confidence, mark.rule)
-        for mark in landmarks.points.values()
-    ]
-
-
-def scan_view(stages: Stages) -> ScanView:
-    """Return the facts of the scan."""
-    pose = stages.body.pose
-    return ScanView(
-        stages.scan.name,
-        pose.unit,
-        pose.reason,
-        pose.sure,
-        pose.up,
-        pose.front,
-        len(stages.body.mesh.faces),
-        stages.body.repairs,
-    )
-
-
 def measure_views(frame: Frame) -> list[MeasureView]:
     """Return the table of what changed."""
     rest, now = frame.stages.rest_marks, frame.marks
@@ -286,15 +246,3 @@ def facts(frame: Frame) -> list[str]:
         tr("control mesh of {count} polygons").format(count=len(frame.stages.control.mesh.faces)),
         state_title(frame.verdict.state),
     ]
-
-
-def stage_words(stage: str) -> str:
-    """Return what the status bar says of a stage at work; nothing for one that takes no time."""
-    words = {
-        "read scan": tr("Reading the scan"),
-        "find landmarks": tr("Finding the landmarks"),
-        "fit control mesh": tr("Fitting the control mesh"),
-        "find patch": tr("Binding the body"),
-        "bind body": tr("Binding the body"),
-    }
-    return words.get(stage, "")

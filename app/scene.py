@@ -13,6 +13,7 @@ from app.scene_bands import Band, Bands, Surface
 from app.scene_body import BodyActor, Ghost
 from app.scene_control import ControlActor
 from app.scene_stage import LOOKS, Stage
+from app.scene_trace import Trace
 from core.mesh import Flags, Floats, Indices, Mesh, Points
 
 PARTS = ("body", "bands", "control", "floor", "ghost")
@@ -36,6 +37,7 @@ class Scene:
         self._pixel_ratio = pixel_ratio
         self._stage = Stage(plotter)
         self.bands = Bands(plotter)
+        self._trace = Trace(plotter)
         self._surface: Surface | None = None
         self._ghost: Ghost | None = None
         self._control: ControlActor | None = None
@@ -51,6 +53,7 @@ class Scene:
     def show_body(self, mesh: Mesh) -> None:
         """Show a body at rest in place of the former one; its lines and control mesh leave."""
         self.bands.clear()
+        self._trace.show(np.empty((0, 3)))
         self._drop_control()
         self.body = BodyActor(self.plotter, mesh, LOOKS[self._dark])
         self._surface = Surface(mesh)
@@ -77,6 +80,10 @@ class Scene:
         """Show these lines on the body in place of the former ones."""
         self.bands.show(bands, self._laying_ground())
         self._follow()
+
+    def show_trace(self, points: Points) -> None:
+        """Draw a curve of the body at rest, shape (k, 3) [mm], where it is on the shown one; or no curve."""
+        self._trace.show(self.carried(points) if len(points) else points)
 
     def mark_bands(self, selected: str = "", hovered: str = "") -> None:
         """Put a white casing round the selected line and a faint one round the one under the pointer.
@@ -135,6 +142,7 @@ class Scene:
         self._dark = dark
         look = LOOKS[dark]
         self._stage.set_look(look)
+        self._trace.set_dark(dark)
         if self.body is not None:
             self.body.set_look(look)
         if self._control is not None:

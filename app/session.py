@@ -14,14 +14,16 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from PySide6.QtGui import QUndoStack
 
 from app.edit import Edit
+from app.model_choices import control_words
 from app.words import number, tr
 from core.design import Design, OwnLine, ScanSource
 from core.errors import UserError
-from core.export import write_mesh
+from core.export import write_frame
 from core.live import Failure, Frame, LiveSolver
-from core.mesh import Mesh
+from core.mesh import Points
+from core.pipeline import UnsureError
+from core.placing import in_file
 from core.project import is_project, open_project, save_project
-from core.tffd import deform
 
 FRAME_INTERVAL = 16
 """Milliseconds between two looks at the solver."""
@@ -32,14 +34,16 @@ class Session(QObject):
 
     Verbs (open, preview, commit, save ...) are called by the window; what follows is told by signals.
     ``design`` is what is committed; while a slider is dragged the solver works on a preview that no one else
-    sees.
+    sees. ``working`` tells the work in hand and the share done; ``asked`` hands out the UnsureError of a scan
+    that was opened and cannot be understood before somebody says how it stands.
     """
 
     design_changed = Signal(object)
     opened = Signal(object)
     frame_ready = Signal(object)
     failed = Signal(object)
-    working = Signal(str)
+    asked = Signal(object)
+    working = Signal(str, float)
     saved = Signal(str)
 
     def __init__(self, parent: QObject | None = None) -> None:
@@ -48,14 +52,13 @@ class Session(QObject):
         self.design: Design | None = None
         self.frame: Frame | None = None
         self.path: Path | None = None
-        self._stage = ""
-        self._stage_told = ""
+        self._work = self._work_told = ("", 1.0)
         self._preview: Design | None = None
         self._told = False
         self._opening: tuple[Design, Path | None, int] | None = None
         self._oldest = 0
         self._revision = 0
-        self._solver = LiveSolver(self._hear_stage)
+        self._solver = LiveSolver(self._hear)
         self._clock = QTimer(self, interval=FRAME_INTERVAL)
         self._clock.timeout.connect(self._look)
         self._clock.start()
@@ -70,17 +73,19 @@ class Session(QObject):
     def open(self, path: str) -> None:
         """Open a project or a scan; the present design stays until the new one has a first frame."""
         try:
-            if is_project(path):
-                self._begin(open_project(path), Path(path).absolute())
-            else:
-                self._begin(Design(ScanSource(str(Path(path).absolute()))), None)
+            self.open_design(
+                open_project(path) if is_project(path) else Design(ScanSource(str(Path(path).absolute())))
+            )
         except UserError as error:
             # At start nobody listens yet: the window hears it once the event loop runs.
             QTimer.singleShot(0, self, partial(self.failed.emit, error))
 
     def open_design(self, design: Design) -> None:
-        """Open a design that has no file of its own yet, such as the sample."""
-        self._begin(design, None)
+        """Open a design: of a project, or one that has no file of its own yet, such as the sample."""
+        if self._opening is not None:
+            self._solver.cancel()
+        self._preview, path = None, Path(design.scan.path) if design.scan.member else None
+        self._opening = (design, path, self._solver.submit(design, fresh=True))
 
     def preview_line(self, name: str, ratio: float) -> None:
         """Show a length while it is dragged; nothing is committed."""
@@ -109,24 +114,17 @@ class Session(QObject):
 
     def reset_lines(self) -> None:
         """Take every line off: the body as scanned."""
-        if self.design is not None:
-            self._commit(replace(self.design, lines=()), tr("Reset to scan"))
+        self.change({"lines": ()}, tr("Reset to scan"))
 
     def choose_control(self, control: str) -> None:
         """Choose the volume control."""
-        if self.design is not None:
-            titles = {
-                "adaptive": tr("Adaptive"),
-                "conventional": tr("Conventional"),
-                "accumulating": tr("Accumulating"),
-                "exact": tr("Exact"),
-            }
-            self._commit(replace(self.design, volume=control), titles.get(control, tr("No volume control")))
+        self.change({"volume": control}, control_words(control))
 
     def choose_template(self, template: str) -> None:
         """Choose the control mesh by its number of polygons."""
-        text = tr("Control mesh {count}").format(count=template)
-        self._edit(lambda design: design.with_template(template), text)
+        self._edit(
+            lambda design: design.with_template(template), tr("Control mesh {count}").format(count=template)
+        )
 
     def change(self, changes: Mapping[str, Any], text: str) -> None:
         """Change fields of the design as one undo step."""
@@ -140,13 +138,15 @@ class Session(QObject):
         """Remove a line of the designer's own."""
         self._edit(lambda design: design.without_own_line(name), tr("{line} removed").format(line=title))
 
-    def choose_unit(self, unit: str) -> None:
-        """Read the scan again in another unit."""
-        if self.design is not None:
-            self._commit(
-                replace(self.design, scan=replace(self.design.scan, unit=unit)),
-                tr("Scan in {unit}").format(unit=unit),
-            )
+    def place_landmark(self, name: str, title: str, position: Points) -> None:
+        """Place a landmark, shape (3,) [mm] on the body at rest; all that follows from it is made anew."""
+        if self.frame is not None:
+            place = in_file(position, self.frame.stages.body.pose.file_to_mm)
+            self._edit(lambda design: design.with_placed(name, place), tr("{name} placed").format(name=title))
+
+    def reset_landmarks(self, names: Sequence[str], text: str) -> None:
+        """Let landmarks that were placed by hand be found again, as one undo step."""
+        self._edit(lambda design: reduce(lambda d, name: d.with_placed(name, None), names, design), text)
 
     def save(self, path: str, picture: bytes | None) -> bool:
         """Save the project with its scan; returns whether it worked."""
@@ -166,14 +166,28 @@ class Session(QObject):
         """Write the body as it is shown; returns whether it worked."""
         if self.frame is None:
             return False
-        stages = self.frame.stages
-        points = deform(stages.binding, self.frame.control_points)
         try:
-            write_mesh(path, Mesh(points, stages.body.mesh.faces))
+            write_frame(path, self.frame)
         except UserError as error:
             self.failed.emit(error)
             return False
         return True
+
+    def cancel(self) -> None:
+        """Let go of what is being read or built; what stood before stays."""
+        if self._opening is None and not self._work[0]:
+            return
+        self._solver.cancel()
+        self._work = ("", 1.0)
+        opening, self._opening = self._opening, None
+        if self.design is None or self.frame is None:
+            return
+        stack, shown = self.undo_stack, self.frame.stages.design
+        undone = stack.command(stack.index()) if opening is None and stack.canRedo() else None
+        if isinstance(undone, Edit) and undone.after is shown:
+            stack.redo()
+        elif opening is not None or not self._take_back():
+            self._submit(self.design)
 
     def close(self) -> None:
         """Stop the clock and the solver, and wait until it has ended."""
@@ -198,10 +212,6 @@ class Session(QObject):
         if self._opening is None:
             self._revision = self._solver.submit(design, fresh)
 
-    def _begin(self, design: Design, path: Path | None) -> None:
-        self._preview = None
-        self._opening = (design, path, self._solver.submit(design, fresh=True))
-
     def _edit(self, edit: Callable[[Design], Design], text: str) -> None:
         """Make an edit that the design may refuse: then all that is shown goes back to what is."""
         if self.design is None:
@@ -221,14 +231,14 @@ class Session(QObject):
         elif previewing and self.design is not None:
             self._submit(self.design)
 
-    def _hear_stage(self, stage: str) -> None:
+    def _hear(self, what: str, share: float) -> None:
         # Called in the solver's thread: only the attribute is set, the clock tells the window.
-        self._stage = stage
+        self._work = what, share
 
     def _look(self) -> None:
-        if self._stage != self._stage_told:
-            self._stage_told = self._stage
-            self.working.emit(self._stage_told)
+        if self._work != self._work_told:
+            self._work_told = self._work
+            self.working.emit(*self._work_told)
         answer = self._solver.latest()
         if isinstance(answer, Failure):
             self._fail(answer)
@@ -256,24 +266,31 @@ class Session(QObject):
             self._opening = None
             if self.design is not None:
                 self._submit(self.design)
+            if isinstance(failure.error, UnsureError):
+                self.asked.emit(failure.error)
+                return
         elif failure.revision > self._revision and self._preview is not None:
             # One notice for a drag is enough, however far it goes on.
             told, self._told = self._told, True
             if told:
                 return
-        elif failure.revision == self._revision and self.undo_stack.canUndo():
-            # The edit cannot be carried out: it leaves the history as if it had not been made.
-            edit = self.undo_stack.command(self.undo_stack.index() - 1)
-            if isinstance(edit, Edit) and edit.after is self.design:
-                before = edit.before
-                edit.setObsolete(True)
-                # Qt drops an obsolete command without undoing it.
-                self.undo_stack.undo()
-                self.take(before)
-                told, self._told = self._told, False
-                if told:
-                    return
+        elif failure.revision == self._revision and self._take_back():
+            told, self._told = self._told, False
+            if told:
+                return
         self.failed.emit(failure.error)
+
+    def _take_back(self) -> bool:
+        """Let an edit that cannot be carried out leave the history as if it had not been made."""
+        edit = self.undo_stack.command(self.undo_stack.index() - 1) if self.undo_stack.canUndo() else None
+        if not isinstance(edit, Edit) or edit.after is not self.design:
+            return False
+        before = edit.before
+        edit.setObsolete(True)
+        # Qt drops an obsolete command without undoing it.
+        self.undo_stack.undo()
+        self.take(before)
+        return True
 
 
 def at_rest_length(ratio: float) -> bool:

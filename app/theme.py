@@ -170,6 +170,7 @@ QPushButton[kind="segment"] {{ border: 2px solid transparent; border-radius: 6px
     background: transparent; color: {t.text_quiet}; }}
 QPushButton[kind="segment"]:hover {{ color: {t.text}; }}
 QPushButton[kind="segment"]:checked {{ background: {t.pressed if t.dark else t.raised}; color: {t.text}; }}
+QPushButton[kind="segment"]:disabled {{ color: {faded(t.text_caption, t.panel, 0.4).name()}; }}
 QPushButton[kind="segment"]:focus {{ border-color: {t.accent}; }}
 QFrame[kind="card"] {{ background: {t.hover}; border-radius: 9px; }}
 QToolButton {{ border: 2px solid transparent; border-radius: 6px; background: transparent; padding: 2px; }}

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, QObject, Qt
+import numpy as np
+from PySide6.QtCore import QEvent, QObject
 from PySide6.QtGui import QImage, QResizeEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.background import Background
 from app.overlay import Pin
+from app.panels.busy import BusyCard
+from app.panels.question import QuestionCard
 from app.panels.view_tools import CompareTools, ViewTools
-from app.present import band_label, bands, landmark_title
+from app.present import band_label, bands
+from app.present_scan import PINNED, kind_of, landmark_title
 from app.scene_body import bake_occlusion
-from app.theme import label
 from app.viewport import Viewport
 from core.body import Body
 from core.control_mesh import ControlMesh
@@ -19,6 +22,7 @@ from core.design import Design
 from core.landmark import Landmarks
 from core.lines import Line
 from core.live import Frame
+from core.mesh import Points
 
 _MARGIN = 14
 SCENE_PARTS = {"control-mesh": "control", "bands": "bands", "ghost": "ghost"}
@@ -33,6 +37,7 @@ class ViewArea(QWidget):
         self.viewport = Viewport(self)
         self.tools = ViewTools(self)
         self.compare = CompareTools(self)
+        self.busy, self.question = BusyCard(self), QuestionCard(self)
         self.hidden_lines: set[str] = set()
         self.selected_line = "mid-bust"
         self.after = True
@@ -42,15 +47,13 @@ class ViewArea(QWidget):
         self._landmarks: Landmarks | None = None
         self._lines: tuple[Line, ...] = ()
         self._landmark = ""
+        self._dragged: tuple[str, Points] | None = None
         self._labels: dict[str, tuple[str, str]] = {}
         self._background = Background(self)
-        self._waiting = label("", "page")
-        self._waiting.setAlignment(Qt.AlignmentFlag.AlignCenter)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.viewport)
-        self._waiting.setParent(self)
-        for panel in (self.tools, self.compare):
+        for panel in (self.tools, self.compare, self.busy, self.question):
             panel.installEventFilter(self)
             panel.raise_()
             panel.hide()
@@ -61,21 +64,21 @@ class ViewArea(QWidget):
         self._background.finished.connect(self._shade)
         self.viewport.view_changed.connect(self._show_view)
 
-    def show_waiting(self, text: str) -> None:
-        """Say in the empty view what is being done, until there is a body to show."""
-        self._waiting.setText(text if self._body is None else "")
-
     def show_frame(self, frame: Frame, design: Design) -> None:
         """Bring the view up to date: what is new is built, what moved is moved."""
         stages, scene = frame.stages, self.viewport.scene
-        if stages.body is not self._body:
+        fresh = stages.body is not self._body
+        if fresh:
             self._show_body(stages.body)
+        if stages.landmarks is not self._landmarks:
+            self._landmarks, self._dragged = stages.landmarks, None
+            self._show_pins()
         if stages.control is not self._control:
-            self._control, self._landmarks = stages.control, stages.landmarks
+            self._control = stages.control
             scene.show_control_mesh(stages.control.mesh, stages.control.fixed)
             self._lines = ()
-            self.viewport.frame_bust()
-            self._show_pins()
+            if fresh:
+                self.viewport.frame_bust()
         if _paths(stages.model.lines) != _paths(self._lines):
             self._lines = stages.model.lines
             self.show_bands()
@@ -100,9 +103,24 @@ class ViewArea(QWidget):
         self._show_label()
 
     def select_landmark(self, name: str) -> None:
-        """Mark one landmark's pin."""
+        """Mark one landmark's pin, and draw the curve that it was read from."""
         self._landmark = name
         self._show_pins()
+
+    def drag_landmark(self, name: str, place: Points) -> None:
+        """Let a pin follow the pointer to a place of the body at rest, shape (3,) [mm]."""
+        self._dragged = name, place
+        self._show_pins()
+
+    def dropped(self) -> tuple[str, Points] | None:
+        """Return which pin was let go and where, if it was moved."""
+        return self._dragged
+
+    def drop_back(self) -> None:
+        """Put a dragged pin back to where its landmark is."""
+        if self._dragged is not None:
+            self._dragged = None
+            self._show_pins()
 
     def set_line_visible(self, name: str, visible: bool) -> None:
         """Show or hide one line's band."""
@@ -115,6 +133,7 @@ class ViewArea(QWidget):
         self.compare.set_after(after)
         if self._body is not None:
             self.viewport.scene.before(not after)
+            self._show_pins()
             self._show_label()
             self.viewport.request_draw()
 
@@ -162,12 +181,14 @@ class ViewArea(QWidget):
         self.tools.move(
             (self.width() - self.tools.width()) // 2, self.height() - self.tools.height() - _MARGIN + 10
         )
-        self._waiting.setGeometry(self.rect())
         self.compare.move(_MARGIN - 10, _MARGIN - 8)
+        low = self.tools.y() if self._body is not None else self.height() - _MARGIN
+        for card in (self.busy, self.question):
+            card.adjustSize()
+            card.move((self.width() - card.width()) // 2, max(low - card.height(), 0))
 
     def _show_body(self, body: Body) -> None:
         self._body = body
-        self.show_waiting("")
         for panel in (self.tools, self.compare):
             panel.show()
         self.viewport.scene.show_body(body.mesh)
@@ -191,9 +212,18 @@ class ViewArea(QWidget):
             self.viewport.label_band(None)
 
     def _show_pins(self) -> None:
-        shown = self.tools.actions_by_name["landmarks"].isChecked()
+        """Show the pins of the bust and of the selected landmark, with the curve that this was read from."""
+        shown = self.tools.actions_by_name["landmarks"].isChecked() and self._landmarks is not None
         found = self._landmarks.points.values() if shown and self._landmarks is not None else ()
-        pins = [Pin(mark.name, landmark_title(mark.name), mark.position, mark.confidence) for mark in found]
+        moved = dict([self._dragged] if self._dragged else [])
+        pins = [
+            Pin(mark.name, landmark_title(mark.name), moved.get(mark.name, mark.position), mark.confidence)
+            for mark in found
+            if kind_of(mark.name) in PINNED or mark.by_hand or mark.name == self._landmark
+        ]
+        chosen = next((mark for mark in found if mark.name == self._landmark), None)
+        if self._body is not None:
+            self.viewport.scene.show_trace(chosen.evidence if chosen and not moved else np.empty((0, 3)))
         self.viewport.set_pins(pins, self._landmark)
 
 

@@ -10,9 +10,10 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from core.errors import LineError, ProjectError, UserError
+from core.errors import LandmarkError, LineError, ProjectError, UserError
 from core.lines import RATIO_LIMITS
 from core.mechanics import CHOICES, DEFAULT_LINE_STIFFNESS, RANGES, Mechanics
+from core.placing import PlacedMark
 from core.volume import CONTROLS
 
 FORMAT = 1
@@ -24,7 +25,8 @@ TEMPLATES = ("168", "120")
 class ScanSource:
     """Where the scan lies: the file ``path``, or ``member`` of the project ``path``.
 
-    ``unit``, ``up`` and ``front`` are None unless they were set by hand.
+    ``unit``, ``up`` and ``front`` are None unless they were set by hand; ``up`` and ``front`` are axes of the
+    file like "+z", or directions in it like "0.2,0,1".
     """
 
     path: str
@@ -82,7 +84,8 @@ class Design:
     force; None stands for 0.97 of the limit at which it starts to vibrate at rest. ``scaled_normals`` lets
     what stands off the control mesh grow with it; ``dense_volume`` lets the exact answer hold the volume of
     the body itself and not that of the control mesh. For the choices of the model see ``core.mechanics``.
-    ``own_lines`` are lines beside those of the template. ``unknown`` keeps what a later version wrote.
+    ``own_lines`` are lines beside those of the template, ``placed`` the landmarks that were placed by hand.
+    ``unknown`` keeps what a later version wrote.
     """
 
     scan: ScanSource
@@ -103,6 +106,7 @@ class Design:
     firm_chest: float = 0.0
     volume_of: str = "each"
     own_lines: tuple[OwnLine, ...] = ()
+    placed: tuple[PlacedMark, ...] = ()
     unknown: Mapping[str, Any] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
@@ -114,10 +118,12 @@ class Design:
                     f"{line.name} cannot be set to {100 * line.ratio:.1f} % of its rest length.",
                     f"Stay between {100 * RATIO_LIMITS[0]:.0f} and {100 * RATIO_LIMITS[1]:.0f} %.",
                 )
-        names = [line.name for line in self.own_lines]
-        for name in names:
-            if names.count(name) > 1:
-                raise LineError(f"There are two lines '{name}'.", "Give each line a name of its own.")
+        twice = _twice([line.name for line in self.own_lines])
+        if twice:
+            raise LineError(f"There are two lines '{twice}'.", "Give each line a name of its own.")
+        twice = _twice([mark.name for mark in self.placed])
+        if twice:
+            raise LandmarkError(f"The landmark {twice} is placed twice.", "Place it once.")
 
     def _check_words(self) -> None:
         for value, choices, what in (
@@ -178,11 +184,21 @@ class Design:
         own = tuple(each for each in self.own_lines if each.name != name)
         return replace(self.with_line(name, None), own_lines=own)
 
+    def with_placed(self, name: str, position: tuple[float, float, float] | None) -> Design:
+        """Return the design with a landmark placed in the scan file's frame, or found again (None)."""
+        others = tuple(mark for mark in self.placed if mark.name != name)
+        placed = others if position is None else (*others, PlacedMark(name, position))
+        return replace(self, placed=tuple(sorted(placed, key=lambda mark: mark.name)))
+
     def with_line(self, name: str, ratio: float | None) -> Design:
         """Return the design with a line at ``ratio``, or taken off (None)."""
         others = [line for line in self.lines if line.name != name]
         worn = [*others, WornLine(name, ratio)] if ratio is not None else others
         return replace(self, lines=tuple(sorted(worn, key=lambda line: line.name)))
+
+
+def _twice(names: list[str]) -> str:
+    return next((name for name in names if names.count(name) > 1), "")
 
 
 def cannot_hold(design: Design) -> LineError:
@@ -225,9 +241,10 @@ def from_json(text: str) -> Design:
         scan = ScanSource(**values.pop("scan"))
         lines = tuple(WornLine(str(line["name"]), float(line["ratio"])) for line in values.pop("lines"))
         own = tuple(_own_line(line) for line in values.pop("own_lines", ()))
+        placed = tuple(_placed(mark) for mark in values.pop("placed", ()))
         known = {f.name for f in fields(Design)} - {"unknown"}
         unknown = {key: values.pop(key) for key in list(values) if key not in known}
-        return Design(scan=scan, lines=lines, own_lines=own, unknown=unknown, **values)
+        return Design(scan=scan, lines=lines, own_lines=own, placed=placed, unknown=unknown, **values)
     except UserError:
         raise
     except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as broken:
@@ -241,3 +258,8 @@ def _own_line(values: Mapping[str, Any]) -> OwnLine:
     if not isinstance(closed, bool) or not all(type(point) is int for point in points):
         raise TypeError("points are numbers, closed is true or false")
     return OwnLine(str(values["name"]), tuple(points), closed)
+
+
+def _placed(values: Mapping[str, Any]) -> PlacedMark:
+    x, y, z = map(float, values["position"])
+    return PlacedMark(str(values["name"]), (x, y, z))

@@ -7,16 +7,18 @@ from typing import Any
 import numpy as np
 
 from core.body import Body
+from core.landmark import Landmarks
 from core.landmarks import find_landmarks
 from core.measure import girths
 
 
-def detection(body: Body) -> dict[str, Any]:
+def detection(body: Body, landmarks: Landmarks | None = None) -> dict[str, Any]:
     """Return landmarks, levels [mm], girths [mm] and pose of a body, ready for JSON.
 
-    A landmark stands there in the file's own frame and in mm. Raises LandmarkError.
+    ``landmarks`` are found if they are not given. A landmark stands there in the file's own frame and in mm.
+    Raises LandmarkError.
     """
-    landmarks = find_landmarks(body)
+    landmarks = landmarks or find_landmarks(body)
     to_file = np.linalg.inv(body.pose.file_to_mm)
     marks = {
         name: {

@@ -10,8 +10,10 @@ import trimesh
 
 from core.control_mesh import ControlMesh
 from core.errors import UserError
+from core.live import Frame
 from core.mesh import Mesh
 from core.project import whole_file
+from core.tffd import deform
 
 FORMATS = ("ply", "obj", "stl")
 
@@ -28,6 +30,11 @@ def write_mesh(path: str | os.PathLike[str], mesh: Mesh) -> None:
     data = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).export(file_type=kind)
     with whole_file(target) as partial:
         partial.write_bytes(data.encode() if isinstance(data, str) else data)
+
+
+def write_frame(path: str | os.PathLike[str], frame: Frame) -> None:
+    """Write the whole body as a frame shows it; see ``write_mesh``. Raises UserError."""
+    write_mesh(path, Mesh(deform(frame.stages.binding, frame.control_points), frame.stages.body.mesh.faces))
 
 
 def write_control_points(path: str | os.PathLike[str], control: ControlMesh) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -20,6 +20,7 @@ from core.design import Design, cannot_hold, no_balance
 from core.errors import UserError
 from core.mesh import Points
 from core.pipeline import Stages, build, targets_of
+from core.progress import Cancelled, Progress, quiet
 from core.solver import Marks, Record
 from core.verdict import Verdict
 
@@ -76,11 +77,13 @@ class _Request:
 class LiveSolver:
     """Solves the newest design in a thread of its own.
 
-    ``tell`` is called in that thread with the name of the stage at work, or "" when it is done.
+    ``tell`` is called in that thread with the work in hand and the share done, or "" when it is done.
     """
 
-    def __init__(self, tell: Callable[[str], None] = lambda _: None) -> None:
+    def __init__(self, tell: Progress = quiet) -> None:
         self._tell = tell
+        self._at_work = 0
+        self._unwanted = 0
         self._wake = threading.Condition()
         self._request: _Request | None = None
         self._frame: Frame | None = None
@@ -108,6 +111,12 @@ class LiveSolver:
             self._wake.notify()
             return self._revision
 
+    def cancel(self) -> None:
+        """Drop all that was asked and is not built yet; the last good frame still stands."""
+        with self._wake:
+            self._request = self._failure = None
+            self._unwanted = self._revision
+
     def latest(self) -> Frame | Failure | None:
         """Return what has not been fetched yet, if anything: a failure first, else the newest frame."""
         with self._wake:
@@ -116,6 +125,11 @@ class LiveSolver:
                 return failure
             frame, self._frame = self._frame, None
             return frame
+
+    def _hear(self, what: str, share: float) -> None:
+        if self._stopping or self._at_work <= self._unwanted:
+            raise Cancelled
+        self._tell(what, share)
 
     @contextmanager
     def held(self) -> Iterator[None]:
@@ -157,6 +171,8 @@ class LiveSolver:
                     if self._stages is not None and self._comparison is not None:
                         self._publish(make_frame(taken, self._stages, self._comparison, self._seconds))
                         self._warm_up(self._stages)
+                except Cancelled:
+                    pass
                 except UserError as error:
                     self._fail(Failure(asked, error))
                 except Exception as error:
@@ -176,10 +192,12 @@ class LiveSolver:
         return self._stopping or self._request is not None or turning
 
     def _take(self, request: _Request) -> None:
+        self._at_work = request.revision
         try:
-            stages = build(request.design, self._stages, self._tell)
+            stages = build(request.design, self._stages, self._hear)
+            self._hear("", 1.0)
         finally:
-            self._tell("")
+            self._tell("", 1.0)
         old, self._stages = self._stages, stages
         targets = targets_of(request.design, stages)
         start = time.perf_counter()
@@ -222,7 +240,8 @@ class LiveSolver:
 
     def _fail(self, failure: Failure) -> None:
         with self._wake:
-            self._failure = failure
+            if failure.revision > self._unwanted:
+                self._failure = failure
 
 
 def make_frame(revision: int, stages: Stages, comparison: Comparison, seconds: float = 0.0) -> Frame:

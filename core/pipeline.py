@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from types import MappingProxyType
 from typing import Any, TypeVar
 
@@ -14,7 +14,7 @@ import numpy as np
 from core.body import Body, body_of
 from core.control_mesh import ControlMesh, back_length, fit_control_mesh
 from core.design import Design, OwnLine, ScanSource
-from core.errors import FitError, LineError
+from core.errors import FitError, LandmarkError, LineError
 from core.gain import gain_limit
 from core.landmark import Landmarks
 from core.landmarks import find_landmarks
@@ -23,6 +23,8 @@ from core.mesh import Floats, Mesh, Points
 from core.model import ConstrainedModel, constrained_model
 from core.moving import MovingFaces, moving_faces
 from core.patch import Patch, patch_fade
+from core.placing import PlacedMark, in_mm
+from core.progress import Progress, quiet
 from core.project import ScanFile, read_scan_file
 from core.solver import Marks, Targets
 from core.template import read_template
@@ -33,7 +35,6 @@ GAIN_SHARE = 0.97
 """The default conventional gain in parts of the limit at rest: just calm, so that excess makes it vibrate."""
 
 T = TypeVar("T")
-Tell = Callable[[str], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,27 +84,46 @@ class Stages:
         return self.moving.side_volume_changes(places)
 
 
+SHARES = {"read scan": 0.5, "find landmarks": 0.1, "fit control mesh": 0.1, "bind body": 0.1}
+"""What part of the time of a build the slow stages take, roughly."""
+
+
+class UnsureError(LandmarkError):
+    """No bust was found, on a ``body`` of which it is not certain how it stands: ask which way it does."""
+
+    def __init__(self, problem: LandmarkError, body: Body, design: Design) -> None:
+        super().__init__(problem.message, problem.hint)
+        self.body = body
+        self.design = design
+
+
 class _Stager:
     """Makes stages in order, taking each from the previous build if its inputs are the same."""
 
-    def __init__(self, previous: Stages | None, tell: Tell) -> None:
+    def __init__(self, previous: Stages | None, progress: Progress) -> None:
         self._old = previous.memo if previous else {}
         self._old_seconds = previous.seconds if previous else {}
-        self._tell = tell
+        self._progress = progress
+        self._done = 0.0
         self.memo: dict[str, tuple[tuple[Any, ...], Any]] = {}
         self.seconds: dict[str, float] = {}
 
     def __call__(self, name: str, make: Callable[..., T], *inputs: Any) -> T:
+        begun, self._done = self._done, self._done + SHARES.get(name, 0.02)
         known = self._old.get(name)
         if known is not None and _same(known[0], inputs):
             self.memo[name], self.seconds[name] = known, self._old_seconds[name]
             return known[1]  # type: ignore[no-any-return]
-        self._tell(name)
+        self._progress(name, begun)
         start = time.perf_counter()
         result = make(*inputs)
         self.seconds[name] = time.perf_counter() - start
         self.memo[name] = (inputs, result)
         return result
+
+    def inside(self, what: str, share: float) -> None:
+        """Hear how far the reading of the scan is, which comes first."""
+        self._progress(what, SHARES["read scan"] * share)
 
 
 def _same(old: tuple[Any, ...], new: tuple[Any, ...]) -> bool:
@@ -111,14 +131,19 @@ def _same(old: tuple[Any, ...], new: tuple[Any, ...]) -> bool:
     return all(a is b or (not isinstance(a, np.ndarray) and a == b) for a, b in zip(old, new, strict=True))
 
 
-def build(design: Design, previous: Stages | None = None, tell: Tell = lambda _: None) -> Stages:
-    """Build all stages of ``design``; ``tell`` hears the name of each stage that is made anew.
+def build(design: Design, previous: Stages | None = None, progress: Progress = quiet) -> Stages:
+    """Build all stages of ``design``; ``progress`` hears the name of each stage that is made anew.
 
-    Raises the UserError of the stage that fails; ``previous`` then still stands.
+    Raises the UserError of the stage that fails, or Cancelled; ``previous`` then still stands.
     """
-    stage = _Stager(previous, tell)
-    scan, body = stage("read scan", read_body, design.scan)
-    landmarks = stage("find landmarks", find_landmarks, body)
+    stage = _Stager(previous, progress)
+    scan, body = stage("read scan", partial(read_body, progress=stage.inside), design.scan)
+    try:
+        landmarks = stage("find landmarks", find, body, design.placed)
+    except LandmarkError as problem:
+        if body.pose.sure:
+            raise
+        raise UnsureError(problem, body, design) from problem
     template = stage("read template", read_template, design.template)
     control = stage("fit control mesh", fit_control_mesh, template, body, landmarks, design.line_height)
     patch = stage("find patch", patch_fade, body.mesh, control)
@@ -153,10 +178,16 @@ def targets_of(design: Design, stages: Stages) -> Targets:
     return Targets(tuple(design.ratio(line.name) for line in stages.model.lines), design.volume, stages.gain)
 
 
-def read_body(source: ScanSource) -> tuple[ScanFile, Body]:
-    """Return a scan as it came and the body read from it. Raises ScanError or ProjectError."""
+def read_body(source: ScanSource, progress: Progress = quiet) -> tuple[ScanFile, Body]:
+    """Return a scan as it came and the body read from it. Raises ScanError, ProjectError or Cancelled."""
     scan = read_scan_file(source)
-    return scan, body_of(scan.name, scan.data, unit=source.unit, up=source.up, front=source.front)
+    told = {"unit": source.unit, "up": source.up, "front": source.front}
+    return scan, body_of(scan.name, scan.data, **told, progress=progress)
+
+
+def find(body: Body, placed: tuple[PlacedMark, ...]) -> Landmarks:
+    """Return the landmarks of a body, with those that were placed by hand. Raises LandmarkError."""
+    return find_landmarks(body, in_mm(placed, body.pose.file_to_mm))
 
 
 def _bind(body: Mesh, control: ControlMesh, fade: Floats, weights: Weights, scaled_normals: bool) -> Binding:

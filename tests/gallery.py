@@ -35,6 +35,7 @@ from app.panels.scan import ScanPanel, ScanView
 from app.panels.status import StatusBar
 from app.panels.top_bar import TopBar
 from app.panels.view_tools import CompareTools, ViewTools
+from app.present_scan import GROUPS, kind_of, landmark_title
 from app.theme import apply_theme, tokens_of
 from app.tokens import LINE_COLORS
 from app.words import tr
@@ -46,12 +47,12 @@ LINES = (
     ("under_bust", "Under-bust line", 1.0, 389.0, None, False, True, 745.0),
 )
 LANDMARKS = (
-    ("bust_point_left", "Bust point left", 0.97),
-    ("bust_point_right", "Bust point right", 0.96),
-    ("fold_left", "Fold left", 0.61),
-    ("fold_right", "Fold right", 0.42),
-    ("lowest_left", "Lowest point left", 0.88),
-    ("lowest_right", "Lowest point right", 0.21),
+    ("bust_point_left", 0.97),
+    ("bust_point_right", 0.96),
+    ("lowest_left", 0.88),
+    ("lowest_right", 0.21),
+    ("fold_left", 0.61),
+    ("fold_right", 0.42),
 )
 
 
@@ -177,7 +178,9 @@ class Mock(QWidget):
             )
         )
         rule = tr("The deepest fold in the side view section through the bust point.")
-        pages["landmarks"].set_landmarks([LandmarkView(n, tr(t), c, rule) for n, t, c in LANDMARKS])
+        pages["landmarks"].set_landmarks(
+            [LandmarkView(n, landmark_title(n), c, rule, GROUPS[kind_of(n)]) for n, c in LANDMARKS]
+        )
         pages["landmarks"].select("fold_right")
         views = [
             LineView(name, tr(title), color, *rest)

@@ -130,7 +130,7 @@ def test_no_turn_is_made_while_a_frame_is_shown(solver: LiveSolver, built: Built
 
 def test_the_stages_at_work_are_named(built: Built) -> None:
     told: list[str] = []
-    solver = LiveSolver(told.append)
+    solver = LiveSolver(lambda what, _: told.append(what))
     settled(solver, solver.submit(built("mannequin").design))
     solver.stop()
     assert told[0] == "read scan"

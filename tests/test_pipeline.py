@@ -18,7 +18,7 @@ Built = Callable[[str], Stages]
 
 def made_anew(design: Design, previous: Stages) -> list[str]:
     told: list[str] = []
-    build(design, previous, told.append)
+    build(design, previous, lambda what, _: told.append(what))
     return told
 
 

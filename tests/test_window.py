@@ -134,7 +134,7 @@ def test_an_edit_that_cannot_be_carried_out_is_taken_back() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
         design = window.session.design
-        window.scan.unit_chosen.emit("m")
+        window.scan.told.emit("unit", "m")
         yield lambda: window.notices.notice() is not None
         yield settled(window)
         assert window.session.design == design

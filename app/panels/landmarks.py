@@ -1,4 +1,4 @@
-"""The landmarks of the bust, how sure each is, and the rule it was found by."""
+"""The landmarks of the body, how sure each is, and the rule it was found by."""
 
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
@@ -8,27 +8,41 @@ from dataclasses import dataclass
 
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPaintEvent, QPen
-from PySide6.QtWidgets import QAbstractButton, QButtonGroup, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QAbstractButton,
+    QButtonGroup,
+    QFrame,
+    QHBoxLayout,
+    QScrollArea,
+    QVBoxLayout,
+    QWidget,
+)
 
-from app.parts import EmptyState, hairline, paint_card, sentence
-from app.theme import font, label, tokens_of, tone_of
+from app.parts import Disclosure, EmptyState, button, hairline, paint_card, sentence
+from app.theme import font, label, set_tag, tokens_of, tone_of
 from app.words import say, tr
 
 
 @dataclass(frozen=True)
 class LandmarkView:
-    """What is shown of a landmark; ``confidence`` 0..1, ``rule`` a sentence."""
+    """What is shown of a landmark; ``confidence`` 0..1, ``group`` bust, under or further."""
 
     name: str
     title: str
     confidence: float
     rule: str
+    group: str = "bust"
+    by_hand: bool = False
 
 
 class LandmarksPanel(QWidget):
-    """All landmarks, one row each; under them the rule of the selected one."""
+    """All landmarks, one row each; under them the rule of the selected one.
+
+    ``reset_asked`` names the landmarks, a tuple, that are to be found again.
+    """
 
     landmark_selected = Signal(str)
+    reset_asked = Signal(object)
 
     def __init__(self) -> None:
         super().__init__()
@@ -40,40 +54,86 @@ class LandmarksPanel(QWidget):
         heading = label(tr("Landmarks"), "heading")
         heading.setContentsMargins(4, 0, 0, 0)
         self._summary = sentence()
-        self._summary.setContentsMargins(4, 2, 0, 8)
+        self._summary.setContentsMargins(4, 2, 0, 6)
         self._empty = EmptyState(
             "map-pin", tr("No landmarks yet"), tr("They are found on the scan. Open one first.")
         )
-        self._list = QVBoxLayout()
-        self._list.setSpacing(0)
-        self._rule_box = QWidget()
-        rule = QVBoxLayout(self._rule_box)
-        rule.setContentsMargins(4, 10, 4, 0)
-        rule.setSpacing(3)
-        self._rule_title, self._rule = sentence("", "name"), sentence()
-        rule.addWidget(hairline())
-        rule.addSpacing(8)
-        rule.addWidget(self._rule_title)
-        rule.addWidget(self._rule)
         for each in (heading, self._summary, self._empty):
             column.addWidget(each)
-        column.addLayout(self._list)
-        column.addWidget(self._rule_box)
-        column.addStretch(1)
+        column.addWidget(self._list(), 1)
+        column.addWidget(self._foot())
+        column.addStretch(0)
         self._group = QButtonGroup(self)
         self.set_landmarks([])
 
-    def set_landmarks(self, landmarks: Sequence[LandmarkView]) -> None:
-        """Show these landmarks; rows stay the same widgets while names and order stay."""
+    def _list(self) -> QScrollArea:
+        inside = QWidget()
+        inside.setProperty("scrolled", "true")
+        column = QVBoxLayout(inside)
+        column.setContentsMargins(0, 0, 6, 0)
+        column.setSpacing(0)
+        self._groups: dict[str, QVBoxLayout] = {}
+        self._heads: dict[str, QWidget] = {
+            "bust": label(tr("Bust"), "caption"),
+            "under": label(tr("Folds and breast roots"), "caption"),
+            "further": Disclosure(tr("Further landmarks")),
+        }
+        self.further = QWidget()
+        for name, head in self._heads.items():
+            head.setContentsMargins(4, 8, 0, 3)
+            column.addWidget(head)
+            holder = self.further if name == "further" else QWidget()
+            rows = self._groups[name] = QVBoxLayout(holder)
+            rows.setContentsMargins(0, 0, 0, 0)
+            rows.setSpacing(0)
+            column.addWidget(holder)
+        disclosure = self._heads["further"]
+        assert isinstance(disclosure, Disclosure)
+        disclosure.toggled.connect(self.further.setVisible)
+        self.further.hide()
+        column.addStretch(1)
+        self._area = QScrollArea()
+        self._area.setWidgetResizable(True)
+        self._area.setFrameShape(QFrame.Shape.NoFrame)
+        self._area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self._area.setWidget(inside)
+        return self._area
+
+    def _foot(self) -> QWidget:
+        self._rule_box = QWidget()
+        rule = QVBoxLayout(self._rule_box)
+        rule.setContentsMargins(4, 8, 4, 0)
+        rule.setSpacing(3)
+        self._rule_title, self._rule = sentence("", "name"), sentence()
+        self._hint = sentence(tr("Drag its pin over the skin to correct it."), "caption")
+        self.reset, self.reset_all = button(tr("Find it again")), button(tr("Find all again"), "quiet")
+        self.reset.clicked.connect(lambda: self.reset_asked.emit((self._selected,)))
+        self.reset_all.clicked.connect(lambda: self.reset_asked.emit(self._placed()))
+        buttons = QHBoxLayout()
+        for each in (self.reset, self.reset_all):
+            buttons.addWidget(each)
+        buttons.addStretch(1)
+        rule.addWidget(hairline())
+        rule.addSpacing(8)
+        for part in (self._rule_title, self._rule, self._hint):
+            rule.addWidget(part)
+        rule.addSpacing(4)
+        rule.addLayout(buttons)
+        return self._rule_box
+
+    def set_landmarks(self, landmarks: Sequence[LandmarkView], doubts: Sequence[str] = ()) -> None:
+        """Show these landmarks and the ``doubts`` about them; rows stay while names and order stay."""
         if [view.name for view in landmarks] != list(self.rows):
             self._rebuild(landmarks)
         for view in landmarks:
             self.rows[view.name].show_view(view)
-        weak = sum(tone_of(view.confidence) != "ok" for view in landmarks)
-        found = tr("All found.") if not weak else tr("All found. {count} should be looked at.")
-        self._summary.setText(found.format(count=weak))
+        self._summary.setText(" ".join(map(say, doubts)) or tr("All found."))
+        set_tag(self._summary, "tone", "warn" if doubts else "")
         self._summary.setVisible(bool(landmarks))
         self._empty.setVisible(not landmarks)
+        self._area.setVisible(bool(landmarks))
+        for name, head in self._heads.items():
+            head.setVisible(any(view.group == name for view in landmarks))
         self.select(self._selected if self._selected in self.rows else None)
 
     def select(self, name: str | None) -> None:
@@ -81,30 +141,47 @@ class LandmarksPanel(QWidget):
         self._selected = name
         for each, row in self.rows.items():
             row.setChecked(each == name)
-        self._rule_box.setVisible(name is not None)
+        placed = self._placed()
+        self._rule_box.setVisible(name is not None or bool(placed))
+        for part in (self._rule_title, self._rule, self._hint):
+            part.setVisible(name is not None)
+        self.reset.setVisible(name in placed)
+        self.reset_all.setVisible(bool(placed) and placed != (name,))
         if name is not None:
-            self._rule_title.setText(self.rows[name].view.title)
-            self._rule.setText(say(self.rows[name].view.rule))
+            view = self.rows[name].view
+            self._rule_title.setText(view.title)
+            self._rule.setText(say(view.rule))
+            if view.group == "further":
+                self._open_further()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         step = {Qt.Key.Key_Up: -1, Qt.Key.Key_Down: 1}.get(Qt.Key(event.key()))
-        if step is None or not self.rows:
+        names = [name for name, row in self.rows.items() if row.isVisible()]
+        if step is None or not names:
             super().keyPressEvent(event)
             return
-        names = list(self.rows)
         here = names.index(self._selected) if self._selected in names else -1
         name = names[min(max(here + step, 0), len(names) - 1)]
         self.rows[name].setFocus(Qt.FocusReason.OtherFocusReason)
+        self._area.ensureWidgetVisible(self.rows[name])
         self._choose(name)
+
+    def _placed(self) -> tuple[str, ...]:
+        return tuple(name for name, row in self.rows.items() if row.view.by_hand)
+
+    def _open_further(self) -> None:
+        disclosure = self._heads["further"]
+        assert isinstance(disclosure, Disclosure)
+        disclosure.setChecked(True)
 
     def _rebuild(self, landmarks: Sequence[LandmarkView]) -> None:
         for row in self.rows.values():
-            self._list.removeWidget(row)
+            row.setParent(None)
             row.deleteLater()
         self.rows = {view.name: LandmarkRow(view) for view in landmarks}
         self._group.setExclusive(False)
         for name, row in self.rows.items():
-            self._list.addWidget(row)
+            self._groups[row.view.group].addWidget(row)
             row.clicked.connect(lambda _=False, chosen=name: self._choose(chosen))
 
     def _choose(self, name: str) -> None:
@@ -133,7 +210,7 @@ class LandmarkRow(QAbstractButton):
         self.view = view
         self.setText(view.title)
         self.setToolTip(say(view.rule))
-        self.setAccessibleName(f"{view.title} {view.confidence:.0%}")
+        self.setAccessibleName(f"{view.title} {self._words()}")
         self.update()
 
     def paintEvent(self, event: QPaintEvent) -> None:
@@ -141,7 +218,7 @@ class LandmarkRow(QAbstractButton):
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         paint_card(painter, self, "selected", 7)
-        tone = getattr(tokens, tone_of(self.view.confidence))
+        tone = tokens.accent if self.view.by_hand else getattr(tokens, tone_of(self.view.confidence))
         middle, right = self.height() / 2, self.width() - 10
         painter.setPen(QPen(QColor(tokens.raised), 1.5))
         painter.setBrush(QColor(tone))
@@ -152,9 +229,10 @@ class LandmarkRow(QAbstractButton):
         painter.drawText(QRectF(28, 0, self.width() - 140, self.height()), left, self.text())
         painter.setFont(font("secondary", tabular=True))
         painter.setPen(QColor(tokens.text if self.isChecked() else tokens.text_quiet))
-        percent = QRectF(right - 48, 0, 48, self.height())
         past = Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight
-        painter.drawText(percent, past, f"{self.view.confidence * 100:.0f} %")
+        painter.drawText(QRectF(right - 110, 0, 110, self.height()), past, self._words())
+        if self.view.by_hand:
+            return
         painter.setPen(Qt.PenStyle.NoPen)
         bar = QRectF(right - 48 - 52, middle - 1.5, 52, 3)
         painter.setBrush(QColor(tokens.groove))
@@ -162,3 +240,6 @@ class LandmarkRow(QAbstractButton):
         bar.setWidth(52 * min(max(self.view.confidence, 0.0), 1.0))
         painter.setBrush(QColor(tone))
         painter.drawRoundedRect(bar, 1.5, 1.5)
+
+    def _words(self) -> str:
+        return tr("by hand") if self.view.by_hand else f"{self.view.confidence * 100:.0f} %"

@@ -1,23 +1,30 @@
-"""How the scan was understood: its unit, which way it stands, what was repaired."""
+"""How the scan was understood: its unit, which way it stands, what was repaired; each can be said instead."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QFrame, QLabel, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QScrollArea, QVBoxLayout, QWidget
 
 from app.parts import EmptyState, Segment, button, hairline, sentence
+from app.scan_formats import KINDS
 from app.theme import label, set_tag
 from app.words import number, say, tr
 
 UNITS = ("mm", "cm", "m", "inch")
 """Units that a scan can be in."""
 
+AXES = tuple(f"{sign}{name}" for name in "xyz" for sign in "+-")
+"""Axes of a file, as a scan is told them."""
+
 
 @dataclass(frozen=True)
 class ScanView:
-    """What is shown of a scan: ``reason`` why this ``unit``; ``up`` and ``front`` are axes of the file."""
+    """What is shown of a scan: ``reason`` why this ``unit``; ``up`` and ``front`` are axes of the file.
+
+    ``notes`` are further sentences on it; ``told`` names what was not found but told: unit, up, front.
+    """
 
     file: str
     unit: str
@@ -27,13 +34,19 @@ class ScanView:
     front: str
     triangles: int
     repairs: tuple[str, ...]
+    notes: tuple[str, ...] = ()
+    told: frozenset[str] = frozenset()
 
 
 class ScanPanel(QWidget):
-    """The facts of the scan; ``unit_chosen`` when another unit is said, ``open_asked`` for another file."""
+    """The facts of the scan; ``told`` with "unit", "up" or "front" and what it is, an empty key forgets all.
 
-    unit_chosen = Signal(str)
+    ``open_asked`` for another file; ``front_asked`` when the pictures are wanted.
+    """
+
+    told = Signal(str, str)
     open_asked = Signal()
+    front_asked = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -42,7 +55,7 @@ class ScanPanel(QWidget):
         self._empty = EmptyState(
             "folder-open",
             tr("No scan yet"),
-            tr("Open a body scan, or drop one on the window: PLY, OBJ or STL."),
+            tr("Open a body scan, or drop one on the window: {kinds}.").format(kinds=KINDS),
             tr("Open a scan…"),
         )
         self._empty.asked.connect(self.open_asked)
@@ -52,6 +65,7 @@ class ScanPanel(QWidget):
         head.addWidget(self._empty)
         outer.addLayout(head)
         outer.addWidget(self._facts(), 1)
+        outer.addStretch(0)
         self.set_scan(None)
 
     def set_scan(self, view: ScanView | None) -> None:
@@ -62,11 +76,16 @@ class ScanPanel(QWidget):
             return
         self._file.setText(view.file)
         self._triangles.setText(tr("{count} triangles").format(count=number(view.triangles, 0)))
-        self._units.set_choice(view.unit)
+        self.units.set_choice(view.unit)
+        self.ups.set_choice(view.up)
+        self.fronts.set_choice(view.front)
+        for axis in AXES:
+            self.fronts.button(axis).setEnabled(axis[1] != view.up[1])
         self._reason.setText(say(view.reason))
         set_tag(self._reason, "tone", "" if view.sure else "warn")
-        self._up.setText(view.up.replace("-", "\N{MINUS SIGN}"))
-        self._front.setText(view.front.replace("-", "\N{MINUS SIGN}"))
+        self._forget.setVisible(bool(view.told))
+        self._notes.setText("\n".join(view.notes))
+        self._notes.setVisible(bool(view.notes))
         self._repairs.setText("\n".join(map(say, view.repairs)) or tr("Nothing had to be repaired."))
 
     def _facts(self) -> QScrollArea:
@@ -77,17 +96,17 @@ class ScanPanel(QWidget):
         column.setSpacing(3)
         self._file, self._triangles = sentence("", "name"), label("", "secondary")
         self._file.setTextFormat(Qt.TextFormat.PlainText)
-        self._reason, self._repairs = sentence(), sentence()
-        self._up, self._front = label("", "body"), label("", "body")
-        self._units = Segment([(unit, tr(unit)) for unit in UNITS], small=True)
-        self._units.chosen.connect(self.unit_chosen)
+        self._notes, self._reason, self._repairs = sentence(), sentence(), sentence()
+        self.units = self._choices("unit", [(unit, tr(unit)) for unit in UNITS])
+        axes = [(axis, axis.replace("-", "\N{MINUS SIGN}")) for axis in AXES]
+        self.ups, self.fronts = self._choices("up", axes), self._choices("front", axes)
         another = button(tr("Open another scan…"))
         another.clicked.connect(self.open_asked)
-        for each in (self._file, self._triangles):
+        for each in (self._file, self._triangles, self._notes):
             column.addWidget(each)
-        self._group(column, tr("Unit of the file"), self._units)
-        self._group(column, tr("Axis of the file that points up"), self._up)
-        self._group(column, tr("Axis of the file that the chest faces"), self._front)
+        self._group(column, tr("Unit of the file"), self.units)
+        self._group(column, tr("Axis of the file that points up"), self.ups)
+        self._group(column, tr("Axis of the file that the chest faces"), self.fronts, self._ways())
         self._group(column, tr("Why"), self._reason)
         self._group(column, tr("Repairs"), self._repairs)
         column.addSpacing(14)
@@ -98,6 +117,27 @@ class ScanPanel(QWidget):
         self._area.setFrameShape(QFrame.Shape.NoFrame)
         self._area.setWidget(inside)
         return self._area
+
+    def _choices(self, key: str, choices: list[tuple[str, str]]) -> Segment:
+        result = Segment(choices, small=True)
+        result.chosen.connect(lambda value: self.told.emit(key, value))
+        return result
+
+    def _ways(self) -> QWidget:
+        """Return the buttons that ask by pictures, and that forget what was told."""
+        result = QWidget()
+        row = QHBoxLayout(result)
+        row.setContentsMargins(0, 3, 0, 0)
+        row.setSpacing(6)
+        self.pictures = button(tr("Choose by pictures…"))
+        self.pictures.clicked.connect(self.front_asked)
+        self._forget = button(tr("As found"), "quiet")
+        self._forget.setToolTip(tr("Forget what was said of unit, up and front: find them again"))
+        self._forget.clicked.connect(lambda: self.told.emit("", ""))
+        for each in (self.pictures, self._forget):
+            row.addWidget(each)
+        row.addStretch(1)
+        return result
 
     @staticmethod
     def _group(column: QVBoxLayout, title: str, *widgets: QWidget) -> None:

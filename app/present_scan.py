@@ -1,0 +1,136 @@
+"""What the window says about a scan and its landmarks: plain values for the panels."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.panels.landmarks import LandmarkView
+from app.panels.scan import ScanView
+from app.words import number, tr
+from core.body import Body
+from core.doubts import doubts
+from core.landmark import Landmarks
+from core.pipeline import Stages
+from core.upright import AXES, Pose
+
+GROUPS = {
+    "bust_point": "bust",
+    "lowest": "bust",
+    "fold": "under",
+    "root_inner": "under",
+    "root_outer": "under",
+}
+"""The group of each kind of landmark in the list; all others are further ones."""
+
+PINNED = ("bust_point", "lowest", "fold")
+"""The kinds of landmarks that always have a pin at the Landmarks step."""
+
+SLANTED = 1.5
+"""From which tilt [degrees] on a scan is said to stand askew in its file."""
+
+
+def kind_of(name: str) -> str:
+    """Return a landmark's name without its side."""
+    return name.removesuffix("_left").removesuffix("_right")
+
+
+def landmark_title(name: str) -> str:
+    """Return a landmark's name in the window's language."""
+    titles = {
+        "bust_point": tr("Bust point"),
+        "fold": tr("Under-bust fold"),
+        "lowest": tr("Lowest point"),
+        "root_inner": tr("Inner breast root"),
+        "root_outer": tr("Outer breast root"),
+        "front_centre": tr("Centre front, bust"),
+        "front_centre_underbust": tr("Centre front, under-bust"),
+        "back_centre": tr("Centre back, bust"),
+        "back_centre_underbust": tr("Centre back, under-bust"),
+        "side": tr("Side"),
+        "armpit": tr("Armpit"),
+        "waist_front": tr("Waist, front"),
+        "hip_front": tr("Hip, front"),
+        "neck_front": tr("Neck, front"),
+        "neck_back": tr("Neck, back"),
+    }
+    kind = kind_of(name)
+    sides = {"_left": tr("{name} left"), "_right": tr("{name} right")}
+    return sides.get(name[len(kind) :], "{name}").format(name=titles.get(kind, kind.replace("_", " ")))
+
+
+def landmark_views(landmarks: Landmarks) -> list[LandmarkView]:
+    """Return the rows of the list of landmarks, those of the bust first."""
+    order = list(GROUPS)
+    marks = sorted(
+        landmarks.points.values(),
+        key=lambda mark: order.index(kind_of(mark.name)) if kind_of(mark.name) in order else len(order),
+    )
+    return [
+        LandmarkView(
+            mark.name,
+            landmark_title(mark.name),
+            mark.confidence,
+            mark.rule,
+            GROUPS.get(kind_of(mark.name), "further"),
+            mark.by_hand,
+        )
+        for mark in marks
+    ]
+
+
+def landmark_doubts(stages: Stages) -> list[str]:
+    """Return the sentences on landmarks that should be looked at."""
+    pose_doubts = 0 if stages.body.pose.sure else 1
+    return doubts(stages.body, stages.landmarks)[pose_doubts:]
+
+
+def scan_view(stages: Stages) -> ScanView:
+    """Return the facts of the scan."""
+    body, source = stages.body, stages.design.scan
+    pose = body.pose
+    return ScanView(
+        stages.scan.name,
+        pose.unit,
+        pose.reason,
+        pose.sure,
+        pose.up,
+        pose.front,
+        len(body.mesh.faces),
+        body.repairs,
+        _notes(body),
+        frozenset(key for key in ("unit", "up", "front") if getattr(source, key) is not None),
+    )
+
+
+def _notes(body: Body) -> tuple[str, ...]:
+    tilt = tilt_of(body.pose)
+    return (
+        *([tr("It stands askew in its file, by {angle}°.").format(angle=number(tilt, 0))] * (tilt > SLANTED)),
+        *([tr("The file holds points only: a skin was laid through them.")] * body.rebuilt),
+        *(
+            [tr("It is noisy: what is measured is smoothed, what is shown is not.")]
+            * (body.calm is not body.mesh)
+        ),
+    )
+
+
+def tilt_of(pose: Pose) -> float:
+    """Return the angle between what is up and the nearest axis of the file [degrees]."""
+    up = pose.file_to_mm[2, :3] / np.linalg.norm(pose.file_to_mm[2, :3])
+    return float(np.degrees(np.arccos(np.clip(AXES[pose.up] @ up, -1.0, 1.0))))
+
+
+def work_words(what: str) -> str:
+    """Return what is said of the work in hand; nothing for what takes no time."""
+    words = {
+        "read scan": tr("Reading the scan"),
+        "reading": tr("Reading the scan"),
+        "repairing": tr("Repairing the scan"),
+        "rebuilding": tr("Laying a skin through the points"),
+        "finding up and front": tr("Finding up and front"),
+        "find landmarks": tr("Finding the landmarks"),
+        "fit control mesh": tr("Fitting the control mesh"),
+        "find patch": tr("Binding the body"),
+        "bind body": tr("Binding the body"),
+    }
+    return words.get(what, "")

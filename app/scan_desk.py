@@ -1,0 +1,180 @@
+"""What the window does about the scan: the work on it, the question how it stands, its landmarks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+from PySide6.QtGui import QColor, QImage
+
+from app.background import Background
+from app.panels.question import PICTURE, Answer
+from app.portrait import Picture
+from app.present_scan import landmark_doubts, landmark_title, landmark_views, scan_view, work_words
+from app.scene_stage import LOOKS
+from app.theme import tokens_of
+from app.ways import Way, pictures
+from app.words import tr
+from core.body import Body
+from core.design import Design
+from core.doubts import ESSENTIAL, weak_sides
+from core.pipeline import Stages, UnsureError
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+
+
+class ScanDesk(QObject):
+    """Brings what was understood of a scan to the window, and what the user knows better to the session."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._session = window.session
+        self._asked_for: Design | None = None
+        self._asked_body: Body | None = None
+        self._painter = Background(self)
+        self._painter.finished.connect(self._show_question)
+
+    # -- the session speaks
+
+    def show_found(self, stages: Stages) -> None:
+        """Show what was understood of the scan, and found on it."""
+        window, landmarks = self._window, stages.landmarks
+        window.landmarks.set_landmarks(landmark_views(landmarks), landmark_doubts(stages))
+        window.scan.set_scan(scan_view(stages))
+        window.view.drop_back()
+        weak = sum(len(weak_sides(landmarks, kind)) for kind in ESSENTIAL)
+        window.rail.set_state("scan", "done" if stages.body.pose.sure else "look", 1)
+        window.rail.set_state("landmarks", "look" if weak else "done", weak)
+
+    def show_opened(self, stages: Stages) -> None:
+        """Ask how a scan stands that has just been opened, if its shape does not tell."""
+        self._forget_question()
+        if not stages.body.pose.sure:
+            self._window.notices.show_notice(
+                "warn",
+                tr("Busk is not sure how this scan stands."),
+                tr("Click the picture in which the body stands upright and faces you."),
+                lasting=True,
+            )
+            self._ask(stages.body, None)
+
+    def show_question(self, unsure: UnsureError) -> None:
+        """Ask how a scan stands that could not be opened: no bust was found the way it was taken."""
+        self._window.notices.show_notice(
+            "warn",
+            tr("Busk is not sure how this scan stands."),
+            tr("Click the picture in which the body stands upright and faces you."),
+            lasting=True,
+        )
+        self._ask(unsure.body, unsure.design)
+
+    def show_work(self, what: str, share: float) -> None:
+        """Name the work that takes its time, and how much of it is done."""
+        words = work_words(what)
+        window = self._window
+        if what and not words:
+            return
+        window.status.set_job(words, share)
+        window.view.busy.show_work(words, share)
+        window.actions_.cancel.setEnabled(bool(words))
+
+    # -- the user asks
+
+    def cancel(self) -> None:
+        """Let go of the work in hand; the window is as it was before."""
+        self._session.cancel()
+        self.show_work("", 1.0)
+
+    def tell(self, key: str, value: str) -> None:
+        """Read the scan again with its unit, up or front as told; an empty key forgets what was told."""
+        design = self._session.design
+        if design is None:
+            return
+        scan = design.scan
+        if not key:
+            text, scan = tr("Unit, up and front as found"), replace(scan, unit=None, up=None, front=None)
+        elif key == "unit":
+            text, scan = tr("Scan in {unit}").format(unit=value), replace(scan, unit=value)
+        elif key == "up":
+            # What was told to be front may lie along the new axis: then it is to be found.
+            front = (
+                scan.front if scan.front and scan.front[1:] != value[1:] and "," not in scan.front else None
+            )
+            text, scan = tr("{axis} is up").format(axis=value), replace(scan, up=value, front=front)
+        else:
+            up = self._shown_up() if scan.up is None else scan.up
+            text, scan = tr("{axis} is front").format(axis=value), replace(scan, up=up, front=value)
+        self._session.change({"scan": scan}, text)
+
+    def ask(self) -> None:
+        """Show the pictures for the present scan."""
+        frame = self._session.frame
+        if frame is not None:
+            self._ask(frame.stages.body, None)
+
+    def answer(self, up: str, front: str) -> None:
+        """Take the answer: the open scan is read again as one undo step, one that waits is opened."""
+        waiting, design = self._asked_for, self._session.design
+        self._forget_question()
+        self._window.notices.withdraw("warn")
+        if waiting is not None:
+            self._session.open_design(replace(waiting, scan=replace(waiting.scan, up=up, front=front)))
+        elif design is not None:
+            self._session.change(
+                {"scan": replace(design.scan, up=up, front=front)}, tr("Front chosen by its picture")
+            )
+
+    def place_landmark(self, name: str) -> None:
+        """Keep where a landmark's pin was let go, as one undo step."""
+        dropped = self._window.view.dropped()
+        if dropped is not None and dropped[0] == name:
+            self._session.place_landmark(name, landmark_title(name), dropped[1])
+
+    def reset_landmarks(self, names: Sequence[str]) -> None:
+        """Let landmarks be found again."""
+        text = tr("{name} found again").format(name=landmark_title(names[0]))
+        self._session.reset_landmarks(names, text if len(names) == 1 else tr("Landmarks found again"))
+
+    def close(self) -> None:
+        """Wait for pictures that are being painted."""
+        self._painter.close()
+
+    # -- inside
+
+    def _shown_up(self) -> str:
+        frame = self._session.frame
+        return frame.stages.body.pose.up if frame is not None else "+z"
+
+    def _forget_question(self) -> None:
+        self._asked_for = self._asked_body = None
+        self._window.view.question.hide()
+
+    def _ask(self, body: Body, waiting: Design | None) -> None:
+        """Have a picture painted for each way the body may stand."""
+        self._asked_for, self._asked_body = waiting, body
+        clay = QColor(LOOKS[tokens_of(self._window).dark].clay)
+        colour, scale = (clay.red(), clay.green(), clay.blue()), self._window.devicePixelRatioF()
+        size = round(PICTURE[0] * scale), round(PICTURE[1] * scale)
+        self._painter.run(body, lambda: pictures(body, size, colour))
+
+    def _show_question(self, body: object, painted: object) -> None:
+        if body is not self._asked_body or not isinstance(painted, list):
+            return
+        self._window.view.question.ask(
+            [Answer(way.up, way.front, _image(picture), _words(way)) for way, picture in painted]
+        )
+
+
+def _words(way: Way) -> str:
+    up, front = (axis.replace("-", "\N{MINUS SIGN}") for axis in way.axes)
+    return tr("{up} up, {front} front").format(up=up, front=front)
+
+
+def _image(picture: Picture) -> QImage:
+    height, width, _ = picture.shape
+    # The image only looks at the array: a copy of its own outlives it.
+    return QImage(picture.tobytes(), width, height, 4 * width, QImage.Format.Format_RGBA8888).copy()

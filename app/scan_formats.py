@@ -1,0 +1,14 @@
+"""The kinds of scan files that can be opened, as they are written in help and dialogs."""
+
+from __future__ import annotations
+
+from core.scan_file import FORMATS
+
+PACKED = ".gz"
+"""Any scan may be packed."""
+
+KINDS = ", ".join(kind.upper() for kind in FORMATS)
+"""The formats in a row: PLY, OBJ and so on."""
+
+PATTERNS = " ".join(f"*.{kind}{end}" for end in ("", PACKED) for kind in FORMATS)
+"""What their names look like."""

@@ -1,0 +1,39 @@
+"""Doubts: what should be looked at before a scan's pose and landmarks are trusted, in plain words."""
+
+from __future__ import annotations
+
+from core.body import Body
+from core.landmark import SIDES, Landmarks
+
+CERTAIN = 0.5
+"""The confidence [1] from which on a landmark needs no second look."""
+
+ESSENTIAL = ("bust_point", "fold")
+"""The landmarks, a pair each, that the control mesh hangs on: doubts about others would only distract."""
+
+
+def doubts(body: Body, landmarks: Landmarks) -> list[str]:
+    """Return one sentence for each thing that should be looked at. Source: ours."""
+    pose = body.pose
+    unsure = f"It is not certain that {pose.up} is up and {pose.front} is front: please check it."
+    marks = [sentence for kind in ESSENTIAL for sentence in _doubt(kind, weak_sides(landmarks, kind))]
+    return [unsure] * (not pose.sure) + marks + list(landmarks.warnings)
+
+
+def weak_sides(landmarks: Landmarks, kind: str) -> list[str]:
+    """Return the sides on which a landmark, like "fold", was found and is not certain."""
+    found = {side: landmarks.points.get(f"{kind}_{side}") for side in SIDES}
+    return [side for side, mark in found.items() if mark and not mark.by_hand and mark.confidence < CERTAIN]
+
+
+def _doubt(kind: str, sides: list[str]) -> list[str]:
+    if not sides:
+        return []
+    both = len(sides) == 2
+    if kind == "fold":
+        if both:
+            return ["The folds under both breasts could not be seen clearly: please check them."]
+        return [f"The fold under the {sides[0]} breast could not be seen clearly: please check it."]
+    if both:
+        return ["No nipple stands out clearly: the bust points are where the breasts reach furthest."]
+    return [f"No nipple stands out clearly on the {sides[0]} breast: please check its bust point."]
