@@ -2,23 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-from itertools import pairwise
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
-from scipy import sparse
 from scipy.ndimage import median_filter
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull
 
+from core.arms import SLACK, beside
 from core.errors import LandmarkError
 from core.mesh import Flags, Floats, Indices, Mesh, Points
+from core.outline import BINS, Outlines, outlines, places, reach
 from core.sections import hull_perimeter
-
-GAP = 12.0
-"""An open piece of outline nearer than this to the trunk, along x [mm], belongs to it."""
+from core.trunk_guide import (
+    SIDES,
+    Guide,
+    bearing_bin,
+    bridge,
+    cut_off,
+    eroded,
+    gaps,
+    guide_of,
+    kept_pieces,
+    main_pieces,
+)
 
 STABLE_STEP = 5.0
 """Step of the search for the stable under-bust level [mm]."""
@@ -26,15 +33,19 @@ STABLE_STEP = 5.0
 
 @dataclass(frozen=True, eq=False)
 class Level:
-    """The outline of the trunk at height ``z`` [mm]: ``segments``, shape (s, 2, 3) [mm], in no order."""
+    """The outline of the trunk at height ``z`` [mm]: ``segments`` of skin, shape (s, 2, 3) [mm], in no order.
+
+    ``bridges``, shape (b, 2, 3) [mm], close it where arms were cut off or the scan has a hole.
+    """
 
     z: float
     segments: Points
+    bridges: Points = field(default_factory=lambda: np.empty((0, 2, 3)))
 
     @property
     def points(self) -> Points:
-        """End points of the segments, shape (2 s, 3) [mm]."""
-        return self.segments.reshape(-1, 3)
+        """End points of the segments and bridges, shape (2 (s + b), 3) [mm]."""
+        return np.concatenate([self.segments, self.bridges]).reshape(-1, 3)
 
     @property
     def tape(self) -> float:
@@ -42,40 +53,102 @@ class Level:
         return hull_perimeter(self.points)
 
     @property
+    def bridged_mm(self) -> float:
+        """Length of the outline that is no skin [mm]: under it, the girth is an estimate."""
+        return _length(self.bridges)
+
+    @property
     def longest_straight(self) -> float:
-        """Length of the longest hollow that the tape bridges, or of the longest flat [mm]."""
-        if self.tape == 0.0:
+        """Length of the longest hollow that a tape on the skin bridges, or of the longest flat [mm]."""
+        skin = self.segments.reshape(-1, 3)
+        if hull_perimeter(skin) == 0.0:
             return 0.0
-        hull = ConvexHull(self.points[:, :2])
+        hull = ConvexHull(skin[:, :2])
         ring = hull.points[hull.vertices]
         return float(np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1).max())
 
     @property
     def skin(self) -> float:
         """Length of the outline itself [mm]."""
-        return float(np.linalg.norm(self.segments[:, 1] - self.segments[:, 0], axis=1).sum())
+        return _length(self.segments) + self.bridged_mm
 
 
-def trunk_levels(mesh: Mesh, heights: npt.ArrayLike) -> list[Level]:
+def _length(segments: Points) -> float:
+    return float(np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1).sum())
+
+
+def trunk_levels(mesh: Mesh, heights: npt.ArrayLike, *, arms: bool = False) -> list[Level]:
     """Cut ``mesh`` at ascending ``heights``, shape (k,) [mm], and take the arms out; a level may be empty.
 
-    Source: ours. The trunk is what crosses the middle of the body; closed outlines beside it are arms.
+    Arms beside or in front of the trunk are left out, and those that touch it are cut off unless ``arms``
+    asks for them. What is missing then, or in holes of the scan, is bridged after the levels near by.
+    Source: ours.
     """
     z = np.atleast_1d(np.asarray(heights, dtype=np.float64))
-    segments, ids, level = _cut_levels(mesh, z)
-    if len(segments) == 0:
-        return [Level(float(height), segments) for height in z]
-    piece, closed = _connected(ids)
-    pieces = _describe(segments, piece, level, closed)
-    middle = _middle(pieces)
-    keep = np.zeros(len(pieces.low), dtype=bool)
-    for rows in _rows_by_level(pieces.level, len(z)):
-        keep[rows] = _trunk_pieces(pieces, rows, middle)
-    kept = keep[piece]
-    return [
-        Level(float(height), segments[rows][kept[rows]])
-        for height, rows in zip(z, _rows_by_level(level, len(z)), strict=True)
-    ]
+    cuts, guide = outlines(mesh, z), guide_of(mesh)
+    if len(cuts.segments) == 0 or len(guide.z) == 0:
+        return [Level(float(height), np.empty((0, 2, 3))) for height in z]
+    near = np.array([guide.between(float(height))[:2] for height in z])
+    main = np.where(guide.shown[near].any(axis=1), main_pieces(cuts, guide.middle), -1)
+    kept, loose = kept_pieces(cuts, main, _limbs(cuts, main, guide, near))
+    levels = []
+    for k, rows in enumerate(cuts.rows()):
+        own = rows[kept[cuts.piece[rows]]]
+        cut = not arms and len(own) > 0 and bool(guide.cut[near[k]].any())
+        if cut:
+            own = _armless(cuts, guide, own, near[k])
+        if cut or loose[k]:
+            levels.append(_closed(cuts.segments[own], guide, float(z[k]), cut))
+        else:
+            levels.append(Level(float(z[k]), cuts.segments[own]))
+    return levels
+
+
+def _limbs(cuts: Outlines, main: Indices, guide: Guide, near: Indices) -> Flags:
+    """Tell which closed pieces are arms: beside the trunk, or where an arm is on the levels of the guide."""
+    pieces = cuts.pieces
+    body = main[pieces.level]
+    other = pieces.closed & (body >= 0) & (body != np.arange(len(body)))
+    limb = other & beside(pieces, body, guide.middle)
+    for piece in np.flatnonzero(other & ~limb):
+        boxes = guide.limb_boxes[np.isin(guide.limb_level, near[pieces.level[piece]])]
+        centre = pieces.centre[piece]
+        limb[piece] = ((boxes[:, 0] <= centre) & (centre <= boxes[:, 1])).all(axis=1).any()
+    return np.asarray(limb)
+
+
+def _armless(cuts: Outlines, guide: Guide, own: Indices, near: Indices) -> Indices:
+    """Return those of the segments ``own`` of one level that are left when the arms are cut off."""
+    z = float(cuts.z[cuts.level[own[0]]])
+    centre = guide.centre_at(z)
+    joints = [bool(guide.necks[near, s].any()) for s in (0, 1)]
+    if any(joints):
+        for joint, arm in zip(joints, cut_off(cuts, own, centre), strict=True):
+            own = own[~np.isin(own, arm)] if joint else own
+    for s, side in enumerate(SIDES):
+        if guide.cut[near, s].any():
+            out = side * (cuts.segments[own, :, 0].mean(axis=1) - centre[0])
+            own = own[out < guide.half_width(z, side) + SLACK]
+    return own
+
+
+def _closed(segments: Points, guide: Guide, z: float, cut: bool) -> Level:
+    """Return a level whose gaps are bridged after the guide; the ends of a cut are taken off."""
+    centre = guide.centre_at(z)
+    far = reach(segments, np.zeros(len(segments), dtype=np.int64), centre[None])[0]
+    skin = np.isfinite(far)
+    if cut:
+        skin = eroded(skin)
+        segments = segments[skin[bearing_bin(segments, centre)]]
+    low, high, share = guide.between(z)
+    whole = bridge(far, skin, guide.reach[low], guide.reach[high], np.full(BINS, share))
+    bridges = [np.empty((0, 2, 3))]
+    for run in gaps(skin):
+        line = np.concatenate([[(run[0] - 1) % BINS], run, [(run[-1] + 1) % BINS]])
+        line = line[np.isfinite(whole[line])]
+        points = places(whole[line], line, centre, z)
+        bridges.append(np.stack([points[:-1], points[1:]], axis=1))
+    return Level(z, segments, np.concatenate(bridges))
 
 
 def stable_level(mesh: Mesh, underbust_level: float) -> Level:
@@ -91,87 +164,6 @@ def stable_level(mesh: Mesh, underbust_level: float) -> Level:
     taper = (tape[4] - tape[8]) / 4.0
     calm = np.flatnonzero(fall <= taper + 4.0)
     return levels[int(calm[0]) if len(calm) else int(np.argmin(fall))]
-
-
-def _cut_levels(mesh: Mesh, z: Floats) -> tuple[Points, Indices, Indices]:
-    """Return the segments of all levels, the edges that their ends lie on, shape (s, 2), and their levels."""
-    height = mesh.vertices[:, 2][mesh.faces.T]
-    first = np.searchsorted(z, height.min(axis=0), side="right")
-    count = np.searchsorted(z, height.max(axis=0), side="right") - first
-    face = np.repeat(np.arange(len(mesh.faces)), count)
-    level = np.arange(len(face)) - np.repeat(np.cumsum(count) - count - first, count)
-    above = height[:, face] >= z[level]
-    lone = np.argmax(above == (above.sum(axis=0) == 1), axis=0)
-    corners = mesh.faces[face]
-    rows = np.arange(len(face))
-    tip = corners[rows, lone]
-    ends, ids = [], []
-    for turn in (1, 2):
-        other = corners[rows, (lone + turn) % 3]
-        low, high = np.minimum(tip, other), np.maximum(tip, other)
-        a, b = mesh.vertices[low], mesh.vertices[high]
-        ends.append(a + (b - a) * ((z[level] - a[:, 2]) / (b[:, 2] - a[:, 2]))[:, None])
-        ids.append((level * len(mesh.vertices) + low) * len(mesh.vertices) + high)
-    return np.stack(ends, axis=1), np.stack(ids, axis=1), level
-
-
-def _connected(ids: Indices) -> tuple[Indices, Flags]:
-    """Return the connected piece of each segment, and whether each piece closes."""
-    nodes, index = np.unique(ids, return_inverse=True)
-    index = index.reshape(ids.shape)
-    graph = sparse.coo_array((np.ones(len(ids)), (index[:, 0], index[:, 1])), shape=(len(nodes),) * 2)
-    count, label = connected_components(graph, directed=False)
-    loose = np.bincount(index.ravel(), minlength=len(nodes)) == 1
-    closed = np.bincount(label, weights=loose, minlength=count) == 0
-    return np.asarray(label[index[:, 0]], dtype=np.int64), closed
-
-
-@dataclass(frozen=True, eq=False)
-class _Pieces:
-    """Connected pieces of outline: their extent along x [mm], level and whether they close."""
-
-    low: Floats
-    high: Floats
-    level: Indices
-    closed: Flags
-
-
-def _describe(segments: Points, piece: Indices, level: Indices, closed: Flags) -> _Pieces:
-    order = np.argsort(piece, kind="stable")
-    start = np.searchsorted(piece[order], np.arange(len(closed)))
-    x = segments[order, :, 0]
-    low = np.minimum.reduceat(x.min(axis=1), start)
-    high = np.maximum.reduceat(x.max(axis=1), start)
-    return _Pieces(low, high, level[order[start]], closed)
-
-
-def _middle(pieces: _Pieces) -> float:
-    """Return x of the middle of the body: the median middle of the widest piece of each level [mm]."""
-    order = np.lexsort((pieces.high - pieces.low, pieces.level))
-    widest = order[np.append(np.diff(pieces.level[order]) > 0, True)]
-    return float(np.median(0.5 * (pieces.low + pieces.high)[widest]))
-
-
-def _rows_by_level(level: Indices, count: int) -> Iterator[Indices]:
-    order = np.argsort(level, kind="stable")
-    bounds = np.searchsorted(level[order], np.arange(count + 1))
-    return (order[a:b] for a, b in pairwise(bounds))
-
-
-def _trunk_pieces(pieces: _Pieces, rows: Indices, middle: float) -> Flags:
-    """Tell which pieces ``rows`` of one level are trunk."""
-    low, high = pieces.low[rows], pieces.high[rows]
-    centre = 0.5 * (low + high)
-    trunk = np.asarray((low <= middle) & (middle <= high))
-    while trunk.any():
-        left, right = low[trunk].min(), high[trunk].max()
-        inside = (left <= centre) & (centre <= right)
-        near = ~pieces.closed[rows] & (low <= right + GAP) & (high >= left - GAP)
-        more = trunk | inside | near
-        if np.array_equal(more, trunk):
-            break
-        trunk = more
-    return trunk
 
 
 @dataclass(frozen=True, eq=False)
@@ -246,5 +238,7 @@ def survey(mesh: Mesh, step: float = 5.0) -> Survey:
             lo[k], hi[k] = level.points.min(axis=0), level.points.max(axis=0)
     full = hi[:, 0] > lo[:, 0]
     middle = float(np.median(0.5 * (lo + hi)[full, 0])) if full.any() else 0.0
-    tape = np.array([hull_perimeter(level.segments.mean(axis=1)) for level in levels])
+    tape = np.array(
+        [hull_perimeter(np.concatenate([level.segments, level.bridges]).mean(axis=1)) for level in levels]
+    )
     return Survey(z, step, middle, 0.5 * (hi - lo)[:, 0], lo[:, 1], hi[:, 1], tape, samples, row)

@@ -55,7 +55,7 @@ def test_arms_are_left_out_however_near_they_hang():
 
 
 def test_what_hangs_in_front_of_the_trunk_is_measured_with_it():
-    breast = shifted(cylinder(30.0, 80.0), 0.0, -120.0, 0.0)
+    breast = shifted(cylinder(30.0, 80.0, 90.0), 0.0, -120.0, 0.0)
     body = together(cylinder(130.0), breast)
     alone = 2.0 * np.pi * 130.0
     assert girth_at(body, 0.0).tape_mm > alone + 10.0

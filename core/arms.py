@@ -1,0 +1,163 @@
+"""Where arms leave the trunk: outlines that belong to an arm, necks between the two, and shoulders."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import sparse
+from scipy.ndimage import minimum_filter
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial.distance import cdist
+
+from core.mesh import Flags, Floats, Indices, Points
+from core.outline import Pieces
+from core.sections import resample
+
+LIP = 110.0
+"""The lower lip of an overhanging breast is less high than this [mm], an arm in front is higher."""
+
+BROAD = 220.0
+"""What hangs in front of the body and is longer than this [mm] in its level is an arm."""
+
+SPACING = 5.0
+"""Distance of the points between which a neck is looked for [mm]."""
+
+STEP_OUT = 28.0
+"""Where the trunk gets wider on one side by so much from one level to the next, an arm joins it [mm]."""
+
+SLACK = 6.0
+"""So much wider than below the armpit may the trunk be above it, on each side [mm]."""
+
+
+def limbs(pieces: Pieces, main: Indices, z: Floats, middle: float) -> Flags:
+    """Tell which closed ``pieces`` belong to an arm, a hand or a leg, and not to an overhanging breast.
+
+    ``main``, shape (k,), is the piece of the trunk on each level at heights ``z`` [mm], -1 where there is
+    none. Pieces that lie over one another are one limb if one of them lies beside or behind the trunk,
+    crosses the middle or is long, or if they are many. Source: ours.
+    """
+    body = main[pieces.level]
+    free = pieces.closed & (body != np.arange(len(body)))
+    member = np.flatnonzero(free)
+    centre, box = pieces.centre, (pieces.low, pieces.high)
+    odd = free & ((body < 0) | beside(pieces, body, middle))
+    odd |= free & (np.linalg.norm(pieces.high - pieces.low, axis=1) > BROAD)
+    pairs = []
+    order = member[np.argsort(pieces.level[member], kind="stable")]
+    start = np.searchsorted(pieces.level[order], np.arange(len(z) + 1))
+    for k in range(len(z) - 1):
+        low, high = order[start[k] : start[k + 1]], order[start[k + 1] : start[min(k + 2, len(z))]]
+        if not len(low) or not len(high):
+            continue
+        a, b = np.repeat(low, len(high)), np.tile(high, len(low))
+        over = ((box[0][b] <= centre[a]) & (centre[a] <= box[1][b])).all(axis=1)
+        over |= ((box[0][a] <= centre[b]) & (centre[b] <= box[1][a])).all(axis=1)
+        pairs.append(np.stack([a[over], b[over]]))
+    ends = np.concatenate(pairs, axis=1) if pairs else np.empty((2, 0), dtype=np.int64)
+    count = len(body)
+    graph = sparse.coo_array((np.ones(ends.shape[1]), (ends[0], ends[1])), shape=(count, count))
+    total, label = connected_components(graph, directed=False)
+    bottom, top = np.full(total, np.inf), np.full(total, -np.inf)
+    np.minimum.at(bottom, label, z[pieces.level])
+    np.maximum.at(top, label, z[pieces.level])
+    bad = (top - bottom > LIP) | (np.bincount(label, weights=odd, minlength=total) > 0)
+    return np.asarray(free & bad[label])
+
+
+def beside(pieces: Pieces, body: Indices, middle: float) -> Flags:
+    """Tell which pieces lie beside or behind the trunk piece ``body`` of their level, or cross the middle."""
+    x, y = pieces.centre.T
+    own = pieces.centre[body, 1]
+    across = (pieces.low[:, 0] <= middle) & (middle <= pieces.high[:, 0])
+    return np.asarray((x < pieces.low[body, 0]) | (x > pieces.high[body, 0]) | (y > own) | across)
+
+
+def necks(ring: Points, centre: Points) -> list[tuple[float, float] | None]:
+    """Return where a left and a right arm join the trunk: two places along its outline [mm], or None.
+
+    ``ring``, shape (n, 2) [mm], is closed, its last point the first again. The arm lies between the places,
+    past the end of the ring if the first is the greater. A neck is the shortest way through the body between
+    two places of its outline that cuts off something at the side, as thick as an arm, and thicker than the
+    neck. Source: ours.
+    """
+    at = resample(ring, SPACING)[:-1]
+    count = len(at)
+    if count < 60:
+        return [None, None]
+    length = float(np.linalg.norm(np.diff(ring, axis=0), axis=1).sum())
+    away = cdist(at, at)
+    near = np.abs(np.arange(count)[:, None] - np.arange(count))
+    away[np.minimum(near, count - near) < 10] = np.inf
+    first, second = np.nonzero((away == minimum_filter(away, 7, mode="wrap")) & (away < 130.0))
+    doubled = np.concatenate([at, at])
+    found: list[list[tuple[float, float, float, float]]] = [[], []]
+    for i, j in zip(first.tolist(), second.tolist(), strict=True):
+        stop = j if j > i else j + count
+        lobe, rest = doubled[i : stop + 1], doubled[stop : i + count + 1]
+        if len(lobe) < len(rest):
+            side = 0 if lobe[:, 0].mean() > centre[0] else 1
+            area = _lobe(lobe, rest, centre, 1.0 - 2.0 * side)
+            if area > 0.0:
+                found[side].append((float(away[i, j]), area, length * i / count, length * j / count))
+    return [_best(side) for side in found]
+
+
+def _best(found: list[tuple[float, float, float, float]]) -> tuple[float, float] | None:
+    """Of necks (width, area cut off, two places) take the narrowest; of those as narrow the largest arm."""
+    if not found:
+        return None
+    least = min(found)[0]
+    return max((neck for neck in found if neck[0] < 1.15 * least), key=lambda neck: neck[1])[2:]
+
+
+def _lobe(lobe: Points, rest: Points, centre: Points, side: float) -> float:
+    """Return the area of what a chord cuts off [mm^2] if that can be an arm; else 0."""
+    out = lobe.mean(axis=0) - centre
+    if not 62.0 < np.degrees(np.arctan2(side * out[0], -out[1])) < 150.0:
+        return 0.0
+    area, trunk = _area(lobe), _area(rest)
+    if area * trunk <= 0.0 or not 1000.0 < abs(area) < 0.6 * abs(trunk):
+        return 0.0
+    chord = lobe[-1] - lobe[0]
+    thick = float(np.linalg.norm(chord))
+    along = chord / thick
+    depth, wide = np.abs((lobe - lobe[0]) @ (-along[1], along[0])).max(), np.ptp(lobe @ along)
+    far, width = side * (lobe[:, 0] - centre[0]), float((side * (rest[:, 0] - centre[0])).max())
+    fits = wide > 1.05 * thick and depth > 25.0 and thick < 0.8 * np.ptp(rest[:, 1])
+    return abs(area) if fits and far.mean() > 0.8 * width and far.max() > width + 12.0 else 0.0
+
+
+def _area(ring: Points) -> float:
+    x, y = (ring - ring[0]).T
+    return 0.5 * float(x[:-1] @ y[1:] - y[:-1] @ x[1:])
+
+
+def shoulder_clip(width: Floats, step: float) -> Floats:
+    """Return how wide the trunk may be on one side, shape (k,) [mm]; infinite where no arm is joined to it.
+
+    ``width``, shape (k,) [mm], is how wide it is, from below at this ``step`` [mm], NaN where that is
+    unknown. Where it jumps out, an arm has joined it without a neck, until it falls back. Source: ours.
+    """
+    clip = np.full(len(width), np.inf)
+    width, span = width.copy(), max(3, round(30.0 / step))
+    known = np.flatnonzero(np.isfinite(width))
+    at = span
+    while at < len(known) - 1:
+        own = float(np.median(width[known[at - span : at]]))
+        if width[known[at]] <= own + STEP_OUT:
+            at += 1
+            continue
+        if width[known[at + 1]] <= own + STEP_OUT - 4.0:
+            clip[known[at]] = own + SLACK
+            width[known[at]] = own
+            at += 1
+            continue
+        end = at
+        while end < len(known) and width[known[end]] > own + 15.0:
+            end += 1
+        after = known[end : end + span]
+        left = end < len(known) and width[known[end - 1]] > width[known[end]] + 20.0
+        last = float(np.median(width[after])) if left and len(after) else own
+        rows = np.arange(known[at], known[end] if end < len(known) else len(width))
+        clip[rows] = np.linspace(own, last, len(rows)) + SLACK
+        at = end + span
+    return clip

@@ -1,0 +1,209 @@
+"""Horizontal outlines of a mesh, many levels at once: their pieces, their polygons, their reach all round."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
+
+from core.mesh import Flags, Floats, Indices, Mesh, Points
+
+BINS = 120
+"""Directions in which the reach of an outline is told, 3 degrees apart."""
+
+BEARINGS = (np.arange(BINS) + 0.5) * (2.0 * np.pi / BINS) - np.pi
+"""Bearing of each direction [rad]: 0 is the front (-y), positive towards the left (+x)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """Connected pieces of outline: their box in the level [mm], their level, and whether they close."""
+
+    low: Points
+    high: Points
+    level: Indices
+    closed: Flags
+
+    @property
+    def centre(self) -> Points:
+        """Middle of each box, shape (p, 2) [mm]."""
+        return 0.5 * (self.low + self.high)
+
+    @property
+    def size(self) -> Floats:
+        """Area of each box, shape (p,) [mm^2]."""
+        return np.asarray(np.prod(self.high - self.low, axis=1))
+
+
+@dataclass(frozen=True, eq=False)
+class Outlines:
+    """Cuts of a mesh at heights ``z``, shape (k,): ``segments``, shape (s, 2, 3) [mm].
+
+    ``ids`` are the mesh edges that their ends lie on, shape (s, 2); ``level`` and ``piece`` tell where each
+    segment belongs.
+    """
+
+    z: Floats
+    segments: Points
+    ids: Indices
+    level: Indices
+    piece: Indices
+    pieces: Pieces
+
+    def rows(self) -> Iterator[Indices]:
+        """Yield the rows of the segments of each level."""
+        return _rows_by(self.level, len(self.z))
+
+    def piece_rows(self) -> Iterator[Indices]:
+        """Yield the pieces of each level."""
+        return _rows_by(self.pieces.level, len(self.z))
+
+
+def outlines(mesh: Mesh, z: Floats) -> Outlines:
+    """Cut ``mesh`` at ascending heights, shape (k,) [mm]. Source: ours."""
+    segments, ids, level = _cut_levels(mesh, z)
+    if len(segments) == 0:
+        none = np.empty((0, 2))
+        pieces = Pieces(none, none, np.empty(0, dtype=np.int64), np.empty(0, dtype=bool))
+        return Outlines(z, segments, ids, level, level, pieces)
+    piece, closed = _connected(ids)
+    return Outlines(z, segments, ids, level, piece, _describe(segments, piece, level, closed))
+
+
+def _cut_levels(mesh: Mesh, z: Floats) -> tuple[Points, Indices, Indices]:
+    """Return the segments of all levels, the edges that their ends lie on, shape (s, 2), and their levels."""
+    height = mesh.vertices[:, 2][mesh.faces.T]
+    first = np.searchsorted(z, height.min(axis=0), side="right")
+    count = np.searchsorted(z, height.max(axis=0), side="right") - first
+    face = np.repeat(np.arange(len(mesh.faces)), count)
+    level = np.arange(len(face)) - np.repeat(np.cumsum(count) - count - first, count)
+    above = height[:, face] >= z[level]
+    lone = np.argmax(above == (above.sum(axis=0) == 1), axis=0)
+    corners = mesh.faces[face]
+    rows = np.arange(len(face))
+    tip = corners[rows, lone]
+    ends, ids = [], []
+    for turn in (1, 2):
+        other = corners[rows, (lone + turn) % 3]
+        low, high = np.minimum(tip, other), np.maximum(tip, other)
+        a, b = mesh.vertices[low], mesh.vertices[high]
+        ends.append(a + (b - a) * ((z[level] - a[:, 2]) / (b[:, 2] - a[:, 2]))[:, None])
+        ids.append((level * len(mesh.vertices) + low) * len(mesh.vertices) + high)
+    return np.stack(ends, axis=1), np.stack(ids, axis=1), level
+
+
+def _connected(ids: Indices) -> tuple[Indices, Flags]:
+    """Return the connected piece of each segment, and whether each piece closes."""
+    nodes, index = np.unique(ids, return_inverse=True)
+    index = index.reshape(ids.shape)
+    graph = sparse.coo_array((np.ones(len(ids)), (index[:, 0], index[:, 1])), shape=(len(nodes),) * 2)
+    count, label = connected_components(graph, directed=False)
+    loose = np.bincount(index.ravel(), minlength=len(nodes)) == 1
+    closed = np.bincount(label, weights=loose, minlength=count) == 0
+    return np.asarray(label[index[:, 0]], dtype=np.int64), closed
+
+
+def _describe(segments: Points, piece: Indices, level: Indices, closed: Flags) -> Pieces:
+    order = np.argsort(piece, kind="stable")
+    start = np.searchsorted(piece[order], np.arange(len(closed)))
+    flat = segments[order, :, :2]
+    low = np.minimum.reduceat(flat.min(axis=1), start, axis=0)
+    high = np.maximum.reduceat(flat.max(axis=1), start, axis=0)
+    return Pieces(low, high, level[order[start]], closed)
+
+
+def _rows_by(group: Indices, count: int) -> Iterator[Indices]:
+    order = np.argsort(group, kind="stable")
+    bounds = np.searchsorted(group[order], np.arange(count + 1))
+    return (order[a:b] for a, b in pairwise(bounds))
+
+
+def ring(segments: Points, ids: Indices) -> tuple[Indices, Points]:
+    """Return the rows of segments in order round an outline, shape (r,), and where each begins, (r, 2) [mm].
+
+    ``segments``, shape (s, 2, 3) [mm], with ``ids`` of their ends, shape (s, 2). Pieces that are open are
+    joined, the nearest ends first; of closed ones only the longest counts. Source: ours.
+    """
+    paths = sorted(_paths(ids), key=len, reverse=True)
+    closed = [path for path in paths if _is_closed(ids, path)]
+    if closed and len(closed[0]) >= len(paths[0]):
+        whole = closed[0]
+    else:
+        whole = _joined(segments, [path for path in paths if not _is_closed(ids, path)])
+    ends = np.array(whole)
+    return ends >> 1, segments[ends >> 1, ends & 1, :2]
+
+
+def _paths(ids: Indices) -> list[list[int]]:
+    """Return chains of segment ends: each is where a segment (twice its row, plus its end) is entered."""
+    flat = ids.ravel()
+    order = np.argsort(flat, kind="stable")
+    same = np.flatnonzero(flat[order[1:]] == flat[order[:-1]])
+    partner = np.full(len(flat), -1)
+    partner[order[same]], partner[order[same + 1]] = order[same + 1], order[same]
+    after = partner.tolist()
+    seen = [False] * len(ids)
+    paths = []
+    for start in [*np.flatnonzero(partner < 0).tolist(), *range(0, len(flat), 2)]:
+        path, at = [], start
+        while at >= 0 and not seen[at >> 1]:
+            seen[at >> 1] = True
+            path.append(at)
+            at = after[at ^ 1]
+        if path:
+            paths.append(path)
+    return paths
+
+
+def _is_closed(ids: Indices, path: list[int]) -> bool:
+    first, last = path[0], path[-1] ^ 1
+    return len(path) > 2 and bool(ids[first >> 1, first & 1] == ids[last >> 1, last & 1])
+
+
+def _joined(segments: Points, paths: list[list[int]]) -> list[int]:
+    """Join open chains, longest first, each time with the nearest end of the others."""
+    whole, rest = paths[0], paths[1:]
+    while rest:
+        end = segments[whole[-1] >> 1, 1 - (whole[-1] & 1)]
+        ways = [way for path in rest for way in (path, [at ^ 1 for at in reversed(path)])]
+        away = [float(((segments[way[0] >> 1, way[0] & 1] - end) ** 2).sum()) for way in ways]
+        nearest = int(np.argmin(away))
+        whole = whole + ways[nearest]
+        del rest[nearest // 2]
+    return whole
+
+
+def reach(segments: Points, level: Indices, centre: Points) -> Floats:
+    """Return how far outlines reach from a centre in each direction, shape (k, BINS) [mm]; NaN where open.
+
+    ``segments``, shape (s, 2, 3), lie on levels ``level``, shape (s,), round ``centre``, shape (k, 2) [mm].
+    """
+    result = np.full((len(centre), BINS), -np.inf)
+    a, b = (segments[:, k, :2] - centre[level] for k in (0, 1))
+    first, second = (np.arctan2(p[:, 0], -p[:, 1]) for p in (a, b))
+    turn = np.mod(second - first + np.pi, 2.0 * np.pi) - np.pi
+    start, step = np.where(turn >= 0.0, first, first + turn), np.abs(turn)
+    width = 2.0 * np.pi / BINS
+    low = np.ceil((start + np.pi) / width - 0.5).astype(np.int64)
+    count = np.maximum(np.floor((start + step + np.pi) / width - 0.5).astype(np.int64) - low + 1, 0)
+    row = np.repeat(np.arange(len(segments)), count)
+    bin_ = np.arange(len(row)) - np.repeat(np.cumsum(count) - count - low, count)
+    bearing = (bin_ + 0.5) * width - np.pi
+    out = np.stack([np.sin(bearing), -np.cos(bearing)], axis=1)
+    along = b[row] - a[row]
+    cross = out[:, 0] * along[:, 1] - out[:, 1] * along[:, 0]
+    distance = (a[row, 0] * along[:, 1] - a[row, 1] * along[:, 0]) / np.where(cross == 0.0, np.nan, cross)
+    good = np.isfinite(distance)
+    np.maximum.at(result, (level[row[good]], bin_[good] % BINS), distance[good])
+    return np.where(np.isfinite(result), result, np.nan)
+
+
+def places(radius: Floats, bins: Indices, centre: Points, z: float) -> Points:
+    """Return the points at ``radius``, shape (b,) [mm], in directions ``bins`` from a centre, (b, 3) [mm]."""
+    bearing = BEARINGS[bins]
+    x, y = centre[0] + radius * np.sin(bearing), centre[1] - radius * np.cos(bearing)
+    return np.stack([x, y, np.full(len(bins), z)], axis=1)
