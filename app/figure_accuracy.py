@@ -29,6 +29,9 @@ DOTS = 100  # per inch
 TALL, WIDE = 320, {"front": 232, "left": 148}
 """Height and widths of the views of a body [pixels]."""
 
+BODY = (450.0, 350.0, 1200.0)
+"""How far skin lies from the middle of the landmarks at most: to the side, in depth, in height [mm]."""
+
 SAMPLES = 300_000
 ALONG = {"front": (0, 1, 1.0), "left": (1, 0, -1.0)}
 """Per view: the axis to the right, the one into the picture, and its sign: whether it grows into it."""
@@ -76,12 +79,12 @@ def _draw(axes: Axes, case: Case, folder: Path) -> None:
         return
     skin = vertices @ case.to_mm[:3, :3].T + case.to_mm[:3, 3]
     samples = _samples(skin, faces)
-    low, high = np.percentile(samples, (0.5, 99.5), axis=0)
+    low, high = np.percentile(samples[_about(samples, case)], (0.5, 99.5), axis=0)
     width, depth, height = high - low
     middle, size = 0.5 * (low + high), max(height / TALL, width / WIDE["front"], depth / WIDE["left"])
     images, shift = [], 0
     for view in ALONG:
-        images.append(_picture(samples, middle, 1.05 * size, view))
+        images.append(_picture(samples, middle, 1.05 * size, view, 3 if len(faces) else 7))
         _landmarks(axes, case, view, middle, 1.05 * size, shift)
         shift += WIDE[view]
     axes.imshow(np.concatenate(images, axis=1), cmap="gray", vmin=0.0, vmax=1.0, aspect="equal")
@@ -120,6 +123,14 @@ def _samples(vertices: Points, faces: Faces) -> Points:
     return np.asarray(a[row] + u * (b - a)[row] + v * (c - a)[row])
 
 
+def _about(samples: Points, case: Case) -> npt.NDArray[np.bool_]:
+    """Tell which samples lie about the landmarks: not the far ends of what the body stands on."""
+    if not case.true:
+        return np.ones(len(samples), dtype=bool)
+    away = np.abs(samples - np.mean(list(case.true.values()), axis=0))
+    return np.asarray((away < BODY).all(axis=1))
+
+
 def _pixels(points: Points, middle: Points, size: float, view: str) -> Floats:
     """Return where points, shape (n, 3) [mm], lie in a view, shape (n, 2) [pixels right, down]."""
     right, _, _ = ALONG[view]
@@ -127,14 +138,17 @@ def _pixels(points: Points, middle: Points, size: float, view: str) -> Floats:
     return np.stack([across, 0.5 * TALL - (points[:, 2] - middle[2]) / size], axis=1)
 
 
-def _picture(samples: Points, middle: Points, size: float, view: str) -> npt.NDArray[np.float64]:
-    """Return a shaded picture of the skin that is in front; ``size`` is that of a pixel [mm]."""
+def _picture(samples: Points, middle: Points, size: float, view: str, spot: int) -> npt.NDArray[np.float64]:
+    """Return a shaded picture of the skin that is in front; ``size`` is that of a pixel [mm].
+
+    A sample is ``spot`` pixels wide, so that no skin behind is seen between two.
+    """
     _, into, sign = ALONG[view]
     at = np.floor(_pixels(samples, middle, size, view)).astype(np.int64)
     inside = ((at >= 0) & (at < (WIDE[view], TALL))).all(axis=1)
     depth = np.full((TALL, WIDE[view]), np.inf)
     np.minimum.at(depth, (at[inside, 1], at[inside, 0]), sign * samples[inside, into])
-    depth = grey_erosion(depth, size=(3, 3))  # no skin behind is seen between two samples
+    depth = grey_erosion(depth, size=(spot, spot))
     seen = np.isfinite(depth)
     weight = gaussian_filter(seen.astype(float), 0.8)
     smooth = gaussian_filter(np.where(seen, depth, 0.0), 0.8) / np.where(weight > 0.0, weight, 1.0)

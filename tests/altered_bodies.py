@@ -174,17 +174,27 @@ def missing(side: str) -> Alteration:
     return alter
 
 
-def smooth_nipples(
-    body: KnownBody, radius: float = 24.0, rounds: int = 60, *, sides: tuple[str, ...] = SIDES
-) -> KnownBody:
-    """Smooth the relief of the nipples away within ``radius`` [mm]."""
-    places = [body.points[f"nipple_{side}"] for side in sides if f"nipple_{side}" in body.points]
-    v = body.mesh.vertices
-    weight = np.zeros(len(v))
-    for nipple in places:
+def smooth_nipples(body: KnownBody, radius: float = 24.0, *, sides: tuple[str, ...] = SIDES) -> KnownBody:
+    """Take the relief of the nipples away: there the skin goes on as it curves ``radius`` [mm] around."""
+    v = body.mesh.vertices.copy()
+    for nipple in [body.points[f"nipple_{side}"] for side in sides if side in body.sides]:
         away = np.linalg.norm(v - nipple, axis=1)
-        weight = np.maximum(weight, 1.0 - smooth_step(away, 0.6 * radius, radius))
-    return replace(_smoothed(body, weight, rounds), flags={**body.flags, "nipple_relief": False})
+        near = np.flatnonzero(away < 1.4 * radius)
+        ring = near[away[near] > 0.6 * radius]
+        out = body.mesh.vertex_normals[ring].mean(axis=0)
+        _, _, (across, along, out) = np.linalg.svd(np.eye(3) - np.outer(out, out) / (out @ out))
+        places, around = (_cubic((v[rows] - nipple) @ np.stack([across, along]).T) for rows in (near, ring))
+        height = (v - nipple) @ out
+        curved = np.linalg.lstsq(around, height[ring], rcond=None)[0]
+        share = 1.0 - smooth_step(away[near], 0.6 * radius, 0.9 * radius)
+        v[near] += np.outer(share * (places @ curved - height[near]), out)
+    return replace(body, mesh=body.mesh.moved(v), flags={**body.flags, "nipple_relief": False})
+
+
+def _cubic(at: Floats) -> Floats:
+    """Return the powers up to the third of places, shape (n, 2), as columns."""
+    x, y = at.T / 20.0
+    return np.stack([x**k * y**m for k in range(4) for m in range(4 - k)], axis=1)
 
 
 def _smoothed(body: KnownBody, weight: Floats, rounds: int, back: float = -0.61) -> KnownBody:
@@ -202,7 +212,7 @@ def _smoothed(body: KnownBody, weight: Floats, rounds: int, back: float = -0.61)
 
 def in_a_bra(body: KnownBody) -> KnownBody:
     """Form the breasts as a bra does: no nipples, and cloth from breast to breast."""
-    body = smooth_nipples(body, 40.0, 250)
+    body = smooth_nipples(body, 32.0)
     bust, underbust = levels(body.points)
     front = body.points["front_mid_bust"][1]
     tip = float(np.mean([body.points[f"nipple_{side}"][1] for side in body.sides]))
