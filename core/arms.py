@@ -3,20 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy import sparse
 from scipy.ndimage import minimum_filter
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial.distance import cdist
 
-from core.mesh import Flags, Floats, Indices, Points
-from core.outline import Pieces
+from core.mesh import Floats, Points
 from core.sections import resample
-
-LIP = 110.0
-"""The lower lip of an overhanging breast is less high than this [mm], an arm in front is higher."""
-
-BROAD = 220.0
-"""What hangs in front of the body and is longer than this [mm] in its level is an arm."""
 
 SPACING = 5.0
 """Distance of the points between which a neck is looked for [mm]."""
@@ -26,49 +17,6 @@ STEP_OUT = 28.0
 
 SLACK = 6.0
 """So much wider than below the armpit may the trunk be above it, on each side [mm]."""
-
-
-def limbs(pieces: Pieces, main: Indices, z: Floats, middle: float) -> Flags:
-    """Tell which closed ``pieces`` belong to an arm, a hand or a leg, and not to an overhanging breast.
-
-    ``main``, shape (k,), is the piece of the trunk on each level at heights ``z`` [mm], -1 where there is
-    none. Pieces that lie over one another are one limb if one of them lies beside or behind the trunk,
-    crosses the middle or is long, or if they are many. Source: ours.
-    """
-    body = main[pieces.level]
-    free = pieces.closed & (body != np.arange(len(body)))
-    member = np.flatnonzero(free)
-    centre, box = pieces.centre, (pieces.low, pieces.high)
-    odd = free & ((body < 0) | beside(pieces, body, middle))
-    odd |= free & (np.linalg.norm(pieces.high - pieces.low, axis=1) > BROAD)
-    pairs = []
-    order = member[np.argsort(pieces.level[member], kind="stable")]
-    start = np.searchsorted(pieces.level[order], np.arange(len(z) + 1))
-    for k in range(len(z) - 1):
-        low, high = order[start[k] : start[k + 1]], order[start[k + 1] : start[min(k + 2, len(z))]]
-        if not len(low) or not len(high):
-            continue
-        a, b = np.repeat(low, len(high)), np.tile(high, len(low))
-        over = ((box[0][b] <= centre[a]) & (centre[a] <= box[1][b])).all(axis=1)
-        over |= ((box[0][a] <= centre[b]) & (centre[b] <= box[1][a])).all(axis=1)
-        pairs.append(np.stack([a[over], b[over]]))
-    ends = np.concatenate(pairs, axis=1) if pairs else np.empty((2, 0), dtype=np.int64)
-    count = len(body)
-    graph = sparse.coo_array((np.ones(ends.shape[1]), (ends[0], ends[1])), shape=(count, count))
-    total, label = connected_components(graph, directed=False)
-    bottom, top = np.full(total, np.inf), np.full(total, -np.inf)
-    np.minimum.at(bottom, label, z[pieces.level])
-    np.maximum.at(top, label, z[pieces.level])
-    bad = (top - bottom > LIP) | (np.bincount(label, weights=odd, minlength=total) > 0)
-    return np.asarray(free & bad[label])
-
-
-def beside(pieces: Pieces, body: Indices, middle: float) -> Flags:
-    """Tell which pieces lie beside or behind the trunk piece ``body`` of their level, or cross the middle."""
-    x, y = pieces.centre.T
-    own = pieces.centre[body, 1]
-    across = (pieces.low[:, 0] <= middle) & (middle <= pieces.high[:, 0])
-    return np.asarray((x < pieces.low[body, 0]) | (x > pieces.high[body, 0]) | (y > own) | across)
 
 
 def necks(ring: Points, centre: Points) -> list[tuple[float, float] | None]:

@@ -9,23 +9,14 @@ import numpy.typing as npt
 from scipy.ndimage import median_filter
 from scipy.spatial import ConvexHull
 
-from core.arms import SLACK, beside
+from core.arms import SLACK
 from core.errors import LandmarkError
+from core.gaps import bearing_bin, bridge, eroded, gaps
 from core.mesh import Flags, Floats, Indices, Mesh, Points
 from core.outline import BINS, Outlines, outlines, places, reach
 from core.sections import hull_perimeter
-from core.trunk_guide import (
-    SIDES,
-    Guide,
-    bearing_bin,
-    bridge,
-    cut_off,
-    eroded,
-    gaps,
-    guide_of,
-    kept_pieces,
-    main_pieces,
-)
+from core.trunk_guide import SIDES, Guide, cut_off, guide_of
+from core.trunk_pieces import beside, kept_pieces, main_pieces, split_pieces
 
 STABLE_STEP = 5.0
 """Step of the search for the stable under-bust level [mm]."""
@@ -90,7 +81,8 @@ def trunk_levels(mesh: Mesh, heights: npt.ArrayLike, *, arms: bool = False) -> l
         return [Level(float(height), np.empty((0, 2, 3))) for height in z]
     near = np.array([guide.between(float(height))[:2] for height in z])
     main = np.where(guide.shown[near].any(axis=1), main_pieces(cuts, guide.middle), -1)
-    kept, loose = kept_pieces(cuts, main, _limbs(cuts, main, guide, near))
+    main = split_pieces(cuts, main, guide.sides[near[:, 0]])
+    kept, loose = kept_pieces(cuts, main, _limbs(cuts, main, guide, near), guide.sides[near[:, 0]])
     levels = []
     for k, rows in enumerate(cuts.rows()):
         own = rows[kept[cuts.piece[rows]]]
@@ -141,7 +133,9 @@ def _closed(segments: Points, guide: Guide, z: float, cut: bool) -> Level:
         skin = eroded(skin)
         segments = segments[skin[bearing_bin(segments, centre)]]
     low, high, share = guide.between(z)
-    whole = bridge(far, skin, guide.reach[low], guide.reach[high], np.full(BINS, share))
+    below, above = guide.reach[[low, high]]
+    shape = np.where(np.isnan(above), below, below + share * (above - below))
+    whole = bridge(far, skin, np.where(np.isnan(below), above, shape), cut)
     bridges = [np.empty((0, 2, 3))]
     for run in gaps(skin):
         line = np.concatenate([[(run[0] - 1) % BINS], run, [(run[-1] + 1) % BINS]])
