@@ -139,15 +139,13 @@ def detect(options: argparse.Namespace) -> int:
     """Find the landmarks of a scan and print them."""
     from app.found import found_text
     from core.detect import detection
-    from core.doubts import doubts
     from core.pipeline import find, read_body
 
     design = design_of(options.input, options)
     _, body = read_body(design.scan)
-    landmarks = find(body, design.placed)
-    found = detection(body, landmarks)
+    found = detection(body, find(body, design.placed))
     print(json.dumps(found, indent=1) if options.json else found_text(found), flush=True)
-    _warn(doubts(body, landmarks))
+    _warn(found["warnings"])
     return SETTLED
 
 

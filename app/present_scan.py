@@ -106,7 +106,6 @@ def _notes(body: Body) -> tuple[str, ...]:
     tilt = tilt_of(body.pose)
     return (
         *([tr("It stands askew in its file, by {angle}°.").format(angle=number(tilt, 0))] * (tilt > SLANTED)),
-        *([tr("The file holds points only: a skin was laid through them.")] * body.rebuilt),
         *(
             [tr("It is noisy: what is measured is smoothed, what is shown is not.")]
             * (body.calm is not body.mesh)
@@ -126,7 +125,7 @@ def work_words(what: str) -> str:
         "read scan": tr("Reading the scan"),
         "reading": tr("Reading the scan"),
         "repairing": tr("Repairing the scan"),
-        "rebuilding": tr("Laying a skin through the points"),
+        "rebuilding the surface": tr("Laying a skin through the points"),
         "finding up and front": tr("Finding up and front"),
         "find landmarks": tr("Finding the landmarks"),
         "fit control mesh": tr("Fitting the control mesh"),

@@ -7,8 +7,8 @@ from core.scan_file import FORMATS
 PACKED = ".gz"
 """Any scan may be packed."""
 
-KINDS = ", ".join(kind.upper() for kind in FORMATS)
+KINDS = ", ".join(kind.upper() for kind in FORMATS if f".{kind}" != PACKED)
 """The formats in a row: PLY, OBJ and so on."""
 
-PATTERNS = " ".join(f"*.{kind}{end}" for end in ("", PACKED) for kind in FORMATS)
+PATTERNS = " ".join(f"*.{kind}" for kind in FORMATS)
 """What their names look like."""

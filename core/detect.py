@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from core.body import Body
+from core.doubts import doubts
 from core.landmark import Landmarks
 from core.landmarks import find_landmarks
 from core.measure import girths
@@ -43,4 +44,5 @@ def detection(body: Body, landmarks: Landmarks | None = None) -> dict[str, Any]:
         "sure": body.pose.sure,
         "reason": body.pose.reason,
         "repairs": list(body.repairs),
+        "warnings": doubts(body, landmarks),
     }

@@ -87,6 +87,14 @@ class Stages:
 SHARES = {"read scan": 0.5, "find landmarks": 0.1, "fit control mesh": 0.1, "bind body": 0.1}
 """What part of the time of a build the slow stages take, roughly."""
 
+READING = {
+    "reading": (0.0, 0.3),
+    "rebuilding the surface": (0.3, 0.6),
+    "repairing": (0.6, 0.8),
+    "finding up and front": (0.8, 1.0),
+}
+"""Where each part of the reading of a scan begins and ends, as shares of its time, roughly."""
+
 
 class UnsureError(LandmarkError):
     """No bust was found, on a ``body`` of which it is not certain how it stands: ask which way it does."""
@@ -123,7 +131,8 @@ class _Stager:
 
     def inside(self, what: str, share: float) -> None:
         """Hear how far the reading of the scan is, which comes first."""
-        self._progress(what, SHARES["read scan"] * share)
+        start, end = READING.get(what, (0.0, 1.0))
+        self._progress(what, SHARES["read scan"] * (start + share * (end - start)))
 
 
 def _same(old: tuple[Any, ...], new: tuple[Any, ...]) -> bool:
