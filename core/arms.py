@@ -50,11 +50,11 @@ def necks(ring: Points, centre: Points) -> list[tuple[float, float] | None]:
 
 
 def _best(found: list[tuple[float, float, float, float]]) -> tuple[float, float] | None:
-    """Of necks (width, area cut off, two places) take the narrowest; of those as narrow the largest arm."""
+    """Of necks (width, area cut off, two places) nearly as narrow as the narrowest return the inmost."""
     if not found:
         return None
     least = min(found)[0]
-    return max((neck for neck in found if neck[0] < 1.15 * least), key=lambda neck: neck[1])[2:]
+    return max((neck for neck in found if neck[0] < 1.6 * least), key=lambda neck: neck[1])[2:]
 
 
 def _lobe(lobe: Points, rest: Points, centre: Points, side: float) -> float:

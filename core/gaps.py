@@ -10,6 +10,9 @@ from core.outline import BINS
 BRIDGE = 150.0
 """What is missing on a level is taken from levels not farther away than this [mm]."""
 
+SIDE = 75.0
+"""The side of a trunk is not rounder than a circle of this radius [mm]."""
+
 WIDEST = 2.8
 """A gap that no level near by shows is closed straight if it is no wider than this [rad]."""
 
@@ -37,13 +40,16 @@ def bridge(far: Floats, skin: Flags, shape: Floats, cut: bool) -> Floats:
         ends = shape[[(run[0] - 1) % BINS, (run[-1] + 1) % BINS]]
         t = np.arange(1, len(run) + 1) / (len(run) + 1)
         turn = (len(run) + 1) * 2.0 * np.pi / BINS
+        straight = np.full(len(run), np.nan)
+        if turn < WIDEST:
+            straight = first * np.sin(t * turn) + last * np.sin((1.0 - t) * turn)
+            straight = first * last * np.sin(turn) / straight
+        result[run] = straight
         if not (np.isnan(shape[run]).any() or np.isnan(ends).any()):
             result[run] = shape[run] + (1.0 - t) * (first - ends[0]) + t * (last - ends[1])
-        elif turn < WIDEST:
-            straight = first * np.sin(t * turn) + last * np.sin((1.0 - t) * turn)
-            result[run] = first * last * np.sin(turn) / straight
-        else:
-            result[run] = np.nan
+        if cut:
+            chord = first**2 + last**2 - 2.0 * first * last * np.cos(turn)
+            result[run] = np.fmin(result[run], straight + chord / (8.0 * SIDE))
     return np.where(skin | np.isnan(round_), result, 0.5 * (result + round_))
 
 

@@ -177,17 +177,17 @@ def _joined(segments: Points, paths: list[list[int]]) -> list[int]:
     return whole
 
 
-def reach(segments: Points, level: Indices, centre: Points) -> Floats:
-    """Return how far outlines reach from a centre in each direction, shape (k, BINS) [mm]; NaN where open.
+def reach(segments: Points, level: Indices, centre: Points, bins: int = BINS) -> Floats:
+    """Return how far outlines reach from a centre in each direction, shape (k, bins) [mm]; NaN where open.
 
     ``segments``, shape (s, 2, 3), lie on levels ``level``, shape (s,), round ``centre``, shape (k, 2) [mm].
     """
-    result = np.full((len(centre), BINS), -np.inf)
+    result = np.full((len(centre), bins), -np.inf)
     a, b = (segments[:, k, :2] - centre[level] for k in (0, 1))
     first, second = (np.arctan2(p[:, 0], -p[:, 1]) for p in (a, b))
     turn = np.mod(second - first + np.pi, 2.0 * np.pi) - np.pi
     start, step = np.where(turn >= 0.0, first, first + turn), np.abs(turn)
-    width = 2.0 * np.pi / BINS
+    width = 2.0 * np.pi / bins
     low = np.ceil((start + np.pi) / width - 0.5).astype(np.int64)
     count = np.maximum(np.floor((start + step + np.pi) / width - 0.5).astype(np.int64) - low + 1, 0)
     row = np.repeat(np.arange(len(segments)), count)
@@ -198,7 +198,7 @@ def reach(segments: Points, level: Indices, centre: Points) -> Floats:
     cross = out[:, 0] * along[:, 1] - out[:, 1] * along[:, 0]
     distance = (a[row, 0] * along[:, 1] - a[row, 1] * along[:, 0]) / np.where(cross == 0.0, np.nan, cross)
     good = np.isfinite(distance)
-    np.maximum.at(result, (level[row[good]], bin_[good] % BINS), distance[good])
+    np.maximum.at(result, (level[row[good]], bin_[good] % bins), distance[good])
     return np.where(np.isfinite(result), result, np.nan)
 
 

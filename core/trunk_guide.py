@@ -101,7 +101,10 @@ def guide_of(mesh: Mesh) -> Guide:
     skin[~shown] = False
     skin[cut.any(axis=1)] = eroded(skin[cut.any(axis=1)])
     boxes = np.stack([cuts.pieces.low[limb], cuts.pieces.high[limb]], axis=1)
-    whole, limb_level = bridged_levels(far, skin, np.asarray(cut.any(axis=1)), cuts.z), cuts.pieces.level[limb]
+    whole, limb_level = (
+        bridged_levels(far, skin, np.asarray(cut.any(axis=1)), cuts.z),
+        cuts.pieces.level[limb],
+    )
     return Guide(cuts.z, middle, centre, whole, skin, clip, joints, shown, boxes, limb_level, sides)
 
 
