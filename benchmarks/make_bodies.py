@@ -1,9 +1,10 @@
 """Harder bodies with known landmarks, made of clean ones: other shapes, worse scans, other axes and units.
 
 Run: python benchmarks/make_bodies.py SRC OUT [--seed N] [--rounds K]. SRC holds truth.json and the clean
-bodies that it names; OUT gets one file for each of 60 kinds of shape and damage in each round (2 rounds: 120
-files), and a truth.json of the same form. The kinds are always the same; which body, how much, and how it
-stands in its file comes from the seed. ``busk accuracy OUT`` then tells how well the landmarks are found.
+bodies that it names; OUT gets one file for each of 60 kinds of shape and damage, and 8 things that are no
+upper body, in each round (2 rounds: 136 files), and a truth.json of the same form. The kinds are always the
+same; which body, how much, and how it stands in its file comes from the seed. ``busk accuracy OUT`` then
+tells how well the landmarks are found.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import argparse
 import json
 import sys
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +28,7 @@ from altered_bodies import Alteration, altered  # noqa: E402
 from body_truth import KnownBody, true_girths  # noqa: E402
 from worn_scans import Scan, Standing  # noqa: E402
 
-from core.mesh import Mesh  # noqa: E402
+from core.mesh import Mesh, Points  # noqa: E402
 
 Rng = np.random.Generator
 
@@ -101,6 +103,37 @@ DAMAGES: dict[str, Damage] = {
 }
 
 
+def _solid(kind: str) -> Callable[[KnownBody], Scan]:
+    make_it = {
+        "box": lambda: trimesh.creation.box((300.0, 200.0, 500.0)).subdivide().subdivide().subdivide(),
+        "ball": lambda: trimesh.creation.icosphere(5, 180.0),
+        "cylinder": lambda: trimesh.creation.cylinder(130.0, 500.0).subdivide().subdivide(),
+    }[kind]
+    return lambda body: (np.asarray(make_it().vertices), np.asarray(make_it().faces))
+
+
+def _piece(keep: Callable[[Points, float], np.ndarray]) -> Callable[[KnownBody], Scan]:
+    def cut_out(body: KnownBody) -> Scan:
+        bust = body.points["front_mid_bust"][2]
+        mesh = shape.part(body, lambda v: keep(v, bust)).mesh
+        return mesh.vertices, mesh.faces
+
+    return cut_out
+
+
+NO_BODIES: dict[str, Callable[[KnownBody], Scan]] = {
+    "box": _solid("box"),
+    "ball": _solid("ball"),
+    "cylinder": _solid("cylinder"),
+    "belly": _piece(lambda v, bust: v[:, 2] < bust - 110.0),
+    "abovebust": _piece(lambda v, bust: v[:, 2] > bust + 60.0),
+    "lefthalf": _piece(lambda v, bust: v[:, 0] > 0.0),
+    "backhalf": _piece(lambda v, bust: v[:, 1] > -80.0),
+    "arm": _piece(lambda v, bust: (v[:, 0] > 190.0) & (v[:, 2] > bust - 60.0)),
+}
+"""What holds no bust that could be measured: it has to be refused."""
+
+
 def plan() -> list[tuple[str, str, bool]]:
     """Return the 60 kinds of a round: names of shape and damage ("" for none), and whether it is tilted."""
     shapes, damages = list(SHAPES), list(DAMAGES)
@@ -158,31 +191,52 @@ def entry(body: KnownBody, stand: Standing, scan: Scan, about: dict[str, Any]) -
     }
 
 
+def a_body(
+    bodies: dict[str, KnownBody], kind: tuple[str, str, bool], rng: Rng
+) -> tuple[Scan, dict[str, Any]]:
+    """Return a file's skin and what is known of it: a body of some shape, damage and standing."""
+    form, damage, tilted = kind
+    name = sorted(bodies)[int(rng.integers(len(bodies)))]
+    body = altered(bodies[name], *(SHAPES[form](rng) if form else []))
+    scan: Scan = (body.mesh.vertices, body.mesh.faces)
+    if damage:
+        scan = DAMAGES[damage](scan, rng, body)
+    stand = standing(rng, tilted)
+    tilt = f"tilt{stand.tilt:.0f}" if tilted else ""
+    far = "far" if np.linalg.norm(stand.shift) > FAR else ""
+    kinds = [word for word in (form, damage, "tilt" if tilted else "", far) if word]
+    label = "_".join(word for word in (name, form, damage, tilt, stand.unit) if word)
+    about = {"label": label, "body": name, "note": " + ".join(kinds), "kinds": kinds}
+    return _placed(scan, stand), entry(body, stand, scan, about)
+
+
+def no_body(bodies: dict[str, KnownBody], kind: str, rng: Rng) -> tuple[Scan, dict[str, Any]]:
+    """Return the skin of something that has to be refused, and that this is so."""
+    scan = NO_BODIES[kind](bodies[sorted(bodies)[int(rng.integers(len(bodies)))]])
+    stand = standing(rng, tilted=False)
+    about = {"label": f"no_{kind}_{stand.unit}", "refuse": True, "kinds": ["no body", kind]}
+    return _placed(scan, stand), {**about, "unit": stand.unit, "canonical_to_file": stand.matrix.tolist()}
+
+
+def _placed(scan: Scan, stand: Standing) -> Scan:
+    return scan[0] @ stand.matrix[:3, :3].T + stand.matrix[:3, 3], scan[1]
+
+
 def make(source: Path, out: Path, seed: int, rounds: int = 2) -> int:
     """Write the files and their truth; return how many there are."""
     bodies = clean_bodies(source)
     out.mkdir(parents=True, exist_ok=True)
-    names, scans = sorted(bodies), {}
+    scans = {}
     for turn in range(rounds):
-        for number, (form, damage, tilted) in enumerate(plan()):
-            rng = np.random.default_rng([seed, turn, number])
-            name = names[int(rng.integers(len(names)))]
-            body = altered(bodies[name], *(SHAPES[form](rng) if form else []))
-            scan: Scan = (body.mesh.vertices, body.mesh.faces)
-            if damage:
-                scan = DAMAGES[damage](scan, rng, body)
-            stand = standing(rng, tilted)
-            tilt = f"tilt{stand.tilt:.0f}" if tilted else ""
-            label = "_".join(word for word in (name, form, damage, tilt, stand.unit, f"{turn}") if word)
-            file = f"{label}.{'stl' if damage == 'soup' else 'ply'}"
-            turn_to = stand.matrix
-            placed = scan[0] @ turn_to[:3, :3].T + turn_to[:3, 3]
-            write = worn.stl_bytes if damage == "soup" else worn.ply_bytes
-            (out / file).write_bytes(write((placed, scan[1])))
-            far = "far" if np.linalg.norm(stand.shift) > FAR else ""
-            kinds = [word for word in (form, damage, "tilt" if tilted else "", far) if word]
-            about = {"file": file, "body": name, "note": " + ".join(kinds), "kinds": kinds}
-            scans[label] = entry(body, stand, scan, about)
+        works = [partial(a_body, bodies, kind) for kind in plan()]
+        works += [partial(no_body, bodies, kind) for kind in NO_BODIES]
+        for number, work in enumerate(works):
+            scan, known = work(np.random.default_rng([seed, turn, number]))
+            label = f"{known.pop('label')}_{turn}"
+            soup = "soup" in known["kinds"]
+            known["file"] = f"{label}.{'stl' if soup else 'ply'}"
+            (out / known["file"]).write_bytes((worn.stl_bytes if soup else worn.ply_bytes)(scan))
+            scans[label] = known
     truth = {"frame": "mm, Z up, subject faces -Y, +X = left of subject", "bodies": {}, "scans": scans}
     (out / "truth.json").write_text(json.dumps(truth, indent=1), encoding="utf-8")
     return len(scans)
