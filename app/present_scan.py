@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from app.panels.landmarks import LandmarkView
 from app.panels.scan import ScanView
-from app.words import number, tr
+from app.words import tr
 from core.body import Body
 from core.doubts import doubts
 from core.landmark import Landmarks
 from core.pipeline import Stages
-from core.upright import AXES, Pose
 
 GROUPS = {
     "bust_point": "bust",
@@ -24,9 +21,6 @@ GROUPS = {
 
 PINNED = ("bust_point", "lowest", "fold")
 """The kinds of landmarks that always have a pin at the Landmarks step."""
-
-SLANTED = 1.5
-"""From which tilt [degrees] on a scan is said to stand askew in its file."""
 
 
 def kind_of(name: str) -> str:
@@ -103,20 +97,12 @@ def scan_view(stages: Stages) -> ScanView:
 
 
 def _notes(body: Body) -> tuple[str, ...]:
-    tilt = tilt_of(body.pose)
-    return (
-        *([tr("It stands askew in its file, by {angle}°.").format(angle=number(tilt, 0))] * (tilt > SLANTED)),
-        *(
-            [tr("It is noisy: what is measured is smoothed, what is shown is not.")]
-            * (body.calm is not body.mesh)
-        ),
-    )
-
-
-def tilt_of(pose: Pose) -> float:
-    """Return the angle between what is up and the nearest axis of the file [degrees]."""
-    up = pose.file_to_mm[2, :3] / np.linalg.norm(pose.file_to_mm[2, :3])
-    return float(np.degrees(np.arccos(np.clip(AXES[pose.up] @ up, -1.0, 1.0))))
+    """Return what else is to be known of a body: on what copy of its skin it is measured."""
+    if body.calm is body.mesh:
+        return ()
+    if len(body.calm.faces) != len(body.mesh.faces):
+        return (tr("It is so fine that a thinned copy is measured."),)
+    return (tr("It is noisy: a smoothed copy is measured."),)
 
 
 def work_words(what: str) -> str:

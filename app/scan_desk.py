@@ -53,23 +53,17 @@ class ScanDesk(QObject):
     def show_opened(self, stages: Stages) -> None:
         """Ask how a scan stands that has just been opened, if its shape does not tell."""
         self._forget_question()
-        if not stages.body.pose.sure:
-            self._window.notices.show_notice(
-                "warn",
-                tr("Busk is not sure how this scan stands."),
-                tr("Click the picture in which the body stands upright and faces you."),
-                lasting=True,
-            )
+        pose, source = stages.body.pose, stages.design.scan
+        if pose.sure:
+            return
+        if source.up and source.front:
+            unsure = tr("Busk is not sure of the unit of this scan.")
+            self._window.notices.show_notice("warn", unsure, pose.reason, lasting=True)
+        else:
             self._ask(stages.body, None)
 
     def show_question(self, unsure: UnsureError) -> None:
         """Ask how a scan stands that could not be opened: no bust was found the way it was taken."""
-        self._window.notices.show_notice(
-            "warn",
-            tr("Busk is not sure how this scan stands."),
-            tr("Click the picture in which the body stands upright and faces you."),
-            lasting=True,
-        )
         self._ask(unsure.body, unsure.design)
 
     def show_work(self, what: str, share: float) -> None:
@@ -156,6 +150,9 @@ class ScanDesk(QObject):
     def _ask(self, body: Body, waiting: Design | None) -> None:
         """Have a picture painted for each way the body may stand."""
         self._asked_for, self._asked_body = waiting, body
+        if not body.pose.sure:
+            unsure, ask = tr("Busk is not sure how this scan stands."), tr("Please choose a picture below.")
+            self._window.notices.show_notice("warn", unsure, ask, lasting=True)
         clay = QColor(LOOKS[tokens_of(self._window).dark].clay)
         colour, scale = (clay.red(), clay.green(), clay.blue()), self._window.devicePixelRatioF()
         size = round(PICTURE[0] * scale), round(PICTURE[1] * scale)

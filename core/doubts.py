@@ -14,10 +14,9 @@ ESSENTIAL = ("bust_point", "fold")
 
 def doubts(body: Body, landmarks: Landmarks) -> list[str]:
     """Return one sentence for each thing that should be looked at. Source: ours."""
-    pose = body.pose
-    unsure = f"It is not certain that {pose.up} is up and {pose.front} is front: please check it."
+    unsure = "It is not certain how this scan is to be understood: please check unit, up and front."
     marks = [sentence for kind in ESSENTIAL for sentence in _doubt(kind, weak_sides(landmarks, kind))]
-    return [unsure] * (not pose.sure) + marks + list(landmarks.warnings)
+    return [unsure] * (not body.pose.sure) + marks + list(landmarks.warnings)
 
 
 def weak_sides(landmarks: Landmarks, kind: str) -> list[str]:

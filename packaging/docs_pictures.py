@@ -49,6 +49,12 @@ def model_page(window: MainWindow) -> None:
     window.desk.show_model()
 
 
+def asking(window: MainWindow) -> None:
+    window.desk.go_to("scan")
+    window.scan_desk.ask()
+    wait_until(window.view.question.isVisible, QApplication.processEvents)
+
+
 def sliding() -> Design:
     design = replace(sample_design("person"), line_contact="sliding", firm_chest=0.1)
     return design.with_line("mid-bust", 0.93)
@@ -69,6 +75,7 @@ SHOTS: tuple[tuple[str, Design, dict[str, object], Callable[[MainWindow], None]]
     ("vibrating", vibrating(), {"dark": True, "size": (1280, 800)}, with_control_mesh),
     ("model", sliding(), {"size": (1280, 800)}, model_page),
     ("scan", sample_design("person"), {"size": (1280, 800)}, step("scan")),
+    ("ask", sample_design("person"), {"size": (1280, 800)}, asking),
     ("landmarks", sample_design("person"), {"size": (1280, 800)}, step("landmarks")),
     ("result", sample_design(), {"size": (1280, 800)}, from_the_side),
 )
