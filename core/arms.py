@@ -83,15 +83,17 @@ def shoulder_clip(width: Floats, step: float) -> Floats:
     """Return how wide the trunk may be on one side, shape (k,) [mm]; infinite where no arm is joined to it.
 
     ``width``, shape (k,) [mm], is how wide it is, from below at this ``step`` [mm], NaN where that is
-    unknown. Where it jumps out, an arm has joined it without a neck, until it falls back. Source: ours.
+    unknown. Where it jumps out, an arm has joined it without a neck, until it falls back; a head on a neck is
+    none. Source: ours.
     """
     clip = np.full(len(width), np.inf)
     width, span = width.copy(), max(3, round(30.0 / step))
     known = np.flatnonzero(np.isfinite(width))
+    typical = float(np.median(width[known])) if len(known) else 0.0
     at = span
     while at < len(known) - 1:
         own = float(np.median(width[known[at - span : at]]))
-        if width[known[at]] <= own + STEP_OUT:
+        if width[known[at]] <= own + STEP_OUT or own < 0.6 * typical:
             at += 1
             continue
         if width[known[at + 1]] <= own + STEP_OUT - 4.0:
