@@ -45,7 +45,7 @@ def repair(vertices: Points, faces: Faces) -> tuple[Points, Faces, tuple[str, ..
         (_drop_far, "Dropped {} far away from all others.", "vertex"),
         (_merge_equal, "Merged {} with others at the same place.", "vertex"),
         (_drop_empty_faces, "Dropped {} without an area or listed before.", "face"),
-        (_drop_fins, "Dropped {} standing off the skin like a fin.", "face"),
+        (without_fins, "Dropped {} standing off the skin like a fin.", "face"),
         (_part_sheets, "Parted the skin at {} in which two sheets touched.", "vertex"),
         (drop_furniture, "Dropped {} shaped like a floor, a wall or a stand.", "piece"),
         (drop_specks, "Dropped {} beside the body.", "speck"),
@@ -120,7 +120,7 @@ def _drop_empty_faces(skin: Skin) -> tuple[Skin, int]:
     return skin.with_faces(keep), int((~keep).sum())
 
 
-def _drop_fins(skin: Skin) -> tuple[Skin, int]:
+def without_fins(skin: Skin) -> tuple[Skin, int]:
     """Where more than two faces share an edge, drop the smallest patches until two are left.
 
     A patch is what hangs together over edges of two faces. Those with a free side go first.
