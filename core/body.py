@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from core.calm import calmed
+from core.calm import calmed, noise_of
 from core.errors import ScanError
 from core.holes import Hole, find_holes
 from core.mending import mended
@@ -36,6 +36,11 @@ class Body:
     def calm(self) -> Mesh:
         """The skin without the noise of the scanner: what is measured [mm]."""
         return calmed(self.mesh)
+
+    @cached_property
+    def noise(self) -> float:
+        """The noise of the scanner, its standard deviation along each axis [mm]."""
+        return noise_of(self.mesh)
 
     @cached_property
     def holes(self) -> tuple[Hole, ...]:
