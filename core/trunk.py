@@ -15,7 +15,7 @@ from core.gaps import bearing_bin, bridge, eroded, gaps
 from core.mesh import Flags, Floats, Indices, Mesh, Points
 from core.outline import BINS, Outlines, outlines, places, reach
 from core.sections import hull_perimeter
-from core.trunk_guide import SIDES, Guide, cut_off, guide_of
+from core.trunk_guide import SIDES, STEP, Guide, cut_off, guide_of
 from core.trunk_pieces import beside, kept_pieces, main_pieces, split_pieces
 
 STABLE_STEP = 5.0
@@ -136,13 +136,18 @@ def _closed(segments: Points, guide: Guide, z: float, cut: bool) -> Level:
     below, above = guide.reach[[low, high]]
     shape = np.where(np.isnan(above), below, below + share * (above - below))
     whole = bridge(far, skin, np.where(np.isnan(below), above, shape), cut)
+    return Level(z, segments, _bridges(whole, skin, centre, z))
+
+
+def _bridges(far: Floats, skin: Flags, centre: Points, z: float) -> Points:
+    """Return the segments over the gaps between ``skin``, shape (b, 2, 3) [mm]."""
     bridges = [np.empty((0, 2, 3))]
     for run in gaps(skin):
         line = np.concatenate([[(run[0] - 1) % BINS], run, [(run[-1] + 1) % BINS]])
-        line = line[np.isfinite(whole[line])]
-        points = places(whole[line], line, centre, z)
+        line = line[np.isfinite(far[line])]
+        points = places(far[line], line, centre, z)
         bridges.append(np.stack([points[:-1], points[1:]], axis=1))
-    return Level(z, segments, np.concatenate(bridges))
+    return np.concatenate(bridges)
 
 
 def stable_level(mesh: Mesh, underbust_level: float) -> Level:
@@ -206,8 +211,8 @@ class Survey:
         return np.asarray(np.maximum(median_filter(width, 5), 1.0))
 
 
-def survey(mesh: Mesh, step: float = 5.0) -> Survey:
-    """Cut the whole ``mesh`` every ``step`` [mm] and measure its trunk.
+def survey(mesh: Mesh) -> Survey:
+    """Measure the trunk of the whole ``mesh`` every 5 mm.
 
     Raises LandmarkError if it has not the height of a body.
     """
@@ -216,23 +221,24 @@ def survey(mesh: Mesh, step: float = 5.0) -> Survey:
         raise LandmarkError(
             f"The scan is {high - low:.0f} mm high, no upper body is.", "Say in which unit it is."
         )
-    z = np.arange(low + 0.5 * step, high, step)
-    levels = trunk_levels(mesh, z)
-    row = np.repeat(np.arange(len(z)), [len(level.segments) for level in levels])
-    segments = np.concatenate([level.segments for level in levels])
+    guide = guide_of(mesh)
+    segments, row = guide.cuts.segments[guide.keep], guide.cuts.level[guide.keep]
+    order = np.argsort(row, kind="stable")
+    segments, row = segments[order], row[order]
     length = np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1)
     times = np.maximum(1, np.ceil(length / 4.0).astype(np.int64))
     t = (np.arange(times.sum()) - np.repeat(np.cumsum(times) - times, times) + 0.5) / np.repeat(times, times)
     a, b = (np.repeat(segments[:, k], times, axis=0) for k in (0, 1))
-    samples, row = a + (b - a) * t[:, None], np.repeat(row, times)
+    samples = a + (b - a) * t[:, None]
     # (the levels without trunk keep zeros)
-    lo, hi = np.zeros((len(z), 3)), np.zeros((len(z), 3))
-    for k, level in enumerate(levels):
-        if len(level.segments):
-            lo[k], hi[k] = level.points.min(axis=0), level.points.max(axis=0)
+    lo, hi = np.zeros((len(guide.z), 3)), np.zeros((len(guide.z), 3))
+    start = np.searchsorted(row, np.arange(len(guide.z) + 1))
+    for k in np.flatnonzero(np.diff(start)):
+        bridges = _bridges(guide.reach[k], guide.skin[k], guide.centre[k], float(guide.z[k]))
+        points = np.concatenate([segments[start[k] : start[k + 1]], bridges]).reshape(-1, 3)
+        lo[k], hi[k] = points.min(axis=0), points.max(axis=0)
     full = hi[:, 0] > lo[:, 0]
     middle = float(np.median(0.5 * (lo + hi)[full, 0])) if full.any() else 0.0
-    tape = np.array(
-        [hull_perimeter(np.concatenate([level.segments, level.bridges]).mean(axis=1)) for level in levels]
-    )
-    return Survey(z, step, middle, 0.5 * (hi - lo)[:, 0], lo[:, 1], hi[:, 1], tape, samples, row)
+    half_width = 0.5 * (hi - lo)[:, 0]
+    tape, row = np.where(full, guide.tape, 0.0), np.repeat(row, times)
+    return Survey(guide.z, STEP, middle, half_width, lo[:, 1], hi[:, 1], tape, samples, row)

@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from scipy.ndimage import median_filter
 
 from core.arms import necks, shoulder_clip
-from core.gaps import bridged_levels, eroded
+from core.gaps import bearing_bin, bridged_levels, eroded
 from core.mesh import Flags, Floats, Indices, Mesh, Points
 from core.outline import BEARINGS, BINS, Outlines, outlines, reach, ring
-from core.sections import hull_perimeter
 from core.trunk_pieces import kept_pieces, limbs, main_pieces, middle_of, split_pieces
 
 STEP = 5.0
 """Distance of the levels of a guide [mm]."""
+
+MOST = 800
+"""So many levels are looked at, enough for a tall body from head to foot."""
 
 SIDES = (1.0, -1.0)
 """Sign of x of the left and of the right side."""
@@ -30,7 +32,8 @@ class Guide:
     ``clip``, shape (k, 2) [mm], how wide it may be left and right; ``necks``, shape (k, 2), where an arm is
     joined by a neck; ``shown``, shape (k,), which levels show a trunk; ``limb_boxes``, shape (l, 2, 2) [mm],
     are the boxes of outlines of arms on levels ``limb_level``; ``sides``, shape (k, 2) [mm], are the least
-    and the greatest x of closed outlines, NaN far from any.
+    and the greatest x of closed outlines, NaN far from any; ``keep`` tells the segments of ``cuts`` that are
+    trunk.
     """
 
     z: Floats
@@ -44,6 +47,13 @@ class Guide:
     limb_boxes: Floats
     limb_level: Indices
     sides: Floats
+    cuts: Outlines
+    keep: Flags
+
+    @cached_property
+    def tape(self) -> Floats:
+        """Length of a tape round each level, to some tenths, shape (k,) [mm]; 0 where no trunk is shown."""
+        return np.where(self.shown, _tapes(self.reach), 0.0)
 
     @property
     def cut(self) -> Flags:
@@ -73,7 +83,8 @@ class Guide:
 def guide_of(mesh: Mesh) -> Guide:
     """Look at the whole height of ``mesh`` [mm]. Source: ours."""
     low, high = mesh.vertices[:, 2].min(), mesh.vertices[:, 2].max()
-    cuts = outlines(mesh, np.arange(low + 0.5 * STEP, high, STEP)[:800])
+    count = min(int(np.ceil((high - low) / STEP - 0.5)), MOST) if high > low else 0
+    cuts = outlines(mesh, low + STEP * (np.arange(count) + 0.5))
     middle = middle_of(cuts)
     main = main_pieces(cuts, middle)
     centre, sides = _centres(cuts, main, middle)
@@ -83,9 +94,10 @@ def guide_of(mesh: Mesh) -> Guide:
     kept, joined = kept_pieces(cuts, main, limb, sides)
     keep = kept[cuts.piece]
     joints = np.zeros((len(cuts.z), 2), dtype=bool)
+    hollow = _hollow(cuts, keep, centre)
     for k, rows in enumerate(cuts.rows()):
         own = rows[keep[rows]]
-        if len(own) and _hollow(cuts.segments[own]):
+        if hollow[k]:
             left, right = cut_off(cuts, own, centre[k])
             joints[k] = len(left) > 0, len(right) > 0
             keep[left] = keep[right] = False
@@ -100,12 +112,13 @@ def guide_of(mesh: Mesh) -> Guide:
     skin[~open_] = True
     skin[~shown] = False
     skin[cut.any(axis=1)] = eroded(skin[cut.any(axis=1)])
+    keep &= skin[cuts.level, bearing_bin(cuts.segments, centre[cuts.level])]
     boxes = np.stack([cuts.pieces.low[limb], cuts.pieces.high[limb]], axis=1)
-    whole, limb_level = (
-        bridged_levels(far, skin, np.asarray(cut.any(axis=1)), cuts.z),
-        cuts.pieces.level[limb],
+    whole = bridged_levels(far, skin, np.asarray(cut.any(axis=1)), cuts.z)
+    limb_level = cuts.pieces.level[limb]
+    return Guide(
+        cuts.z, middle, centre, whole, skin, clip, joints, shown, boxes, limb_level, sides, cuts, keep
     )
-    return Guide(cuts.z, middle, centre, whole, skin, clip, joints, shown, boxes, limb_level, sides)
 
 
 def cut_off(cuts: Outlines, own: Indices, centre: Points) -> tuple[Indices, Indices]:
@@ -130,10 +143,24 @@ def within(cuts: Outlines, centre: Points, clip: Floats) -> Flags:
     return np.asarray((x < clip[cuts.level, 0]) & (-x < clip[cuts.level, 1]))
 
 
-def _hollow(segments: Points) -> bool:
-    """Tell whether an outline has hollows deep enough for an arm that touches."""
-    length = float(np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1).sum())
-    return length > 1.012 * hull_perimeter(segments[:, 0])
+def _hollow(cuts: Outlines, keep: Flags, centre: Points) -> Flags:
+    """Tell which levels have an outline with hollows deep enough for an arm that touches, shape (k,)."""
+    length = np.linalg.norm(cuts.segments[keep, 1] - cuts.segments[keep, 0], axis=1)
+    whole = np.bincount(cuts.level[keep], weights=length, minlength=len(centre))
+    far = reach(cuts.segments[keep], cuts.level[keep], centre)
+    return np.asarray(whole > 1.012 * _tapes(far)) & (whole > 0.0)
+
+
+def _tapes(far: Floats) -> Floats:
+    """Return the length of a tape on each level, shape (k,) [mm]; 0 where there is no trunk.
+
+    The length of a convex outline is the mean of its widths times pi. Source: Cauchy's formula.
+    """
+    out = np.stack([np.sin(BEARINGS), -np.cos(BEARINGS)])
+    spread = out.T @ out
+    reached = np.nan_to_num(far)
+    support = np.array([(spread * row).max(axis=1).mean() for row in reached])
+    return np.asarray(2.0 * np.pi * support)
 
 
 def _centres(cuts: Outlines, main: Indices, middle: float) -> tuple[Points, Floats]:

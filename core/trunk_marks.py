@@ -7,8 +7,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from core.landmark import SIDES, Landmark, Landmarks
 from core.mesh import Flags, Floats, Mesh, Points
-from core.outline import BINS, places
-from core.sections import arc_length, chains, cut, hull_perimeter, resample
+from core.sections import arc_length, chains, cut, resample
 from core.trunk import Level, stable_level, trunk_levels
 from core.trunk_guide import STEP, Guide, guide_of
 
@@ -30,7 +29,7 @@ def trunk_marks(mesh: Mesh, found: Landmarks) -> list[Landmark]:
     guide = guide_of(mesh)
     left, right = (found.position(f"bust_point_{side}") for side in SIDES)
     middle = 0.5 * float(left[0] + right[0])
-    tape = _tapes(guide)
+    tape = np.where(guide.tape > 0.0, guide.tape, np.nan)
     heights = [found.underbust_level, found.bust_level]
     levels = dict(zip(("_underbust", ""), trunk_levels(mesh, heights), strict=True))
     stable = stable_level(mesh, found.underbust_level)
@@ -46,16 +45,6 @@ def trunk_marks(mesh: Mesh, found: Landmarks) -> list[Landmark]:
             marks.append(_girdle(mesh, guide, *hip, "hip_front", HIP))
     marks += _neck(mesh, guide, tape, found, middle)
     return [mark for mark in marks if mark is not None]
-
-
-def _tapes(guide: Guide) -> Floats:
-    """Return the length of a tape on each level of the guide, shape (k,) [mm], NaN where none fits."""
-    bins = np.arange(BINS)
-    rows = [
-        hull_perimeter(places(far, bins, centre, 0.0)[np.isfinite(far)]) if shown else np.nan
-        for far, centre, shown in zip(guide.reach, guide.centre, guide.shown, strict=True)
-    ]
-    return np.array(rows)
 
 
 def _line(mesh: Mesh, x: float, low: float, high: float, back: bool, split: float) -> Points:
