@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
 from core.body import Body
+from core.calm import noise_of
 from core.doubts import doubts
 from core.landmark import Landmarks
 from core.landmarks import find_landmarks
 from core.measure import girths
+from core.mesh import Points
+
+FURTHER = {"waist": ("waist_front",), "hip": ("hip_front",), "armpit": ("armpit_left", "armpit_right")}
+"""Levels beside those of the bust, and the landmarks whose mean height they are."""
+
+MOST = 60
+"""So many points of a curve are told at most."""
 
 
 def detection(body: Body, landmarks: Landmarks | None = None) -> dict[str, Any]:
     """Return landmarks, levels [mm], girths [mm] and pose of a body, ready for JSON.
 
-    ``landmarks`` are found if they are not given. A landmark stands there in the file's own frame and in mm.
-    Raises LandmarkError.
+    ``landmarks`` are found if they are not given. A landmark stands there in the file's own frame and in mm,
+    with at most 60 points [mm] of the curve that it was read from. Raises LandmarkError.
     """
     landmarks = landmarks or find_landmarks(body)
     to_file = np.linalg.inv(body.pose.file_to_mm)
@@ -27,16 +36,16 @@ def detection(body: Body, landmarks: Landmarks | None = None) -> dict[str, Any]:
             "mm": mark.position.tolist(),
             "confidence": float(mark.confidence),
             "rule": mark.rule,
+            "by_hand": mark.by_hand,
+            "evidence": _thinned(mark.evidence),
         }
         for name, mark in landmarks.points.items()
     }
     return {
         "landmarks": marks,
-        "levels": {"bust": float(landmarks.bust_level), "underbust": float(landmarks.underbust_level)},
-        "girths": {
-            name: {"level_mm": girth.level_mm, "tape_mm": girth.tape_mm, "skin_mm": girth.skin_mm}
-            for name, girth in girths(body, landmarks).items()
-        },
+        "levels": _levels(landmarks),
+        "girths": {name: asdict(girth) for name, girth in girths(body, landmarks).items()},
+        "noise_mm": round(noise_of(body.mesh), 3),
         "unit": body.pose.unit,
         "up": body.pose.up,
         "front": body.pose.front,
@@ -46,3 +55,20 @@ def detection(body: Body, landmarks: Landmarks | None = None) -> dict[str, Any]:
         "repairs": list(body.repairs),
         "warnings": doubts(body, landmarks),
     }
+
+
+def _levels(landmarks: Landmarks) -> dict[str, float]:
+    """Return the heights [mm] of bust and under-bust, and of what else was found; armpits at their mean."""
+    levels = {"bust": float(landmarks.bust_level), "underbust": float(landmarks.underbust_level)}
+    for name, marks in FURTHER.items():
+        heights = [landmarks.position(mark)[2] for mark in marks if mark in landmarks.points]
+        if heights:
+            levels[name] = float(np.mean(heights))
+    return levels
+
+
+def _thinned(curve: Points) -> list[list[float]]:
+    """Return at most 60 points of a curve, its ends among them, to a hundredth of a mm."""
+    rows = np.unique(np.linspace(0, max(len(curve) - 1, 0), min(len(curve), MOST)).astype(np.int64))
+    thin: list[list[float]] = np.round(curve[rows], 2).tolist() if len(curve) else []
+    return thin

@@ -205,9 +205,12 @@ def _neck(mesh: Mesh, guide: Guide, tape: Floats, found: Landmarks, middle: floa
     rows = np.flatnonzero((guide.z > found.bust_level + 120.0) & np.isfinite(tape))
     if len(rows) < 12:
         return []
-    slim = rows[int(np.argmin(tape[rows]))]
-    over = tape[rows[rows > slim]]
-    if slim > rows[-1] - 6 or over.max() < tape[slim] + 60.0 or not 220.0 < tape[slim] < 560.0:
+    over = np.maximum.accumulate(tape[rows][::-1])[::-1]
+    under_head = rows[over > tape[rows] + 60.0]
+    if len(under_head) == 0:
+        return []
+    slim = under_head[int(np.argmin(tape[under_head]))]
+    if not 220.0 < tape[slim] < 560.0:
         return []
     z, split = float(guide.z[slim]), float(guide.centre[slim, 1])
     marks: list[Landmark | None] = []
@@ -229,5 +232,5 @@ def _foot(line: Points, z: float, name: str, back: bool, rule: str) -> Landmark 
     if not allowed.any():
         return None
     best = int(np.argmax(np.where(allowed, bend, -np.inf)))
-    sure = 0.4 * float(np.clip(bend[best] / 0.01, 0.0, 1.0))
+    sure = 0.3 * float(np.clip(bend[best] / 0.01, 0.0, 1.0))
     return Landmark(name, even[best], sure, rule, line)
