@@ -1,209 +1,141 @@
-"""Stances of a body: for each way it might stand, how much its trunk looks like one with a bust in front."""
+"""Stances of a body: the ways it might stand, each with how well it looks like an upper body that does."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
-from scipy.ndimage import convolve1d, gaussian_filter, maximum_filter1d, shift
 
-from core.mesh import Flags, Floats, Points
-from core.sections import hull_perimeter
+from core.cues import Look, look, rate
+from core.flat_ends import flat_ends
+from core.mesh import Floats, unit
+from core.silhouette import silhouette
 from core.symmetry import Cloud, MirrorPlane
+from core.told import AXES, Told, nearest_axis
 
-TYPICAL_GIRTH = 860.0
-"""A trunk girth [mm] that makes file units into mm well enough to tell up from down."""
+TURN = 15.0
+"""Step between the directions in a mirror plane that are tried as up [degrees]."""
 
-SHORTEST = 250.0
-"""A scan of the upper body is taller than this [mm by a typical girth]; one that lies on its back is not."""
+FILE_AXIS = 0.5
+"""What a file adds to a stance that is upright in it [1]: most scanners know what is up."""
 
-STEP = 1.2
-"""Distance of the levels, and side of the cells of the front reach [grains]."""
+LEVEL = 3.0
+"""A cut that is level in the file to this angle [degrees] was level when it was made."""
 
+LEAN, LEAN_ASIDE = 10.0, 4.0
+"""A body leans against the axis of its file by this at most [degrees]; further, it was tilted."""
 
-@dataclass(frozen=True, eq=False)
-class Trunk:
-    """The trunk, arms taken out, at levels square to an axis [file units]; each shape (k,).
-
-    ``width`` is half the width, ``low`` and ``high`` are the ends in depth, ``arms`` tells that something
-    lies beside the trunk; where no level could be read ``width`` is NaN.
-    """
-
-    z: Floats
-    width: Floats
-    girth: Floats
-    low: Floats
-    high: Floats
-    arms: Flags
-
-    @cached_property
-    def half_width(self) -> float:
-        """Half width of the trunk proper, without merged arms; NaN if there is none."""
-        return self._reference(self.width)
-
-    @cached_property
-    def main_girth(self) -> float:
-        """Girth of the trunk proper; NaN if there is none."""
-        return self._reference(self.girth)
-
-    @cached_property
-    def stoutness(self) -> float:
-        """Width of the trunk proper over its depth [1]."""
-        width, depth = self.width[self.proper], (self.high - self.low)[self.proper]
-        return float(2.0 * np.median(width) / max(float(np.median(depth)), 1e-9 * self.half_width))
-
-    @cached_property
-    def proper(self) -> Flags:
-        """Levels that are trunk: not neck, not head, not merged with arms."""
-        share = self.width / self.half_width
-        return (share > 0.6) & (share < 1.3) & (self.girth > 0.7 * self.main_girth)
-
-    def _reference(self, value: Floats) -> float:
-        width = self.width[np.isfinite(self.width)]
-        if len(width) == 0:
-            return float("nan")
-        upper = np.median(width[width >= np.median(width)])
-        return float(np.percentile(value[self.width <= 1.25 * upper], 70))
-
-    def turned(self, up: int, back: int) -> Trunk:
-        """Return the same trunk with z and depth taken along these signs (+1 or -1)."""
-        low, high = (self.low, self.high) if back > 0 else (-self.high, -self.low)
-        width, girth, arms = self.width[::up], self.girth[::up], self.arms[::up]
-        return Trunk(up * self.z[::up], width, girth, low[::up], high[::up], arms)
+TRUE_ASIDE, TRUE_LEAN = 1.0, 17.0
+"""A file axis this near to the mirror plane [degrees] is not there by chance: then it may lean so far."""
 
 
 @dataclass(frozen=True, eq=False)
 class Stance:
-    """One way to stand: unit vectors ``left``, ``back``, ``up`` in the file, shape (3,), and its ``score``.
+    """One way to stand: unit vectors ``left``, ``back``, ``up`` in the file, shape (3,).
 
-    ``kink`` is the hollow under a bust at both sides, ``middle`` the one in between [mm by a typical girth].
+    ``evidence`` is what speaks for an upper body that stands so [1], ``said`` what each cue adds to it;
+    ``residual`` and ``offset`` are those of the mirror plane.
     """
 
     left: Floats
     back: Floats
     up: Floats
-    trunk: Trunk
+    offset: float
     residual: float
-    kink: float
-    middle: float
-    score: float
+    seen: Look
+    evidence: float
+    said: dict[str, float]
 
     @property
-    def is_body(self) -> bool:
-        """Whether this can be an upper body at all."""
-        flat = -90.0 <= self.middle <= 0.5 * self.kink
-        return self.kink >= 8.0 and self.residual <= 0.3 and flat and 1.0 <= self.trunk.stoutness <= 2.3
+    def score(self) -> float:
+        """How likely this is how the body stands [1]."""
+        upright = np.abs(self.up).max() > np.cos(np.radians(LEAN))
+        return self.evidence + FILE_AXIS * float(upright) - 6.0 * self.residual
+
+    def differs(self, other: Stance, degrees: float = 40.0) -> bool:
+        """Tell whether up or front point elsewhere."""
+        return bool(min(self.up @ other.up, self.back @ other.back) < np.cos(np.radians(degrees)))
 
 
-def stances(cloud: Cloud, plane: MirrorPlane) -> list[Stance]:
-    """Return the four ways to stand with a mirror plane: up or down, facing to or fro. Source: ours."""
-    axis = np.eye(3)[plane.up]
-    across = np.cross(axis, plane.side)
-    local = cloud.points @ np.stack([plane.side, across, axis], axis=1) - [plane.offset, 0.0, 0.0]
-    trunk = _trunk(local, cloud.grain)
-    if not (trunk.half_width > 0.0 and trunk.main_girth > 0.0 and trunk.proper.any()):
+def stances(
+    cloud: Cloud, plane: MirrorPlane, up: Told | None = None, front: Told | None = None
+) -> list[Stance]:
+    """Return the ways to stand with a mirror plane: every 15 degrees round, facing to or fro.
+
+    One of them is along the axis of the file nearest to the plane. ``up`` and ``front`` leave out ways; the
+    plane must hold one that is exact. Source: ours.
+    """
+    exact = up if up and up.exact else front if front and front.exact else None
+    turns = np.radians(np.arange(0.0, 180.0, 90.0 if exact else TURN))
+    axis = exact.direction if exact else np.eye(3)[np.argmin(np.abs(plane.side))]
+    start = unit(axis - (axis @ plane.side) * plane.side)
+    across = np.cross(start, plane.side)
+    found = []
+    for angle in turns:
+        direction = np.cos(angle) * start + np.sin(angle) * across
+        ways = tuple(way for way in (1, -1) if up is None or up.allows(way * direction))
+        found += _ways_to_stand(cloud, plane, direction, ways) if ways else []
+    return [stance for stance in found if front is None or front.allows(-stance.back)]
+
+
+def _ways_to_stand(cloud: Cloud, plane: MirrorPlane, up: Floats, ways: tuple[int, ...]) -> list[Stance]:
+    back = np.cross(up, plane.side)
+    trunk = silhouette(
+        cloud.points @ np.stack([plane.side, back, up], axis=1) - [plane.offset, 0.0, 0.0], cloud.grain
+    )
+    if trunk is None:
         return []
     found = []
-    for up in (1, -1):
-        for back in (1, -1):
-            turned = trunk.turned(up, back)
-            score, kink, middle = _rate(local * [up * back, back, up], turned, cloud.grain)
-            score -= 6.0 * plane.residual
-            directions = (up * back * plane.side, back * across, up * axis)
-            found.append(Stance(*directions, turned, plane.residual, kink, middle, score))
+    for way in ways:
+        for sign in (1, -1):
+            seen = look(trunk.turned(way, sign))
+            evidence, said = rate(seen)
+            directions = (way * sign * plane.side, sign * back, way * up)
+            found.append(Stance(*directions, way * sign * plane.offset, plane.residual, seen, evidence, said))
     return found
 
 
-def _trunk(points: Points, grain: float) -> Trunk:
-    """Read the trunk off points whose mirror plane is x = 0 and whose levels are along z."""
-    order = np.argsort(points[:, 2])
-    points = points[order]
-    z = np.arange(points[0, 2], points[-1, 2], STEP * grain)
-    first, last = np.searchsorted(points[:, 2], [z - grain, z + grain])
-    rows = [_level(points[a:b], 3.0 * grain) for a, b in zip(first, last, strict=True)]
-    width, girth, low, high, arms = np.array(rows).reshape(-1, 5).T
-    return Trunk(z, width, girth, low, high, arms > 0.0)
+def settled(cloud: Cloud, stance: Stance) -> Stance:
+    """Return ``stance`` with its up set by a plane cut below, by the trunk and by the axis of the file."""
+    up = _true_up(cloud, stance)
+    side = unit(stance.left - (stance.left @ up) * up)
+    middle = cloud.points.mean(axis=0)
+    offset = stance.offset + float(middle @ (side - stance.left))
+    again = _ways_to_stand(cloud, MirrorPlane(side, offset, stance.residual), up, (1,))
+    return max(again, key=lambda other: other.back @ stance.back, default=stance)
 
 
-def _level(points: Points, gap: float) -> tuple[float, float, float, float, float]:
-    """Return half width, girth, both ends in depth and a flag for arms; NaN if a level has no middle."""
-    if (np.abs(points[:, 0]) < gap).sum() < 2:
-        return (np.nan,) * 5
-    ends = []
-    for sign in (1.0, -1.0):
-        out = np.sort(np.maximum(sign * points[:, 0], 0.0))
-        breach = np.flatnonzero(np.diff(out, prepend=0.0) > gap)
-        ends.append(float(out[breach[0] - 1]) if len(breach) else float(out[-1]))
-    own = points[(points[:, 0] <= ends[0]) & (points[:, 0] >= -ends[1])]
-    arms = float(len(own) < len(points))
-    return 0.5 * sum(ends), hull_perimeter(own), float(own[:, 1].min()), float(own[:, 1].max()), arms
+def _true_up(cloud: Cloud, stance: Stance) -> Floats:
+    own = cloud.points[stance.seen.trunk.own]
+    least = 0.3 * stance.seen.trunk.main_girth**2 / (4.0 * np.pi)
+    cuts = [end for end in flat_ends(own, cloud.grain, -stance.up) if end.area > least]
+    cut = -cuts[0].normal if cuts else None
+    axis = AXES[nearest_axis(stance.up)]
+    aside = np.degrees(np.arcsin(min(1.0, abs(float(axis @ stance.left)))))
+    if cut is not None:
+        away = _angle(cut, axis)
+        if away < LEVEL or (away < TRUE_LEAN and aside < TRUE_ASIDE):
+            return axis
+        return cut if _angle(cut, stance.left) > 80.0 else _in_plane(cut, stance.left)
+    trunk = _along_trunk(cloud, stance)
+    leans = LEAN if aside > TRUE_ASIDE else TRUE_LEAN
+    return axis if _angle(trunk, axis) < leans and aside < LEAN_ASIDE else trunk
 
 
-def _rate(points: Points, trunk: Trunk, grain: float) -> tuple[float, float, float]:
-    """Return score [1], kink and middle [mm] of a body that faces -y with z up."""
-    mm = TYPICAL_GIRTH / trunk.main_girth
-    cell = STEP * grain
-    kink = _kinks(_front_reach(points, trunk, cell) * mm, cell * mm)
-    x = (np.arange(kink.shape[1]) - kink.shape[1] // 2) * cell / trunk.half_width
-    side = (np.abs(x) > 0.28) & (np.abs(x) < 0.85)
-    wide = max(1, 2 * round(12.0 / (cell * mm)) + 1)
-    left, right = (
-        maximum_filter1d(kink[:, side & (sign * x > 0)].max(axis=1, initial=-np.inf), wide)
-        for sign in (1, -1)
-    )
-    both = np.minimum(left, right)
-    middle = kink[:, np.abs(x) < 0.12].max(axis=1, initial=-np.inf)
-    middle = np.where(np.isfinite(middle), middle, 0.0)
-    height = (trunk.z - trunk.z[0]) * mm
-    allowed = trunk.proper & (height > 30.0) & (height < height[-1] - 60.0)
-    if not (allowed & np.isfinite(both)).any():
-        return -np.inf, 0.0, 0.0
-    fold = int(np.argmax(np.where(allowed, both - 0.8 * np.clip(middle, 0.0, 40.0), -np.inf)))
-    strength, between = float(both[fold]), float(middle[fold])
-    score = strength / 10.0 if strength < 25.0 else 2.5 + (min(strength, 60.0) - 25.0) / 20.0
-    score -= 0.8 * float(np.clip(between / max(strength, 5.0), 0.0, 1.0))
-    score -= 4.0 * max(0.0, 0.25 - height[fold] / height[-1])
-    score -= 1.5 * (between < -90.0)
-    score -= 3.0 * float(np.clip((SHORTEST - height[-1]) / 60.0, 0.0, 1.0))
-    return score + _build(trunk), strength, between
+def _along_trunk(cloud: Cloud, stance: Stance) -> Floats:
+    """Return the up along which the middle of the trunk runs, in its mirror plane."""
+    for _ in range(3):
+        lean = np.arctan(stance.seen.lean)
+        up = np.cos(lean) * stance.up + np.sin(lean) * stance.back
+        plane = MirrorPlane(stance.left, stance.offset, stance.residual)
+        again = _ways_to_stand(cloud, plane, up, (1,))
+        stance = max(again, key=lambda other: other.back @ stance.back, default=stance)
+    return stance.up
 
 
-def _build(trunk: Trunk) -> float:
-    """Return what the outline of the trunk alone says for this way up [1]."""
-    read = np.flatnonzero(np.isfinite(trunk.width))
-    end = max(1, len(read) // 6)
-    bottom, top = np.median(trunk.width[read[:end]]), np.median(trunk.width[read[-end:]])
-    score = 0.8 * float(np.clip(np.log(bottom / max(top, 1e-9)), -1.0, 1.0)) if bottom > 0.0 else -0.8
-    merged = trunk.width > 1.3 * trunk.half_width
-    free = trunk.arms & trunk.proper
-    if merged.any() and free.any():
-        score += 0.5 * float(np.sign(trunk.z[merged].mean() - trunk.z[free].mean()))
-    return score + (0.5 if 1.05 < trunk.stoutness < 2.3 else -2.5)
+def _in_plane(direction: Floats, normal: Floats) -> Floats:
+    return np.asarray(unit(direction - (direction @ normal) * normal))
 
 
-def _front_reach(points: Points, trunk: Trunk, cell: float) -> Floats:
-    """Return how far the front of the trunk comes forward, shape (levels, columns), NaN where nothing is."""
-    row = np.rint((points[:, 2] - trunk.z[0]) / cell).astype(np.int64).clip(0, len(trunk.z) - 1)
-    half = int(np.ceil(1.1 * trunk.half_width / cell))
-    column = np.rint(points[:, 0] / cell).astype(np.int64) + half
-    limit = 0.5 * (trunk.low + trunk.high) - 0.05 * (trunk.high - trunk.low)
-    own = (points[:, 1] < limit[row]) & (column >= 0) & (column <= 2 * half)
-    reach = np.full((len(trunk.z), 2 * half + 1), -np.inf)
-    np.maximum.at(reach, (row[own], column[own]), -points[own, 1])
-    known = np.isfinite(reach)
-    weight = gaussian_filter(known.astype(np.float64), 1.2, mode="constant")
-    total = gaussian_filter(np.where(known, reach, 0.0), 1.2, mode="constant")
-    return np.where(weight > 0.3, total / np.maximum(weight, 0.3), np.nan)
-
-
-def _kinks(reach: Floats, cell: float) -> Floats:
-    """Return how far the front stands out 30 mm higher, less how far 30 mm lower [mm]; -inf if unknown.
-
-    ``reach`` and its ``cell`` are in mm here.
-    """
-    above, below = (shift(reach, (rows, 0.0), order=1, cval=np.nan) for rows in (-30.0 / cell, 30.0 / cell))
-    kink = above - reach - np.maximum(0.0, below - reach)
-    run = max(1, round(20.0 / cell))
-    kink = convolve1d(kink, np.full(run, 1.0 / run), axis=1, mode="constant", cval=np.nan)
-    return np.where(np.isfinite(kink), kink, -np.inf)
+def _angle(a: Floats, b: Floats) -> float:
+    return float(np.degrees(np.arccos(np.clip(abs(a @ b), 0.0, 1.0))))

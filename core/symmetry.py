@@ -7,10 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import distance_transform_edt
 
-from core.mesh import Faces, Floats, Indices, Points, area_vectors, unit
+from core.mesh import Faces, Flags, Floats, Indices, Points, area_vectors, unit
 
-GRAINS = 110
-"""Grains along the diagonal of the body: the grain is the spacing of everything here."""
+CELLS = 11_000
+"""Grain-sized squares that the skin is divided into: the grain is the spacing of everything here."""
+
+FINEST = 180.0
+"""Grains along the diagonal of the body, at most: a skin almost without area must not become a fine grid."""
 
 SAMPLES = 30_000
 """Points laid on the skin before they are averaged, one a grain-sized cell."""
@@ -18,13 +21,19 @@ SAMPLES = 30_000
 FAR = 6.0
 """A mirrored point this many grains off the skin [1] counts as having no partner."""
 
+DIRECTIONS = 500
+"""Normals of planes that are tried, evenly over half a sphere: one in six degrees."""
+
+APART = np.cos(np.radians(15.0))
+"""Planes whose normals differ by less than this are one [cosine]."""
+
 
 @dataclass(frozen=True, eq=False)
 class Cloud:
     """Even points on a skin, shape (k, 3) [file units], with unit normals, one a cell of size ``grain``.
 
-    ``nearest`` holds for each cell of the box around them the index of the nearest point, -1 if far off; cell
-    (0, 0, 0) starts at ``corner``.
+    ``nearest`` holds for each cell of the box around them the index of the nearest point, -1 if far off, and
+    ``gap`` how far off it lies, 0 .. 1; cell (0, 0, 0) starts at ``corner``.
     """
 
     points: Points
@@ -32,23 +41,33 @@ class Cloud:
     grain: float
     corner: Floats
     nearest: Indices
+    gap: Floats
 
     def partner(self, places: Points) -> Indices:
         """Return the index of the point nearest to each place, shape (..., 3), or -1 if far off."""
+        inside, cell = self._cell(places)
+        return np.where(inside, self.nearest.ravel()[cell], -1)
+
+    def miss(self, places: Points) -> Floats:
+        """Return how far each place, shape (..., 3), lies off the skin, in cells: 0 on it, 1 if far off."""
+        inside, cell = self._cell(places)
+        return np.where(inside, self.gap.ravel()[cell], 1.0)
+
+    def _cell(self, places: Points) -> tuple[Flags, Indices]:
         cell = np.floor((places - self.corner) / self.grain).astype(np.int64)
         inside = np.all((cell >= 0) & (cell < self.nearest.shape), axis=-1)
-        x, y, z = np.moveaxis(np.where(inside[..., None], cell, 0), -1, 0)
-        return np.where(inside, self.nearest[x, y, z], -1)
+        _, wide, deep = self.nearest.shape
+        number = (cell[..., 0] * wide + cell[..., 1]) * deep + cell[..., 2]
+        return inside, np.where(inside, number, 0)
 
 
 @dataclass(frozen=True, eq=False)
 class MirrorPlane:
-    """The plane {p: p . side = offset} along the file axis ``up`` (0, 1, 2).
+    """The plane {p: p . side = offset}.
 
     ``side`` is a unit vector, shape (3,); ``offset`` in file units; ``residual`` is 0 for a perfect mirror.
     """
 
-    up: int
     side: Floats
     offset: float
     residual: float
@@ -56,9 +75,9 @@ class MirrorPlane:
 
 def even_cloud(vertices: Points, faces: Faces) -> Cloud:
     """Lay even points on a skin, whatever its triangles are like. Any unit. Source: ours."""
-    points, normals = _sample(vertices, faces)
+    points, normals, area = _sample(vertices, faces)
     low, high = np.percentile(points, (1, 99), axis=0)
-    grain = float(np.linalg.norm(high - low)) / GRAINS
+    grain = max(np.sqrt(area / CELLS), float(np.linalg.norm(high - low)) / FINEST)
     margin = 0.35 * (high - low) + FAR * grain  # a speck far away must not blow the box up
     near = ((points > low - margin) & (points < high + margin)).all(axis=1)
     points, normals = points[near], normals[near]
@@ -76,11 +95,14 @@ def even_cloud(vertices: Points, faces: Faces) -> Cloud:
     number.ravel()[key] = np.arange(len(key))
     distance, where = distance_transform_edt(empty, return_indices=True)
     nearest = np.where(distance <= FAR, number[tuple(where)], -1)
-    return Cloud(centre, normal, grain, corner, nearest)
+    return Cloud(centre, normal, float(grain), corner, nearest, np.minimum(distance / FAR, 1.0))
 
 
-def _sample(vertices: Points, faces: Faces) -> tuple[Points, Points]:
-    """Return points spread evenly over the faces, shape (k, 3), and their normals; the same each time."""
+def _sample(vertices: Points, faces: Faces) -> tuple[Points, Points, float]:
+    """Return points spread evenly over the faces, shape (k, 3), their normals and the whole area.
+
+    The same each time.
+    """
     areas = area_vectors(vertices, faces)
     total = np.cumsum(np.linalg.norm(areas, axis=1))
     number = np.arange(SAMPLES)
@@ -89,61 +111,84 @@ def _sample(vertices: Points, faces: Faces) -> tuple[Points, Points]:
     over = u + v > 1.0
     u, v = np.where(over, 1.0 - u, u), np.where(over, 1.0 - v, v)
     a, b, c = (vertices[faces[face, k]] for k in range(3))
-    return a + u[:, None] * (b - a) + v[:, None] * (c - a), unit(areas[face])
+    return a + u[:, None] * (b - a) + v[:, None] * (c - a), unit(areas[face]), float(total[-1])
 
 
-def mirror_planes(cloud: Cloud, up: int) -> list[MirrorPlane]:
-    """Return the two best mirror planes of ``cloud`` along the file axis ``up`` (0, 1 or 2), best first."""
-    probes = cloud.points[:: max(1, len(cloud.points) // 700)]
-    yaws = np.radians(np.arange(0.0, 180.0, 6.0))
-    sides = _side(up, yaws)
-    reach = cloud.points @ sides.T
+def mirror_planes(cloud: Cloud, across: Floats | None = None, slant: float = 0.0) -> list[MirrorPlane]:
+    """Return the best mirror planes of ``cloud``, at most four, best first.
+
+    If ``across`` is given, a unit vector, shape (3,), the plane must hold it up to ``slant`` [1], the sine of
+    an angle. Source: ours.
+    """
+    centre = cloud.points.mean(axis=0)
+    sides = half_sphere(DIRECTIONS)
+    if across is not None:
+        sides = unit(sides - np.outer(sides @ across, across)) if slant == 0.0 else sides
+        sides = sides[np.abs(sides @ across) <= slant + 1e-9]
+    reach = (cloud.points[::15] - centre) @ sides.T
     ends = np.percentile(reach, (2, 98), axis=0).mean(axis=0)
-    middle = reach.mean(axis=0)
-    offsets = np.stack([ends, middle, 0.5 * (ends + middle)])
-    trials = _residual(cloud, probes, np.tile(sides, (3, 1)), offsets.ravel()).reshape(3, -1)
-    offset = offsets[np.argmin(trials, axis=0), np.arange(len(yaws))]
-    residual = trials.min(axis=0)
-    best = int(np.argmin(residual))
-    apart = np.abs((yaws - yaws[best] + np.pi / 2) % np.pi - np.pi / 2) > np.radians(20.0)
-    second = int(np.argmin(np.where(apart, residual, np.inf)))
-    planes = [_refined(cloud, up, float(yaws[k]), float(offset[k])) for k in (best, second)]
+    offsets = np.stack([ends, 0.5 * (ends + reach.mean(axis=0)), np.median(reach, axis=0)])
+    probes = cloud.points[:: max(1, len(cloud.points) // 220)] - centre
+    miss = np.stack([_coarse_residual(cloud, probes, centre, sides, each) for each in offsets])
+    offset = offsets[np.argmin(miss, axis=0), np.arange(len(sides))]
+    residual = miss.min(axis=0)
+    chosen: list[int] = []
+    for k in np.argsort(residual):
+        if all(abs(sides[k] @ sides[other]) < APART for other in chosen):
+            chosen.append(int(k))
+        if len(chosen) == 5:
+            break
+    hold = across if slant == 0.0 else None
+    rough = [_refined(cloud, centre, sides[k], float(offset[k]), hold, 600, 5) for k in chosen]
+    planes: list[MirrorPlane] = []
+    for plane in sorted(rough, key=lambda plane: plane.residual):
+        if all(abs(plane.side @ other.side) < APART for other in planes) and len(planes) < 4:
+            planes.append(plane)
+    planes = [
+        _refined(cloud, centre, p.side, p.offset - float(p.side @ centre), hold, 2500, 7) for p in planes
+    ]
     return sorted(planes, key=lambda plane: plane.residual)
 
 
-def _side(up: int, yaw: Floats | float) -> Floats:
-    """Return the unit vector across axis ``up`` at ``yaw`` [rad] from the axis after it, shape (..., 3)."""
-    side = np.zeros((*np.shape(yaw), 3))
-    side[..., (up + 1) % 3] = np.cos(yaw)
-    side[..., (up + 2) % 3] = np.sin(yaw)
-    return side
+def half_sphere(count: int) -> Points:
+    """Return ``count`` unit vectors spread evenly over half a sphere, shape (count, 3). Source: Fibonacci."""
+    z = (np.arange(count) + 0.5) / count
+    turn = np.pi * (1.0 + np.sqrt(5.0)) * np.arange(count)
+    return np.stack([np.sqrt(1.0 - z**2) * np.cos(turn), np.sqrt(1.0 - z**2) * np.sin(turn), z], axis=1)
 
 
-def _residual(cloud: Cloud, probes: Points, sides: Floats, offsets: Floats) -> Floats:
+def _coarse_residual(cloud: Cloud, probes: Points, centre: Floats, sides: Floats, offsets: Floats) -> Floats:
     """Return how far mirrored probes lie off the cloud, 0 .. 1, for q planes of shape (q, 3) and (q,)."""
     height = probes @ sides.T - offsets
-    mirrored = probes[:, None] - 2.0 * height[..., None] * sides
-    partner = cloud.partner(mirrored)
-    distance = np.linalg.norm(mirrored - cloud.points[partner], axis=-1) / cloud.grain
-    return np.asarray(np.where(partner < 0, 1.0, np.minimum(distance / FAR, 1.0)).mean(axis=0))
+    return np.asarray(cloud.miss(probes[:, None] - 2.0 * height[..., None] * sides + centre).mean(axis=0))
 
 
-def _refined(cloud: Cloud, up: int, yaw: float, offset: float) -> MirrorPlane:
-    """Turn and shift a plane until the mirrored skin lies on the skin (robust Gauss-Newton steps)."""
-    probes = cloud.points[:: max(1, len(cloud.points) // 3000)]
-    for scale in np.geomspace(3.0, 0.5, 12) * cloud.grain:
-        side, along = _side(up, yaw), _side(up, yaw + np.pi / 2)
+def _refined(
+    cloud: Cloud, centre: Floats, side: Floats, offset: float, hold: Floats | None, count: int, steps: int
+) -> MirrorPlane:
+    """Turn and shift a plane until the mirrored skin lies on the skin (robust Gauss-Newton steps).
+
+    ``offset`` counts from ``centre``; the plane keeps the direction ``hold`` in it, if there is one.
+    """
+    probes = cloud.points[:: max(1, len(cloud.points) // count)] - centre
+    for scale in np.geomspace(3.0, 0.5, steps) * cloud.grain:
+        first = hold if hold is not None else np.eye(3)[np.argmin(np.abs(side))]
+        second = unit(np.cross(side, first))
+        turns = [second] if hold is not None else [second, np.cross(side, second)]
         height = probes @ side - offset
-        mirrored = probes - 2.0 * height[:, None] * side
+        mirrored = probes - 2.0 * height[:, None] * side + centre
         partner = cloud.partner(mirrored)
         normal = np.where(partner[:, None] < 0, 0.0, cloud.normals[partner])
         miss = np.einsum("ij,ij->i", normal, mirrored - cloud.points[partner])
-        by_yaw = -2.0 * ((probes @ along) * (normal @ side) + height * (normal @ along))
-        by_offset = 2.0 * (normal @ side)
+        facing = normal @ side
+        slopes = [-2.0 * ((probes @ turn) * facing + height * (normal @ turn)) for turn in turns]
         weight = 1.0 / (1.0 + (miss / scale) ** 2)
-        slope = np.stack([by_yaw, by_offset], axis=1) * weight[:, None]
+        slope = np.stack([*slopes, 2.0 * facing], axis=1) * weight[:, None]
         step = np.linalg.lstsq(slope, -miss * weight, rcond=None)[0]
-        yaw += float(np.clip(step[0], -0.1, 0.1))
-        offset += float(np.clip(step[1], -3.0 * cloud.grain, 3.0 * cloud.grain))
-    side = _side(up, yaw)
-    return MirrorPlane(up, side, offset, float(_residual(cloud, probes, side[None], np.array([offset]))[0]))
+        side = unit(side + np.clip(step[:-1], -0.1, 0.1) @ np.stack(turns))
+        offset += float(np.clip(step[-1], -3.0 * cloud.grain, 3.0 * cloud.grain))
+    mirrored = probes - 2.0 * (probes @ side - offset)[:, None] * side + centre
+    partner = cloud.partner(mirrored)
+    distance = np.linalg.norm(mirrored - cloud.points[partner], axis=-1) / (FAR * cloud.grain)
+    residual = np.where(partner < 0, 1.0, np.minimum(distance, 1.0)).mean()
+    return MirrorPlane(side, offset + float(side @ centre), float(residual))

@@ -16,9 +16,9 @@ ROOT = Path(__file__).parent.parent
 # From the ground up, each floor in order: a module may import what stands to its left or on a floor below.
 FLOORS = {
     "ground": "errors progress mesh sections proximity kernels moving",
-    "anatomy": "raw_scan text_table ply_file obj_file stl_file off_file gltf_file vtp_file scan_file surface "
-    "skin pieces repair holes polygon mending calm symmetry stance upright body outline arms trunk_guide trunk chest relief landmark placed bust_point landmarks "
-    "torso template profiles fit_check laying control_mesh doubts measure detect truth accuracy",
+    "anatomy": "raw_scan text_table ply_file obj_file stl_file off_file gltf_file vtp_file scan_file contour surface "
+    "skin pieces repair holes polygon mending calm symmetry silhouette cues flat_ends told stance body_size refusal upright body outline gaps arms trunk_pieces trunk_guide trunk chest relief landmark placed breast_profile fold under_breast bust_point bust_check roots trunk_marks landmarks "
+    "torso template profiles near_skin fit_check ground bridging creases laying easing fit_quality control_mesh doubts measure detect truth accuracy",
     "mechanics": "mechanics band springs cells tensegric lines volume patch tffd",
     "solving": "condition layout sweep model solver gain potential newton sliding exact body_volume "
     "verdict comparison watch",

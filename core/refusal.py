@@ -1,0 +1,52 @@
+"""What is no upper body, and in which words it is refused."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from core.errors import ScanError
+from core.flat_ends import flat_ends
+from core.stance import Stance
+from core.symmetry import Cloud
+
+LEAST = 2.0
+"""A body has at least this much that speaks for it [1]; solids, limbs and furniture have 1.2, bellies 2.0."""
+
+UNLIKE = 0.38
+"""Left and right of a body mirror each other better than this [1]; those of a half body do not."""
+
+STOUTNESS = (0.85, 2.4)
+"""Width of a trunk over its depth [1]."""
+
+HALF = 0.3
+"""A flat opening larger than this share of the skin [1], upright, is where a half is missing."""
+
+SHORT = 200.0
+"""A scan that is lower than this [mm of a typical trunk] shows too little of a body."""
+
+WHOLE = "Open a scan of a whole upper body."
+
+
+def refuse_unlike(cloud: Cloud, best: Stance) -> None:
+    """Raise ScanError, with the likeliest reason, if this is no upper body. Source: ours."""
+    trunk = best.seen.trunk
+    skin = len(cloud.points) * cloud.grain**2
+    halved = any(
+        not end.filled and end.area > HALF * skin and abs(end.normal @ best.up) < np.cos(np.radians(45.0))
+        for end in flat_ends(cloud.points, cloud.grain)
+    )
+    if halved or best.residual > UNLIKE:
+        raise ScanError("Only a half of an upper body is here: its other half is missing.", WHOLE)
+    if trunk.stoutness > STOUTNESS[1] and best.evidence > 0.0:
+        raise ScanError(
+            "This is too flat for an upper body: the front or the back of the trunk is missing.", WHOLE
+        )
+    if best.evidence < LEAST and trunk.height[-1] < SHORT:
+        raise ScanError(
+            "Too little is here for an upper body: no bust shows on a short piece of trunk.", WHOLE
+        )
+    if best.evidence < LEAST or not STOUTNESS[0] < trunk.stoutness < STOUTNESS[1]:
+        raise ScanError(
+            "This does not look like an upper body: no bust was found in front of an even trunk.",
+            "Cut away all but the body, or say which way is up and which way is front.",
+        )

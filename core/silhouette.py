@@ -1,0 +1,161 @@
+"""The outline of a trunk: how wide and deep it is at each level, and how far its front and back stand out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from scipy.ndimage import gaussian_filter
+
+from core.mesh import Flags, Floats, Indices, Points
+
+TYPICAL_GIRTH = 860.0
+"""A trunk girth [mm] that makes file units into mm well enough to tell up from down."""
+
+STEP = 1.4
+"""Distance of the levels and of the columns of the reach [grains]."""
+
+GAP = 3
+"""Air between trunk and arm is at least this wide [grains]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Silhouette:
+    """A trunk, arms taken out, at k levels square to an axis and c columns across [file units].
+
+    Shape (k,): ``z``, half ``width``, its ends in depth ``low`` and ``high``, and whether ``arms`` lie beside
+    it; NaN where no level could be read. Shape (k, c): how far ``front`` and ``back`` stand out, NaN where
+    nothing is. ``cell`` is the distance of levels and columns; ``own``, shape (n,), which points are trunk.
+    """
+
+    cell: float
+    z: Floats
+    width: Floats
+    low: Floats
+    high: Floats
+    arms: Flags
+    front: Floats
+    back: Floats
+    own: Flags
+
+    @cached_property
+    def half_width(self) -> float:
+        """Half width of the trunk proper, without merged arms; NaN if there is none."""
+        return self._reference(self.width)
+
+    @cached_property
+    def girth(self) -> Floats:
+        """Girth of an ellipse as wide and deep as the trunk at each level, shape (k,); source: Ramanujan."""
+        a, b = self.width, 0.5 * (self.high - self.low)
+        return np.pi * (3.0 * (a + b) - np.sqrt((3.0 * a + b) * (a + 3.0 * b)))
+
+    @cached_property
+    def main_girth(self) -> float:
+        """Girth of the trunk proper; NaN if there is none."""
+        return self._reference(self.girth)
+
+    @cached_property
+    def mm(self) -> float:
+        """Millimetres in a file unit, if the trunk is as stout as most."""
+        return TYPICAL_GIRTH / self.main_girth
+
+    @cached_property
+    def stoutness(self) -> float:
+        """Width of the trunk proper over its depth [1]."""
+        width, depth = self.width[self.proper], (self.high - self.low)[self.proper]
+        return float(2.0 * np.median(width) / max(float(np.median(depth)), 1e-9 * self.half_width))
+
+    @cached_property
+    def proper(self) -> Flags:
+        """Levels that are trunk: not neck, not head, not merged with arms."""
+        with np.errstate(invalid="ignore"):
+            share = self.width / self.half_width
+            return (share > 0.6) & (share < 1.3) & (self.girth > 0.7 * self.main_girth)
+
+    @cached_property
+    def across(self) -> Floats:
+        """Distance of each column from the middle, shape (c,) [half widths of the trunk]."""
+        count = self.front.shape[1]
+        return np.asarray(np.abs(np.arange(count) - count // 2) * self.cell / self.half_width)
+
+    @cached_property
+    def height(self) -> Floats:
+        """Height of each level over the lowest, shape (k,) [mm of a typical trunk]."""
+        return np.asarray((self.z - self.z[0]) * self.mm)
+
+    def _reference(self, value: Floats) -> float:
+        width = self.width[np.isfinite(self.width)]
+        if len(width) == 0:
+            return float("nan")
+        upper = np.median(width[width >= np.median(width)])
+        with np.errstate(invalid="ignore"):
+            return float(np.percentile(value[self.width <= 1.25 * upper], 70))
+
+    def turned(self, up: int, back: int) -> Silhouette:
+        """Return the same trunk with z and depth taken along these signs (+1 or -1)."""
+        low, high = (self.low, self.high) if back > 0 else (-self.high, -self.low)
+        front, rear = (self.front, self.back) if back > 0 else (self.back, self.front)
+        return replace(
+            self,
+            z=up * self.z[::up],
+            width=self.width[::up],
+            low=low[::up],
+            high=high[::up],
+            arms=self.arms[::up],
+            front=front[::up],
+            back=rear[::up],
+        )
+
+
+def silhouette(points: Points, grain: float) -> Silhouette | None:
+    """Read the trunk off ``points``, shape (n, 3), with mirror plane x = 0 and z up; None without a trunk."""
+    cell = STEP * grain
+    row = np.floor((points[:, 2] - points[:, 2].min()) / cell).astype(np.int64)
+    rows = int(row.max()) + 1
+    z = points[:, 2].min() + (np.arange(rows) + 0.5) * cell
+    own = _own(points, row, rows, grain)
+    beside = np.bincount(row[~own], minlength=rows) > 0
+    points, row = points[own], row[own]
+    width, low, high = np.zeros((2, rows)), np.full(rows, np.inf), np.full(rows, -np.inf)
+    side = (points[:, 0] < 0.0).astype(np.int64)
+    np.maximum.at(width, (side, row), np.abs(points[:, 0]))
+    np.minimum.at(low, row, points[:, 1])
+    np.maximum.at(high, row, points[:, 1])
+    empty = np.bincount(row, minlength=rows) == 0
+    half = np.where(empty, np.nan, width.mean(axis=0))
+    low, high = np.where(empty, np.nan, low), np.where(empty, np.nan, high)
+    nothing = np.empty((rows, 0))
+    bare = Silhouette(cell, z, half, low, high, beside, nothing, nothing, own)
+    if not (bare.half_width > 0.0 and bare.main_girth > 0.0 and bare.proper.any()):
+        return None
+    front, back = (_reach(points * [1.0, sign, 1.0], row, bare, sign) for sign in (1.0, -1.0))
+    return Silhouette(cell, z, half, low, high, beside, front, back, own)
+
+
+def _own(points: Points, row: Indices, rows: int, grain: float) -> Flags:
+    """Tell which points belong to the trunk: at each level those up to the first gap from the middle."""
+    side = (points[:, 0] < 0.0).astype(np.int64)
+    column = np.floor(np.abs(points[:, 0]) / grain).astype(np.int64)
+    count = int(column.max()) + 1
+    taken = np.zeros((2, rows, count + GAP), dtype=bool)
+    taken[side, row, column] = True
+    near = taken[..., :count]
+    for k in range(1, GAP):
+        near = near | taken[..., k : count + k]
+    end = np.where(near.all(axis=-1), count, np.argmin(near, axis=-1))
+    return np.asarray((column < end[side, row]) & (end.min(axis=0) > 0)[row])
+
+
+def _reach(points: Points, row: Indices, trunk: Silhouette, sign: float) -> Floats:
+    """Return how far the side that faces -y stands out, shape (levels, columns), NaN if unknown."""
+    half = int(np.ceil(1.1 * trunk.half_width / trunk.cell))
+    column = np.rint(points[:, 0] / trunk.cell).astype(np.int64) + half
+    limit = 0.5 * sign * (trunk.low + trunk.high) - 0.05 * (trunk.high - trunk.low)
+    own = (points[:, 1] < limit[row]) & (column >= 0) & (column <= 2 * half)
+    reach = np.full((len(trunk.z), 2 * half + 1), -np.inf)
+    np.maximum.at(reach, (row[own], column[own]), -points[own, 1])
+    known = np.isfinite(reach)
+    weight = gaussian_filter(known.astype(np.float64), 1.0, mode="constant")
+    total = gaussian_filter(np.where(known, reach, 0.0), 1.0, mode="constant")
+    return np.where(weight > 0.3, total / np.maximum(weight, 0.3), np.nan)
