@@ -50,12 +50,19 @@ def lean(degrees: float) -> Alteration:
 
 
 def twist(degrees: float) -> Alteration:
-    """Turn the shoulders against the hips."""
+    """Turn the shoulders against the hips; the breasts go on facing forward."""
 
-    def move(p: Points) -> Points:
-        return _turned(p, np.radians(degrees) * smooth_step(p[:, 2], 60.0, 460.0), 2, (0.0, -90.0))
+    def alter(body: KnownBody) -> KnownBody:
+        bust, _ = levels(body.points)
+        still = smooth_step(np.array([bust - 20.0]), 60.0, 460.0)
 
-    return lambda body: warped(body, move)
+        def move(p: Points) -> Points:
+            angle = np.radians(degrees) * (smooth_step(p[:, 2], 60.0, 460.0) - still)
+            return _turned(p, angle, 2, (0.0, -90.0))
+
+        return warped(body, move)
+
+    return alter
 
 
 def trunk_scale(width: float, depth: float) -> Alteration:
