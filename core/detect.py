@@ -12,7 +12,7 @@ from core.calm import noise_of
 from core.doubts import doubts
 from core.landmark import Landmarks
 from core.landmarks import find_landmarks
-from core.measure import girths
+from core.measure import girth_doubts, girths
 from core.mesh import Points
 
 FURTHER = {"waist": ("waist_front",), "hip": ("hip_front",), "armpit": ("armpit_left", "armpit_right")}
@@ -29,6 +29,7 @@ def detection(body: Body, landmarks: Landmarks | None = None) -> dict[str, Any]:
     with at most 60 points [mm] of the curve that it was read from. Raises LandmarkError.
     """
     landmarks = landmarks or find_landmarks(body)
+    found = girths(body, landmarks)
     to_file = np.linalg.inv(body.pose.file_to_mm)
     marks = {
         name: {
@@ -44,7 +45,7 @@ def detection(body: Body, landmarks: Landmarks | None = None) -> dict[str, Any]:
     return {
         "landmarks": marks,
         "levels": _levels(landmarks),
-        "girths": {name: asdict(girth) for name, girth in girths(body, landmarks).items()},
+        "girths": {name: asdict(girth) for name, girth in found.items()},
         "noise_mm": round(noise_of(body.mesh), 3),
         "unit": body.pose.unit,
         "up": body.pose.up,
@@ -53,7 +54,7 @@ def detection(body: Body, landmarks: Landmarks | None = None) -> dict[str, Any]:
         "sure": body.pose.sure,
         "reason": body.pose.reason,
         "repairs": list(body.repairs),
-        "warnings": doubts(body, landmarks),
+        "warnings": doubts(body, landmarks) + girth_doubts(found),
     }
 
 

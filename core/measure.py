@@ -13,6 +13,14 @@ from core.trunk import Level, stable_level, trunk_levels
 
 ARMPITS = ("armpit_left", "armpit_right")
 
+MUCH = 50.0
+"""Over more than this of an outline that is no skin a girth is an estimate [mm]."""
+
+WARNINGS = {
+    "bust": "The bust girth goes over a hole of the scan or over a joined arm: it is an estimate.",
+    "underbust": "The under-bust girth goes over a hole of the scan or over a joined arm: it is an estimate.",
+}
+
 
 @dataclass(frozen=True)
 class Girth:
@@ -59,6 +67,11 @@ def girth_levels(landmarks: Landmarks) -> Mapping[str, float]:
     if len(pits) == 2 and min(pits) > landmarks.bust_level + 15.0:
         levels["high_bust"] = min(pits) - 2.0
     return MappingProxyType(levels)
+
+
+def girth_doubts(found: Mapping[str, Girth]) -> list[str]:
+    """Return one sentence for each girth of the bust that is an estimate, as much of its outline is no skin."""
+    return [WARNINGS[name] for name in WARNINGS if name in found and found[name].bridged_mm > MUCH]
 
 
 def _girth(level: Level) -> Girth:
