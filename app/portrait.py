@@ -12,6 +12,9 @@ Picture = NDArray[np.uint8]
 FINER = 2
 """Pixels painted for each one that is seen, in both directions: no stairs at the outlines."""
 
+MOST = 4e6
+"""Points on a skin: many large triangles get fewer points each, and perhaps holes in the picture."""
+
 LIGHT = np.array([-0.35, -0.80, 0.49])
 """Where the light comes from, in the canonical frame [1]."""
 
@@ -43,7 +46,9 @@ def _samples(places: Points, normals: Points, mesh: Mesh, grain: float) -> tuple
     corners = places[faces]
     longest = np.sqrt(((corners - np.roll(corners, 1, axis=1)) ** 2).sum(axis=2).max(axis=1))
     found = [(places, normals)]
-    steps = np.clip(np.ceil(1.5 * longest / grain), 1, 64).astype(int)
+    steps = np.maximum(np.ceil(1.5 * longest / grain), 1.0)
+    crowd = 0.5 * float((steps**2).sum()) / MOST
+    steps = np.ceil(steps / max(crowd, 1.0) ** 0.5).astype(int)
     for count in np.unique(steps):
         chosen = faces[steps == count]
         u, v = (grid.ravel() / count for grid in np.meshgrid(np.arange(count + 1), np.arange(count + 1)))

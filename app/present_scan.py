@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from app.panels.landmarks import LandmarkView
 from app.panels.scan import ScanView
-from app.words import tr
+from app.words import number, tr
 from core.body import Body
 from core.doubts import doubts
 from core.landmark import Landmarks
@@ -102,7 +102,8 @@ def _notes(body: Body) -> tuple[str, ...]:
         return ()
     if len(body.calm.faces) != len(body.mesh.faces):
         return (tr("It is so fine that a thinned copy is measured."),)
-    return (tr("It is noisy: a smoothed copy is measured."),)
+    noise = number(body.noise, 1)
+    return (tr("It is noisy, by {noise} mm: a smoothed copy is measured.").format(noise=noise),)
 
 
 def work_words(what: str) -> str:

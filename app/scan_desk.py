@@ -12,11 +12,18 @@ from PySide6.QtGui import QColor, QImage
 from app.background import Background
 from app.panels.question import PICTURE, Answer
 from app.portrait import Picture
-from app.present_scan import landmark_doubts, landmark_title, landmark_views, scan_view, work_words
+from app.present_scan import (
+    kind_of,
+    landmark_doubts,
+    landmark_title,
+    landmark_views,
+    scan_view,
+    work_words,
+)
 from app.scene_stage import LOOKS
-from app.theme import tokens_of
+from app.theme import tokens_of, tone_of
 from app.ways import Way, pictures
-from app.words import tr
+from app.words import say, tr
 from core.body import Body
 from core.design import Design
 from core.doubts import ESSENTIAL, weak_sides
@@ -51,8 +58,9 @@ class ScanDesk(QObject):
         window.rail.set_state("landmarks", "look" if weak else "done", weak)
 
     def show_opened(self, stages: Stages) -> None:
-        """Ask how a scan stands that has just been opened, if its shape does not tell."""
+        """Say what is unclear on a scan that has just been opened, and ask how it stands if need be."""
         self._forget_question()
+        self._show_unclear(stages)
         pose, source = stages.body.pose, stages.design.scan
         if pose.sure:
             return
@@ -61,6 +69,19 @@ class ScanDesk(QObject):
             self._window.notices.show_notice("warn", unsure, pose.reason, lasting=True)
         else:
             self._ask(stages.body, None)
+
+    def _show_unclear(self, stages: Stages) -> None:
+        """Say which of the landmarks that the control mesh hangs on could hardly be seen."""
+        marks = [mark for mark in stages.landmarks.points.values() if kind_of(mark.name) in ESSENTIAL]
+        worst = min(marks, key=lambda mark: mark.confidence)
+        if tone_of(worst.confidence) == "bad":
+            said, *more = landmark_doubts(stages)
+            look = (tr("Look at it"), lambda: self._look_at(worst.name))
+            self._window.notices.show_notice("warn", said, " ".join(map(say, more)), [look], lasting=True)
+
+    def _look_at(self, landmark: str) -> None:
+        self._window.desk.go_to("landmarks")
+        self._window.desk.select_landmark(landmark)
 
     def show_question(self, unsure: UnsureError) -> None:
         """Ask how a scan stands that could not be opened: no bust was found the way it was taken."""

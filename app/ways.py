@@ -38,7 +38,7 @@ def ways(pose: Pose) -> list[Way]:
     found: list[Floats] = []
     for turn in [
         now,
-        *(unit(other[:3, :3]) for other in getattr(pose, "others", ())),
+        *(unit(other[:3, :3]) for other in pose.others),
         *(turn @ now for turn in about),
     ]:
         if not any(turn[2] @ old[2] > SAME and turn[1] @ old[1] > SAME for old in found):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from html import escape
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QScrollArea, QVBoxLayout, QWidget
@@ -86,7 +88,9 @@ class ScanPanel(QWidget):
         self._forget.setVisible(bool(view.told))
         self._notes.setText("\n".join(view.notes))
         self._notes.setVisible(bool(view.notes))
-        self._repairs.setText("\n".join(map(say, view.repairs)) or tr("Nothing had to be repaired."))
+        done = [each for each in view.repairs if not _stays(each)]
+        self._repairs.setText(_listed(done) or tr("Nothing had to be repaired."))
+        self._holes.setText(_listed([each for each in view.repairs if _stays(each)]) or tr("None."))
 
     def _facts(self) -> QScrollArea:
         inside = QWidget()
@@ -96,7 +100,8 @@ class ScanPanel(QWidget):
         column.setSpacing(3)
         self._file, self._triangles = sentence("", "name"), label("", "secondary")
         self._file.setTextFormat(Qt.TextFormat.PlainText)
-        self._notes, self._reason, self._repairs = sentence(), sentence(), sentence()
+        self._notes, self._reason = sentence(), sentence()
+        self._repairs, self._holes = sentence(), sentence()
         self.units = self._choices("unit", [(unit, tr(unit)) for unit in UNITS])
         axes = [(axis, axis.replace("-", "\N{MINUS SIGN}")) for axis in AXES]
         self.ups, self.fronts = self._choices("up", axes), self._choices("front", axes)
@@ -108,6 +113,7 @@ class ScanPanel(QWidget):
         self._group(column, tr("Axis of the file that points up"), self.ups)
         self._group(column, tr("Axis of the file that the chest faces"), self.fronts, self._ways())
         self._group(column, tr("Why"), self._reason)
+        self._group(column, tr("Holes that stay open"), self._holes)
         self._group(column, tr("Repairs"), self._repairs)
         column.addSpacing(14)
         column.addWidget(another, alignment=Qt.AlignmentFlag.AlignLeft)
@@ -149,3 +155,13 @@ class ScanPanel(QWidget):
             column.addWidget(each)
             if not isinstance(each, QLabel):
                 column.addSpacing(5)
+
+
+def _stays(sentence: str) -> bool:
+    """Tell whether a sentence is on a hole that was left open, and not on a repair."""
+    return "stays open" in sentence or "stay open" in sentence
+
+
+def _listed(sentences: Sequence[str]) -> str:
+    """Return sentences one under the other, with a little room between them."""
+    return "".join(f'<p style="margin:0 0 4px 0">{escape(say(each))}</p>' for each in sentences)
