@@ -83,9 +83,11 @@ def thinned(mesh: Mesh, cell: float) -> Mesh:
     key = (place[:, 0] << 20 | place[:, 1]) << 20 | place[:, 2]
     member, count = _numbered(key)
     normals = mesh.vertex_normals
-    looks = np.stack([np.bincount(member, normals[:, k]) for k in range(3)], axis=1)
-    against = np.einsum("ij,ij->i", normals, looks[member]) < 0.0
-    sheets = np.bincount(member, against) >= OTHER_SHEET * count
+    one = np.empty(len(count), dtype=np.int64)
+    one[member] = np.arange(len(member))  # any vertex of the cell
+    against = np.einsum("ij,ij->i", normals, normals[one[member]]) < 0.0
+    share = np.bincount(member, against) / count
+    sheets = (share >= OTHER_SHEET) & (share <= 1.0 - OTHER_SHEET)
     member, count = _numbered(2 * member + (against & sheets[member]))
     vertices = np.stack([np.bincount(member, mesh.vertices[:, k]) for k in range(3)], axis=1) / count[:, None]
     faces = member[mesh.faces]

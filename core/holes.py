@@ -99,7 +99,8 @@ def _hole(mesh: Mesh, loop: Indices, faces: Indices) -> Hole:
     axes, extent = frame_of(places)
     areas = mesh.area_vectors[faces]
     looks = float((areas @ axes[2]).sum() / max(np.linalg.norm(areas, axis=1).sum(), 1e-300))
-    return Hole(loop, places.mean(axis=0), axes[2], float(extent[0]), float(extent[1]), abs(looks) < TUBE)
+    width, length = sorted(extent[:2].tolist())
+    return Hole(loop, places.mean(axis=0), axes[2], length, width, abs(looks) < TUBE)
 
 
 def hole_sentences(mesh: Mesh, holes: tuple[Hole, ...]) -> tuple[str, ...]:

@@ -139,8 +139,10 @@ def _is_built(skin: Skin, faces: Indices) -> bool:
     places = _strewn(skin, faces)
     _, near = cKDTree(places).query(places, k=NEAREST)
     around = places[near] - places[near].mean(axis=1, keepdims=True)
-    normals = np.linalg.eigh(np.einsum("ski,skj->sij", around, around))[1][:, :, 0]
-    few = normals[:: len(normals) // 12]
+    spread, directions = np.linalg.eigh(np.einsum("ski,skj->sij", around, around))
+    normals = directions[:, :, 0]
+    flattest = np.argsort(spread[:, 0] / np.maximum(spread[:, 1], 1e-300))[: len(places) // 2]
+    few = normals[flattest[:: len(flattest) // 12]]
     crossed = unit(np.cross(few[:, None], few[None])[np.triu_indices(len(few), 1)])
     thick = FLAT * float(np.sqrt(skin.areas[faces].sum()))
     main = np.linalg.eigh(normals.T @ normals)[1].T
