@@ -9,10 +9,14 @@ import numpy as np
 
 from core.body import Body
 from core.calm import calmed
+from core.creases import Crease, find_creases
+from core.easing import eased
 from core.errors import FitError
-from core.fit_check import faulty_faces
+from core.fit_check import Faults, find_faults
+from core.fit_quality import FitQuality, measure_fit
+from core.ground import Ground, survey_ground
 from core.landmark import Landmarks
-from core.laying import Ground, bridged, find_creases, lay_outline, lay_rest, survey_ground
+from core.laying import lay_line, lay_outline, lay_rest
 from core.mesh import Flags, Floats, Indices, Mesh, Points
 from core.template import Template
 from core.torso import cropped
@@ -20,6 +24,9 @@ from core.trunk import trunk_levels
 
 AROUND = 40.0
 """The skin within this of a level is calmed before it is measured there [mm]."""
+
+MOST_HOLES = 0.5
+"""A scan that lacks more than this part of a breast, or of all that the template lies on, is refused."""
 
 LINE_HEIGHTS = (0.25, 0.75)
 """Where the line row may run between fold (0) and bust point (1)."""
@@ -32,7 +39,7 @@ class ControlMesh:
     ``fixed`` (n,) tells the points that do not move; ``row`` and ``column`` (n,) are their places in the
     template, column 0 the centre, positive the subject's left. ``paths`` are the control points of each named
     line from right (-x) to left; ``bust_points`` those at the bust points, (left, right). ``border`` (b,) is
-    the border loop in order, ``warnings`` what the user should know of the fit.
+    the border loop in order, ``warnings`` what the user should know of the fit, ``quality`` its figures.
     """
 
     mesh: Mesh
@@ -43,6 +50,7 @@ class ControlMesh:
     bust_points: tuple[int, int]
     border: Indices
     warnings: tuple[str, ...]
+    quality: FitQuality | None = None
 
 
 def fit_control_mesh(
@@ -56,33 +64,140 @@ def fit_control_mesh(
     low, high = LINE_HEIGHTS
     if not low <= line_height <= high:
         raise FitError(f"The line height {line_height:g} is out of range.", f"Choose {low:g} to {high:g}.")
-    ground = survey_ground(template, body.mesh, landmarks)
-    outline, holes = bridged(lay_outline(ground, landmarks))
-    creases, lacking = find_creases(ground, outline, landmarks)
-    warnings = [_without_fold(template, number) for number in lacking] + _arm_warning(ground)
+    ground = survey_ground(template, body.calm, landmarks)
+    outline, holes = lay_outline(ground, landmarks)
+    creases, lacking, holed = find_creases(ground, outline, landmarks)
+    warnings = [_without_fold(template, number) for number in [*lacking, *holed]] + _arm_warning(ground)
+    tries: list[_Try] = []
     while True:
-        points, more_holes = bridged(lay_rest(ground, outline, creases, line_height))
-        _refuse_holes(points)
-        mesh = Mesh(points.reshape(-1, 3), template.faces)
-        faulty = faulty_faces(mesh, ground.front, template.row == template.row_of("fold"))
-        if not faulty.any():
-            return _control_mesh(template, mesh, warnings + _hole_warning(holes + more_holes))
-        blamed = set(template.column[template.faces[faulty]].ravel().tolist()) & set(creases)
-        if not blamed:
-            raise FitError(
-                f"{faulty.sum()} triangles of the control mesh would be flat or folded on this body.",
-                "Correct the bust points and folds, or choose the other template.",
-            )
+        tries += _tries(ground, outline, creases, holed, line_height, warnings)
+        best = min(tries, key=lambda one: one.weight)
+        faulty = template.faces[tries[-1].faults.any | tries[-1].half_way.any]
+        blamed = set(template.column[faulty].ravel().tolist()) & set(creases)
+        if best.sound or not blamed:
+            break
         shallowest = min(blamed, key=lambda number: creases[number].depth)
         del creases[shallowest]
-        warnings.append(_without_fold(template, shallowest))
-
-
-def _refuse_holes(points: Points) -> None:
-    missing = int(np.isnan(points[..., 0]).sum())
-    if missing:
+        warnings = [*warnings, _without_fold(template, shallowest)]
+    holes = holes | best.holes
+    _refuse_holes(template, holes)
+    if best.faults.folded.any():
         raise FitError(
-            f"The scan has no skin where {missing} of the {points[..., 0].size} control points must lie.",
+            f"{best.faults.folded.sum()} triangles of the control mesh would be folded on this body.",
+            "Correct the bust points and folds, or choose the other template.",
+        )
+    quality = measure_fit(best.mesh, ground.skin, *_off_landmarks(template, best.mesh, landmarks))
+    more = [*_hole_warning(int(holes.sum())), *quality.warnings]
+    return _control_mesh(template, best.mesh, [*best.warnings, *more], quality)
+
+
+@dataclass(frozen=True, eq=False)
+class _Try:
+    """One way to lay the template, where it has no skin, and what to tell of it.
+
+    ``faults`` are its own, ``half_way`` those that it has when the line row runs half way: they choose among
+    the ways to lay, so that the line height moves the line row alone.
+    """
+
+    mesh: Mesh
+    faults: Faults
+    half_way: Faults
+    holes: Flags
+    warnings: list[str]
+
+    @property
+    def weight(self) -> tuple[int, ...]:
+        """How bad it is: to be compared."""
+        return int(self.faults.folded.sum()), *self.half_way.weight, *self.faults.weight
+
+    @property
+    def sound(self) -> bool:
+        """Whether nothing else needs to be tried."""
+        return not (self.faults.folded.any() or self.half_way.any.any())
+
+
+def _tries(
+    ground: Ground,
+    outline: Points,
+    creases: Mapping[int, Crease],
+    holed: list[int],
+    line_height: float,
+    warnings: list[str],
+) -> list[_Try]:
+    """Lay all points, eased where triangles are pointed; if that brings faults, as the rules say too.
+
+    All but the line row is eased as if that ran half way, so that it alone moves with ``line_height``.
+    """
+    template = ground.template
+    fold, line, bust = (template.row_of(rule) for rule in ("fold", "line", "bust point"))
+    laid, holes = lay_rest(ground, outline, creases, holed)
+    laid[line], holes[line] = lay_line(ground, laid, creases, 0.5)
+    level, upright = _free_ways(template, creases)
+    found = []
+    for way in (eased(laid, template.faces, ground.skin, level, upright), laid):
+        mesh, half_way = _judged(ground, way)
+        faults = half_way
+        if line_height != 0.5:
+            points = way.copy()
+            points[line], holes[line] = lay_line(ground, laid, creases, line_height)
+            shift = way[[fold, bust]] - laid[[fold, bust]]
+            along = shift[0] + line_height * (shift[1] - shift[0])
+            slid = along.any(axis=1)
+            points[line, slid] = ground.skin.nearest(points[line, slid] + along[slid])
+            only = (np.arange(len(points)) == line)[:, None]
+            smooth = eased(points, template.faces, ground.skin, level & only, upright & only)
+            judged = [_judged(ground, smooth), _judged(ground, points)]
+            mesh, faults = min(judged, key=lambda one: one[1].weight)
+        found.append(_Try(mesh, faults, half_way, holes, warnings))
+        if found[-1].sound:
+            break
+    return found
+
+
+def _judged(ground: Ground, points: Points) -> tuple[Mesh, Faults]:
+    """Return the control mesh at ``points``, shape (rows, columns, 3) [mm], and what is at fault with it."""
+    template = ground.template
+    mesh = Mesh(points.reshape(-1, 3), template.faces)
+    return mesh, find_faults(mesh, ground.skin, template.row == template.row_of("fold"))
+
+
+def _free_ways(template: Template, creases: Mapping[int, Crease]) -> tuple[Flags, Flags]:
+    """Tell which points may slide along their row, and which along their column, shape (rows, columns).
+
+    The bust points and the centre column stay, the bust row stays level, folds stay folds, and the line keeps
+    its height under the bust points.
+    """
+    shape = len(template.rows), 2 * template.half + 1
+    column, row = template.column.reshape(shape), template.row.reshape(shape)
+    bust, fold, line = (row == template.row_of(rule) for rule in ("bust point", "fold", "line"))
+    level = (column != 0) & (np.abs(column) < template.half)
+    below = np.abs(column) == template.bust_column
+    level &= ~(bust & below)
+    sharp = [number for number in creases if template.columns[abs(number)].fold == "crease"]
+    return level, ~bust & ~(fold & np.isin(column, sharp)) & ~(line & below)
+
+
+def _off_landmarks(template: Template, mesh: Mesh, landmarks: Landmarks) -> tuple[Flags, float, float]:
+    """Return which points are in the fold row, (n,), and how far bust points and folds are off [mm]."""
+    fold = template.row == template.row_of("fold")
+    bust_off, fold_off = 0.0, 0.0
+    for side, sign in (("left", 1), ("right", -1)):
+        column = sign * template.bust_column
+        bust, below = (
+            mesh.vertices[template.point(template.row_of(rule), column)] for rule in ("bust point", "fold")
+        )
+        bust_off = max(bust_off, float(np.linalg.norm(bust - landmarks.position(f"bust_point_{side}"))))
+        fold_off = max(fold_off, abs(float(below[2] - landmarks.position(f"fold_{side}")[2])))
+    return fold, bust_off, fold_off
+
+
+def _refuse_holes(template: Template, holes: Flags) -> None:
+    free = template.free.reshape(holes.shape)
+    column = template.column.reshape(holes.shape)
+    sides = [holes[free & (sign * column > 0)].mean() for sign in (1, -1)]
+    if max(sides) > MOST_HOLES or holes.mean() > MOST_HOLES:
+        raise FitError(
+            f"The scan has no skin where {holes.sum()} of the {holes.size} control points must lie.",
             "Close the holes of the scan, or open one that reaches from the ribs to the collarbones.",
         )
 
@@ -90,7 +205,9 @@ def _refuse_holes(points: Points) -> None:
 def _hole_warning(count: int) -> list[str]:
     if count == 0:
         return []
-    return [f"The scan has holes at {count} control points: they lie straight between their neighbours."]
+    return [
+        f"The scan has holes at {count} control points: they lie as their neighbours and the other side tell."
+    ]
 
 
 def _arm_warning(ground: Ground) -> list[str]:
@@ -107,7 +224,7 @@ def _without_fold(template: Template, number: int) -> str:
     )
 
 
-def _control_mesh(template: Template, mesh: Mesh, warnings: list[str]) -> ControlMesh:
+def _control_mesh(template: Template, mesh: Mesh, warnings: list[str], quality: FitQuality) -> ControlMesh:
     bust = template.row_of("bust point")
     left, right = (template.point(bust, sign * template.bust_column) for sign in (1, -1))
     return ControlMesh(
@@ -119,6 +236,7 @@ def _control_mesh(template: Template, mesh: Mesh, warnings: list[str]) -> Contro
         (left, right),
         mesh.boundary_loops[0],
         tuple(warnings),
+        quality,
     )
 
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from core.errors import FitError
+from core.bridging import rebuilt, straight
+from core.creases import Crease
+from core.ground import Ground
 from core.landmark import Landmarks
-from core.mesh import Flags, Floats, Indices, Mesh, Points, unit
-from core.profiles import Profile, exits, find_fold, heading, profile
-from core.template import Template
-from core.torso import Torso, cropped, measure_torso
+from core.mesh import Flags, Floats, Mesh, Points, unit
+from core.profiles import exits, heading
 
 FORWARD = np.array([0.0, -1.0, 0.0])
 
@@ -25,130 +24,58 @@ OVERHANG = 90.0
 BEHIND = 120.0
 """Rays to the upper breast start so far behind the place where the skin is expected [mm, reference size]."""
 
-CLEAR = 15.0
-"""Beside the bust points their row stays so far above the folds, however low they hang [mm, ref. size]."""
-
-SHALLOW = 2.0
-"""A hollow less deep than this is no fold [mm]."""
-
 SPACE = 16.0
 """The line row keeps so far from the rows of fold and bust points, where there is that much room [mm]."""
 
-ALIKE = 3.0
-"""The body counts as symmetric where landmarks of both sides mirror each other as well as this [mm]."""
+PROBES = (8.0, -8.0, 16.0, -16.0, 24.0, -24.0, 32.0, -32.0, 40.0, -40.0)
+"""Where the collar has no skin, it lies as the skin so much higher or lower does [mm]."""
 
 
-@dataclass(frozen=True, eq=False)
-class Ground:
-    """The front of a body under a template.
+def lay_outline(ground: Ground, landmarks: Landmarks) -> tuple[Points, Flags]:
+    """Lay the collar below, the bust row, the upper edge and the collar above; holes are bridged.
 
-    For each column from right to left, shape (c,): ``column`` number, ``azimuth`` [rad], height of the
-    collar below and of the bust row, ``below`` and ``bust`` [mm]. ``edge`` and ``above`` [mm] are the heights
-    of the upper edge and the collar above it.
-    """
-
-    template: Template
-    torso: Torso
-    front: Mesh
-    column: Indices
-    azimuth: Floats
-    below: Floats
-    bust: Floats
-    edge: float
-    above: float
-
-    @property
-    def axis(self) -> Points:
-        """A point on the axis of the torso, shape (3,) [mm]."""
-        return self.torso.axis
-
-
-def survey_ground(template: Template, mesh: Mesh, landmarks: Landmarks) -> Ground:
-    """Find where the rows and columns of ``template`` run on a body. Raises FitError without a torso."""
-    torso = measure_torso(mesh, landmarks)
-    value = {row.rule: row.value * torso.scale for row in template.rows}
-    column = np.arange(-template.half, template.half + 1)
-    azimuth = np.array([_azimuth(template, torso, number) for number in column.tolist()])
-    below = torso.height("lowest", azimuth) - value["below"]
-    edge, above = _upper_levels(torso, mesh, value["edge"], value["above"])
-    y, z = mesh.vertices[:, 1], mesh.vertices[:, 2]
-    margin = 60.0 * torso.scale
-    near = (y < torso.axis[1] + margin) & (z > below.min() - margin) & (z < above + margin)
-    front = cropped(mesh, near)
-    bust = torso.height("bust", azimuth)
-    beside = np.abs(column) != template.bust_column
-    least = torso.height("fold", azimuth) + CLEAR * torso.scale
-    bust = np.where(beside, np.maximum(bust, least), bust)
-    return Ground(template, torso, front, column, azimuth, below, bust, edge, above)
-
-
-def _azimuth(template: Template, torso: Torso, number: int) -> float:
-    column = template.columns[abs(number)]
-    side, sign = (torso.left, 1.0) if number >= 0 else (torso.right, -1.0)
-    return float(
-        sign * (column.bust_point * side.azimuth + column.outer_root * side.root + np.radians(column.degrees))
-    )
-
-
-def _upper_levels(torso: Torso, mesh: Mesh, rise: float, collar: float) -> tuple[float, float]:
-    """Return the heights of the upper edge and of the collar above, as high as the scan allows [mm]."""
-    scale = torso.scale
-    edge = 0.5 * (torso.left.fold + torso.right.fold) + rise
-    edge = max(edge, torso.armpit + 25.0 * scale)
-    above = min(edge + collar, float(mesh.vertices[mesh.faces, 2].max()) - 10.0 * scale)
-    edge = min(edge, above - 25.0 * scale)
-    if edge < max(torso.left.bust, torso.right.bust) + 45.0 * scale:
-        raise FitError(
-            "The scan ends too close above the bust points.",
-            "Open a scan that reaches to the collarbones, or correct the bust points.",
-        )
-    return edge, above
-
-
-def bridged(points: Points) -> tuple[Points, int]:
-    """Fill places without skin from their neighbours in the row, points of shape (rows, columns, 3) [mm].
-
-    Returns the points and how many were filled. NaN stays where one of the two outermost columns, or more
-    than two columns side by side, are missing.
-    """
-    filled = points.copy()
-    for row in filled:
-        missing = np.isnan(row[:, 0])
-        known = np.flatnonzero(~missing)
-        if len(known) < 2:
-            continue
-        for place in np.flatnonzero(missing):
-            after = int(np.searchsorted(known, place))
-            if 0 < after < len(known) and known[after] - known[after - 1] <= 3:
-                low, high = known[after - 1], known[after]
-                row[place] = row[low] + (row[high] - row[low]) * (place - low) / (high - low)
-    return filled, int((np.isnan(points) & ~np.isnan(filled))[..., 0].sum())
-
-
-def lay_outline(ground: Ground, landmarks: Landmarks) -> Points:
-    """Lay the collar below, the bust row, the upper edge and the collar above.
-
-    Returns all points, shape (rows, columns, 3) [mm]; NaN for the other rows and where there is no skin.
+    Returns all points, shape (rows, columns, 3) [mm], NaN in the other rows, and which had no skin.
     """
     template, axis = ground.template, ground.axis
     points = np.full((len(template.rows), len(ground.column), 3), np.nan)
-    points[0] = _level_exits(ground, ground.below, np.zeros(len(ground.column), dtype=np.bool_))
     bust = template.row_of("bust point")
     points[bust] = _level_exits(ground, ground.bust, np.abs(ground.azimuth) <= BREAST)
     for side, sign in (("left", 1), ("right", -1)):
         mark = landmarks.position(f"bust_point_{side}")
         place = template.half + sign * template.bust_column
-        points[bust, place] = _skin_nearest(
-            ground.front, mark, heading(ground.azimuth[place]), ground.torso.scale
-        )
-    across = np.array([template.columns[abs(number)].upper_edge for number in ground.column])
-    across = np.sign(ground.column) * across * 0.88 * ground.torso.armpit_width
-    for row, height, narrower in ((-2, ground.edge, 1.0), (-1, ground.above, 0.97)):
-        x = axis[0] + narrower * across
-        origins = np.column_stack([x, np.full_like(x, axis[1]), np.full_like(x, height)])
+        at = _skin_nearest(ground.front, mark, heading(ground.azimuth[place]), ground.torso.scale)
+        points[bust, place] = mark if np.isnan(at).any() else at
+    outer = axis[0] + np.array([[1.0], [0.97]]) * ground.across
+    outline = [0, bust, -2, -1]
+    first = _collar(ground, outer, 0.0)
+    points[[0, -2, -1]] = first
+    holes = np.isnan(points[..., 0])
+    holes[[row for row in range(len(points)) if row not in (0, bust, len(points) - 2, len(points) - 1)]] = (
+        False
+    )
+    points[outline] = straight(points[outline])
+    for rise in PROBES:
+        missing = np.isnan(points[[0, -2, -1], :, 0])
+        if not missing.any():
+            break
+        found = _collar(ground, outer, rise * ground.torso.scale) - (0.0, 0.0, rise * ground.torso.scale)
+        points[[0, -2, -1]] = np.where(missing[..., None], found, points[[0, -2, -1]])
+    points[outline] = rebuilt(points[outline], float(axis[0]))
+    return points, holes
+
+
+def _collar(ground: Ground, outer: Floats, rise: float) -> Points:
+    """Lay the collar below, the upper edge and the collar above so much higher, shape (3, columns, 3) [mm].
+
+    ``outer``, shape (2, columns) [mm], is x of the two upper ones.
+    """
+    none = np.zeros(len(ground.column), dtype=np.bool_)
+    rows = [_level_exits(ground, ground.below + rise, none)]
+    for x, height in zip(outer, (ground.edge, ground.above), strict=True):
+        origins = np.column_stack([x, np.full_like(x, ground.axis[1]), height + rise])
         ways = exits(ground.front, origins, np.broadcast_to(FORWARD, origins.shape))
-        points[row] = origins + _firsts(ways)[:, None] * FORWARD
-    return points
+        rows.append(origins + _firsts(ways)[:, None] * FORWARD)
+    return np.array(rows)
 
 
 def _level_exits(ground: Ground, heights: Floats, outermost: Flags) -> Points:
@@ -179,86 +106,23 @@ def _skin_nearest(front: Mesh, expected: Points, direction: Points, scale: float
     return np.squeeze(origins + np.array(reach)[:, None] * direction)
 
 
-@dataclass(frozen=True, eq=False)
-class Crease:
-    """The fold in one column: ``arc`` [mm] down ``profile`` from the bust row, ``depth`` [mm] deep."""
+def lay_rest(
+    ground: Ground, outline: Points, creases: Mapping[int, Crease], holed: Iterable[int]
+) -> tuple[Points, Flags]:
+    """Return ``outline`` with the rows of folds and upper breast too, shape (rows, columns, 3) [mm].
 
-    profile: Profile
-    arc: float
-    depth: float
-
-
-def find_creases(
-    ground: Ground, outline: Points, landmarks: Landmarks
-) -> tuple[dict[int, Crease], list[int]]:
-    """Return the folds by column number, found on the profiles of the body, and the columns that lack one.
-
-    A column lacks its fold if a hole ends its profile, or if the bust point has none below it; in the others
-    the breast may pass into the trunk without a fold. On a symmetric body the folds of mirrored columns are
-    made alike. Source: ours.
-    """
-    start = outline[ground.template.row_of("bust point")]
-    creases: dict[int, Crease] = {}
-    lacking = []
-    for place, number in enumerate(ground.column.tolist()):
-        column = ground.template.columns[abs(number)]
-        if column.fold == "none" or np.isnan(start[place]).any():
-            continue
-        bottom = ground.below[place] - 2.0 * ground.torso.scale
-        down = profile(ground.front, ground.axis, start[place], bottom)
-        crease = None if down is None else _crease(ground, place, down)
-        if crease is not None:
-            creases[number] = crease
-        elif down is None or abs(number) == ground.template.bust_column:
-            lacking.append(number)
-    if _symmetric(ground.axis, landmarks):
-        pairs = [number for number in creases if -number in creases]
-        mean = {number: 0.5 * (creases[number].arc + creases[-number].arc) for number in pairs}
-        creases |= {number: replace(creases[number], arc=arc) for number, arc in mean.items()}
-    return creases, lacking
-
-
-def _crease(ground: Ground, place: int, down: Profile) -> Crease | None:
-    """Return the fold on the profile of a column, None if no hollow lies where a fold may be."""
-    column = ground.template.columns[abs(ground.column[place])]
-    fold = find_fold(down, column.fold == "crease")
-    torso, azimuth, bust = ground.torso, ground.azimuth[[place]], ground.bust[place]
-    usual, lowest = torso.height("fold", azimuth)[0], torso.height("lowest", azimuth)[0]
-    highest = usual + 0.35 * max(bust - usual, 0.0)
-    if fold is None or fold.depth < SHALLOW or fold.z < min(usual, lowest) - 25.0 * torso.scale - 5.0:
-        return None
-    if fold.z > highest + 6.0 * torso.scale:
-        return None
-    arc = fold.arc if fold.z <= highest else down.next_below(fold.arc, highest)
-    return Crease(down, max(arc, column.room * (bust - ground.below[place])), fold.depth)
-
-
-def _symmetric(axis: Points, landmarks: Landmarks) -> bool:
-    """Tell whether the bust points and folds of both sides mirror each other about the axis."""
-    for what in ("bust_point", "fold"):
-        left = landmarks.position(f"{what}_left") - axis
-        right = (landmarks.position(f"{what}_right") - axis) * (-1.0, 1.0, 1.0)
-        if np.linalg.norm(left - right) > ALIKE:
-            return False
-    return True
-
-
-def lay_rest(ground: Ground, outline: Points, creases: Mapping[int, Crease], line_height: float) -> Points:
-    """Return ``outline`` with the rows between laid too, shape (rows, columns, 3) [mm].
-
-    The line row runs at the part ``line_height`` [1] of the way along the skin from the fold to the bust row;
-    where there is no fold, of the way up.
+    The line row stays NaN. The columns ``holed`` take their fold from columns beside or opposite. Also
+    returns which places had no skin.
     """
     points = outline.copy()
     fold, line, bust = (ground.template.row_of(rule) for rule in ("fold", "line", "bust point"))
-    breast = np.abs(ground.azimuth) <= BREAST
     rise = (1.0 - _fold_shares(ground)) * (ground.bust - ground.below)
-    points[fold] = _level_exits(ground, ground.bust - rise, breast)
-    points[line] = _level_exits(ground, ground.bust - rise + _up_to_line(rise, line_height), breast)
+    points[fold] = _level_exits(ground, ground.bust - rise, np.abs(ground.azimuth) <= BREAST)
     for number, crease in creases.items():
-        place = number + ground.template.half
-        points[fold, place] = crease.profile.at(crease.arc)
-        points[line, place] = crease.profile.at(crease.arc - float(_up_to_line(crease.arc, line_height)))
+        points[fold, number + ground.template.half] = crease.profile.at(crease.arc)
+    for number in holed:
+        if {number - 1, number + 1, -number} & set(creases):
+            points[fold, number + ground.template.half] = np.nan
     radial = np.array([heading(azimuth) for azimuth in ground.azimuth])
     for row, rule in enumerate(ground.template.rows):
         if rule.rule != "upper":
@@ -266,7 +130,31 @@ def lay_rest(ground: Ground, outline: Points, creases: Mapping[int, Crease], lin
         expected = points[bust] + rule.value * (points[-2] - points[bust])
         direction = unit((1.0 - rule.value) * radial + rule.value * FORWARD)
         points[row] = _skin_nearest(ground.front, expected, direction, ground.torso.scale)
-    return points
+    others = np.arange(len(points)) != line
+    holes = np.isnan(points[..., 0])
+    points[others] = rebuilt(points[others], float(ground.axis[0]))
+    return points, holes
+
+
+def lay_line(
+    ground: Ground, points: Points, creases: Mapping[int, Crease], line_height: float
+) -> tuple[Points, Flags]:
+    """Return the line row, shape (columns, 3) [mm], and which of its places had no skin.
+
+    It runs at the part ``line_height`` [1] of the way along the skin from the fold to the bust row of
+    ``points``, shape (rows, columns, 3) [mm]; where there is no fold, of the way up.
+    """
+    fold, bust = (ground.template.row_of(rule) for rule in ("fold", "bust point"))
+    rise = (1.0 - _fold_shares(ground)) * (ground.bust - ground.below)
+    heights = ground.bust - rise + _up_to_line(rise, line_height)
+    row = _level_exits(ground, heights, np.abs(ground.azimuth) <= BREAST)
+    for number, crease in creases.items():
+        place = number + ground.template.half
+        row[place] = crease.profile.at(crease.arc - float(_up_to_line(crease.arc, line_height)))
+    holes = np.isnan(row[:, 0])
+    row = straight(row[None])[0]
+    between = points[fold] + line_height * (points[bust] - points[fold])
+    return np.where(np.isnan(row), between, row), holes
 
 
 def _up_to_line(way: Floats | float, line_height: float) -> Floats:

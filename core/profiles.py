@@ -26,19 +26,17 @@ def heading(azimuth: float) -> Points:
 
 
 def exits(mesh: Mesh, origins: Points, directions: Points) -> list[Floats]:
-    """Return where rays leave the body: for each the distances [mm] from its origin, ascending.
+    """Return where level rays leave the body: for each the distances [mm] from its origin, ascending.
 
-    ``origins`` have shape (k, 3) [mm], ``directions`` (k, 3) [1]; none of these may be upright. A ray leaves
-    through triangles whose outward normal points along it; one through an edge counts both its triangles.
+    ``origins`` have shape (k, 3) [mm], ``directions`` (k, 3) [1] are level. A ray leaves through triangles
+    whose outward normal points along it; one through an edge counts both its triangles.
     """
-    frames = _ray_frames(unit(directions))
-    above = frames[:, 0] @ mesh.vertices.T >= (frames[:, 0] * origins).sum(axis=1)[:, None]
-    a, b, c = np.ascontiguousarray(mesh.faces.T)
+    a, b, c = (mesh.vertices[mesh.faces[:, k], 2] for k in range(3))
+    low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
     ways = []
-    for origin, frame, side in zip(origins, frames, above, strict=True):
-        first = side[a]
-        crossed = (first != side[b]) | (first != side[c])
-        ways.append(_exits_along_z((mesh.vertices[mesh.faces[crossed]] - origin) @ frame.T))
+    for origin, frame in zip(origins, _ray_frames(unit(directions)), strict=True):
+        level = np.flatnonzero((low <= origin[2]) & (high >= origin[2]))
+        ways.append(_exits_along_z((mesh.vertices[mesh.faces[level]] - origin) @ frame.T))
     return ways
 
 

@@ -23,6 +23,9 @@ BEYOND = np.radians(28.0)
 SHOULDER = 1.3
 """From the armpits up the torso is more than so many times as wide as under the breasts."""
 
+UNDER = np.array([-20.0, -12.0, -5.0])
+"""The torso is measured so far over the under-bust level [mm]: at the first that the scan shows."""
+
 
 @dataclass(frozen=True)
 class Breast:
@@ -63,13 +66,15 @@ class Torso:
 
 def cropped(mesh: Mesh, keep: Flags) -> Mesh:
     """Return the triangles all whose corners are in ``keep``, shape (n,), with these vertices only."""
-    used, faces = np.unique(mesh.faces[keep[mesh.faces].all(axis=1)], return_inverse=True)
-    return Mesh(mesh.vertices[used], faces.reshape(-1, 3))
+    faces = mesh.faces[keep[mesh.faces].all(axis=1)]
+    used = np.zeros(len(mesh.vertices), dtype=np.bool_)
+    used[faces] = True
+    return Mesh(mesh.vertices[used], (np.cumsum(used) - 1)[faces])
 
 
 def measure_torso(mesh: Mesh, landmarks: Landmarks) -> Torso:
     """Measure the torso of a body. Raises FitError if there is none under the breasts. Source: ours."""
-    level = trunk_levels(mesh, [landmarks.underbust_level - 20.0])[0].points
+    level = _below(mesh, landmarks.underbust_level)
     if len(level) < 3:
         raise FitError(
             "The scan ends at the breasts: there is no torso under them.",
@@ -84,11 +89,18 @@ def measure_torso(mesh: Mesh, landmarks: Landmarks) -> Torso:
     return Torso(axis, scale, armpit, armpit_width, left, right)
 
 
+def _below(mesh: Mesh, underbust_level: float) -> Points:
+    """Return the outline of the torso 2 cm under the breasts, nearer if the scan ends before, (k, 3) [mm]."""
+    levels = [level.points for level in trunk_levels(mesh, underbust_level + UNDER)]
+    widths = np.array([np.ptp(points[:, 0]) if len(points) else 0.0 for points in levels])
+    return levels[int(np.argmax(widths >= 0.85 * widths.max()))]
+
+
 def _armpit(mesh: Mesh, landmarks: Landmarks, half_width: float) -> tuple[float, float]:
     """Return height and half width of the last level, going up, that is not yet as wide as shoulders [mm]."""
     scale = half_width / REFERENCE
     z = np.arange(landmarks.bust_level - 12.0, landmarks.bust_level + 150.0 * scale, 3.0)
-    levels = [level.points for level in trunk_levels(mesh, z)]
+    levels = [level.points for level in trunk_levels(mesh, z, arms=True)]
     widths = np.array([0.5 * np.ptp(points[:, 0]) if len(points) else np.inf for points in levels])
     over = np.flatnonzero(widths > SHOULDER * half_width)
     last = (int(over[0]) if len(over) else len(z)) - 1
