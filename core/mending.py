@@ -19,8 +19,8 @@ CLOSED = 30.0
 SEAM = 2.0
 """Borders of different parts nearer than this are sewn together [mm]."""
 
-APART = 6
-"""Vertices of one border fewer steps apart are not sewn to each other."""
+CRACK = 30.0
+"""The two sides of one border are sewn to each other only where the way between them is longer [mm]."""
 
 
 def mended(mesh: Mesh) -> tuple[Mesh, tuple[str, ...]]:
@@ -53,11 +53,8 @@ def mend(mesh: Mesh) -> tuple[Mesh, int, int]:
     if not sewn and not small:
         return mesh, 0, 0
     faces, added, closed = [home[mesh.faces]], [vertices], 0
-    count, tree, edges = (
-        len(vertices),
-        cKDTree(vertices),
-        _edges_at(np.concatenate([*small, start[:0]]), faces[0]),
-    )
+    count, tree = len(vertices), cKDTree(vertices)
+    edges = _edges_at(np.concatenate([*small, start[:0]]), faces[0])
     for loop in small:
         near = tree.query_ball_point(vertices[loop].mean(axis=0), CLOSED)
         patch, new = _filled(vertices[loop], vertices[near], mesh.vertex_normals[near])
@@ -90,8 +87,8 @@ def _twins(mesh: Mesh, start: Indices, end: Indices) -> Indices:
     other = border[np.minimum(row, len(border) - 1)]
     steps = np.abs(place[other] - place[border][:, None])
     steps = np.minimum(steps, size[border][:, None] - steps)
-    way = steps * _border_step(mesh, start, end)
-    foreign = (loop[other] != loop[border][:, None]) | ((steps >= APART) & (way > 4.0 * distance))
+    way = steps * float(np.median(np.linalg.norm(mesh.vertices[end] - mesh.vertices[start], axis=1)))
+    foreign = (loop[other] != loop[border][:, None]) | (way > CRACK)
     distance = np.where(foreign, distance, np.inf)
     best = np.argmin(distance, axis=1)
     rows = np.arange(len(border))
@@ -99,10 +96,6 @@ def _twins(mesh: Mesh, start: Indices, end: Indices) -> Indices:
     twin[border] = wanted
     twin = np.where(twin[twin] == np.arange(len(twin)), twin, np.arange(len(twin)))
     return _without_tangles(mesh, twin)
-
-
-def _border_step(mesh: Mesh, start: Indices, end: Indices) -> float:
-    return float(np.median(np.linalg.norm(mesh.vertices[end] - mesh.vertices[start], axis=1)))
 
 
 def _without_tangles(mesh: Mesh, twin: Indices) -> Indices:
