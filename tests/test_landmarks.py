@@ -11,9 +11,10 @@ import pytest
 import trimesh
 
 from core.body import Body
+from core.bust_point import MIRRORED, NIPPLE, PROMINENT
 from core.errors import LandmarkError
 from core.landmark import Landmarks
-from core.landmarks import MIRRORED, NIPPLE, PROMINENT, find_landmarks
+from core.landmarks import find_landmarks
 from core.mesh import Mesh
 from core.relief import relief_kernels
 from core.upright import Pose
@@ -76,7 +77,7 @@ def test_fold_and_lowest_point_lie_at_their_heights(name, side):
 @pytest.mark.parametrize("name", SAMPLES)
 def test_levels_follow_from_the_points(name):
     landmarks = found(name)
-    assert set(landmarks.points) == NAMES
+    assert set(landmarks.points) >= NAMES
     busts = [landmarks.position(f"bust_point_{side}")[2] for side in SIDES]
     assert landmarks.bust_level == pytest.approx(np.mean(busts))
     rest = [landmarks.position(mark)[2] for mark in NAMES if not mark.startswith("bust")]

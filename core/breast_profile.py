@@ -1,0 +1,109 @@
+"""Upright profiles of one breast: from beside the bust point down over the fold, across holes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from core.mesh import Flags, Floats, Mesh, Points
+from core.sections import arc_length, chains, cut, resample
+
+OFFSETS = np.arange(-44.0, 45.0, 4.0)
+"""The fold is traced over profiles so far beside the bust point [mm]."""
+
+OWN = len(OFFSETS) // 2
+"""The profile through the bust point."""
+
+BRIDGE = 100.0
+"""A profile goes on behind a hole of up to this length [mm]."""
+
+MARGIN = 9.0
+"""So near to a hole [mm] a smoothed profile bends as the hole does, not as the body."""
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """A profile from beside the bust point downwards, a point each mm, shape (k, 3) [mm].
+
+    ``bend`` is its curvature, positive where it is hollow [1/mm]; ``seen`` is False near a hole; ``whole``
+    tells that it reaches its lower end without one.
+    """
+
+    points: Points
+    bend: Floats
+    seen: Flags
+    whole: bool
+
+
+def profiles(mesh: Mesh, bust: Points, bottom: float) -> list[Profile]:
+    """Return the profiles at ``OFFSETS`` beside the bust point, down to the height ``bottom`` [mm].
+
+    A profile is empty where there is no surface.
+    """
+    x = mesh.vertices[:, 0][mesh.faces.T] - bust[0]
+    crossed = (x.min(axis=0) <= OFFSETS[-1]) & (x.max(axis=0) >= OFFSETS[0])
+    strip = Mesh(mesh.vertices, mesh.faces[crossed])
+    return [_profile(strip, bust, offset, bottom) for offset in OFFSETS]
+
+
+def _profile(mesh: Mesh, bust: Points, offset: float, bottom: float) -> Profile:
+    pieces = chains(cut(mesh, bust + np.array([offset, 0.0, 0.0]), (1.0, 0.0, 0.0)))
+    start = bust + np.array([offset, 0.0, 0.0])
+    if not pieces:
+        return _measured(start[None], np.empty((0, 2, 3)), bottom)
+    distances = [((curve - start) ** 2).sum(axis=1) for curve, _ in pieces]
+    nearest = int(np.argmin([distance.min() for distance in distances]))
+    curve = _downward(*pieces.pop(nearest), int(np.argmin(distances[nearest])))
+    bridges = []
+    ends = [piece[::turn] for piece, closed in pieces if not closed for turn in (1, -1)]
+    while curve[-1, 2] > bottom and ends:
+        jumps = [
+            float(np.linalg.norm(end[0] - curve[-1])) if end[0, 2] < curve[-1, 2] + 25.0 else np.inf
+            for end in ends
+        ]
+        nearest = int(np.argmin(jumps))
+        if jumps[nearest] > BRIDGE:
+            break
+        bridges.append([curve[-1], ends[nearest][0]])
+        curve = np.concatenate([curve, ends[nearest]])
+        del ends[nearest - nearest % 2 : nearest - nearest % 2 + 2]
+    below = np.flatnonzero(curve[:, 2] < bottom)
+    return _measured(curve[: below[0] + 1] if len(below) else curve, np.reshape(bridges, (-1, 2, 3)), bottom)
+
+
+def _downward(curve: Points, closed: bool, start: int) -> Points:
+    """Return ``curve`` from ``start`` on in the direction that leads down over the first 18 mm."""
+    if closed:
+        turned = np.roll(curve[:-1], -start, axis=0)
+        ways = [turned, np.roll(turned[::-1], 1, axis=0)]
+    else:
+        ways = [curve[start:], curve[start::-1]]
+    ways = [way for way in ways if len(way) > 1] or [curve]
+    return min(ways, key=lambda way: float(np.interp(18.0, arc_length(way), way[:, 2])))
+
+
+def _measured(curve: Points, bridges: Points, bottom: float) -> Profile:
+    """Smooth ``curve`` by 4 mm, at a step of 1 mm of its smoothed length, and measure how it bends."""
+    if len(curve) < 2:
+        return Profile(curve, np.zeros(len(curve)), np.zeros(len(curve), dtype=bool), False)
+    points = resample(gaussian_filter1d(resample(curve, 1.0), 4.0, axis=0, mode="nearest"), 1.0)
+    seen = np.ones(len(points), dtype=bool)
+    for a, b in bridges:
+        length = float(np.linalg.norm(b - a))
+        if length > 3.0:
+            t = np.clip((points - a) @ (b - a) / length**2, 0.0, 1.0)
+            seen &= np.linalg.norm(points - (a + t[:, None] * (b - a)), axis=1) > MARGIN
+    whole = bool(seen.all() and points[-1, 2] < bottom + 5.0)
+    return Profile(points, _concavity(points), seen, whole)
+
+
+def _concavity(curve: Points) -> Floats:
+    """Return the curvature of a profile walked downwards, positive where it is hollow, shape (k,) [1/mm]."""
+    if len(curve) < 3:
+        return np.zeros(len(curve))
+    y, z = curve[:, 1], curve[:, 2]
+    dy, dz = np.gradient(y), np.gradient(z)
+    bend = dz * np.gradient(dy) - dy * np.gradient(dz)
+    return np.asarray(bend / np.maximum(dy**2 + dz**2, 1e-9) ** 1.5)

@@ -1,0 +1,65 @@
+"""Whether what was found can be a bust: refused where it cannot, warned of where it is only unusual."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from core.chest import Pole
+from core.errors import LandmarkError
+from core.landmark import SIDES, Landmarks
+from core.mesh import Mesh
+from core.trunk import Survey, stable_level, trunk_levels
+from core.under_breast import CREASE, NO_CREASE
+
+FLAT = 4.0
+"""A breast that stands out less than this [mm] is none."""
+
+
+def refusal(why: str) -> LandmarkError:
+    """Return the error that says ``why`` there is no bust."""
+    return LandmarkError(
+        f"No bust can be found: {why}.",
+        "Open a scan of a whole upper body, or say which way is up and which is the front.",
+    )
+
+
+def check(mesh: Mesh, trunk: Survey, poles: tuple[Pole, Pole], landmarks: Landmarks) -> tuple[str, ...]:
+    """Return warnings, one sentence each. Raises LandmarkError where this cannot be a bust."""
+    left, right = (landmarks.position(f"bust_point_{side}") for side in SIDES)
+    under, bust = stable_level(mesh, landmarks.underbust_level), trunk_levels(mesh, landmarks.bust_level)[0]
+    if under.tape == 0.0 or bust.tape == 0.0:
+        raise refusal("the trunk is missing there")
+    across, middle = left - right, 0.5 * (left + right)
+    wide, deep, _ = np.ptp(under.points, axis=0)
+    rules = [landmarks.points[f"fold_{side}"].rule for side in SIDES]
+    for wrong, why in (
+        (
+            under.longest_straight > 0.25 * under.tape,
+            "the trunk is open, as if only a part of it was scanned",
+        ),
+        (not 550.0 < under.tape < 1600.0, f"the girth under it would be {under.tape:.0f} mm"),
+        (not 5.0 < bust.tape - under.tape < 500.0, "it would not be wider than the trunk under it"),
+        (not 1.0 < wide / deep < 2.3, "the trunk is not as deep as a body"),
+        (not 90.0 < across[0] < 400.0, f"its points would lie {across[0]:.0f} mm apart"),
+        (abs(across[2]) > 60.0, "its points would lie at very different heights"),
+        (abs(middle[0] - trunk.middle) > 40.0, "it would lie beside the middle of the body"),
+        (max(pole.prominence for pole in poles) < FLAT, "nothing stands out of the chest"),
+        (not any(pole.inside for pole in poles), "the chest comes to no point"),
+        (not 0.0 < middle[2] - landmarks.underbust_level < 220.0, "no fold lies at a likely depth under it"),
+        (rules == [NO_CREASE, NO_CREASE], "there is no crease under it"),
+    ):
+        if wrong:
+            raise refusal(why)
+    return tuple(
+        warning
+        for side, rule, pole in zip(SIDES, rules, poles, strict=True)
+        for warning in _warnings(side, rule, pole)
+    )
+
+
+def _warnings(side: str, rule: str, pole: Pole) -> list[str]:
+    if pole.prominence < FLAT:
+        return [f"On the {side} side no breast stands out of the chest: its points are uncertain."]
+    if rule not in (CREASE, NO_CREASE):
+        return [f"The scan has a hole where the fold of the {side} breast lies: its height is estimated."]
+    return []

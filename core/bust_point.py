@@ -1,0 +1,89 @@
+"""The bust points: on the nipple where one stands out of the breast, else where a smooth breast points to."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from core.chest import Pole, smoothed
+from core.landmark import SIDES, Landmark
+from core.mesh import Floats, Mesh, Points
+from core.relief import GRID, Nipple, Patch, breast_patch, find_nipples
+
+NIPPLE = "The nipple: the spot that stands out of the smooth breast around it."
+PROMINENT = "The most prominent point of the breast: no nipple stands out of it."
+MIRRORED = "The most prominent point, shifted towards where the nipple of the other breast lies."
+
+OUTWARD = 18.0
+"""On a smooth breast the bust point lies so far outside the foremost place, towards the pole [mm]."""
+
+RAISED = 2.0
+"""And so far above it [mm]: nipples were found 0 to 6 mm above the foremost place."""
+
+WIDE = 52.0
+"""The foremost place is looked for so far from the pole [mm]."""
+
+FLAT = 4.0
+"""A breast that stands out less than this [mm] is none."""
+
+
+def bust_points(mesh: Mesh, poles: Sequence[Pole]) -> list[Landmark]:
+    """Return the bust points of the left and the right breast, each with a ring round it."""
+    left, right = patches = [breast_patch(mesh, pole.position) for pole in poles]
+    nipples = find_nipples(left, right)
+    return [
+        _bust_point(f"bust_point_{side}", patch, pole, own, other, home)
+        for side, patch, pole, own, other, home in zip(
+            SIDES, patches, poles, nipples, nipples[::-1], patches[::-1], strict=True
+        )
+    ]
+
+
+def _bust_point(
+    name: str, patch: Patch, pole: Pole, own: Nipple | None, other: Nipple | None, home: Patch
+) -> Landmark:
+    if own is not None and own.sure:
+        place, confidence, rule = own.position, nipple_confidence(own), NIPPLE
+    elif other is not None and other.sure:
+        shift = 0.5 * (other.position - home.centre) * (-1.0, 1.0, 1.0)
+        place, confidence, rule = patch.nearest(patch.centre + shift), 0.3, MIRRORED
+    else:
+        place, confidence = smooth_point(patch, pole)
+        rule = PROMINENT
+    if pole.prominence < FLAT:
+        confidence *= 0.3
+    return Landmark(name, place, confidence, rule, patch.ring(place, 12.0))
+
+
+def nipple_confidence(nipple: Nipple) -> float:
+    """Return how sure it is (0..1) that the spot is the nipple."""
+    clear = 0.6 * min(nipple.clarity / 6.0, 1.0) + 0.4 * float(np.clip((nipple.ratio - 0.9) / 1.2, 0.0, 1.0))
+    return clear * float(np.exp(-max(nipple.offset - 8.0, 0.0) / 15.0))
+
+
+def smooth_point(patch: Patch, pole: Pole) -> tuple[Points, float]:
+    """Return where a breast without a nipple points to, shape (3,) [mm], and how sure that is (0..1).
+
+    The foremost place lies inside the nipple, the pole outside of it: the point lies between. Source: ours.
+    """
+    foremost, inner = _foremost(patch)
+    way = patch.centre - foremost
+    apart = float(np.linalg.norm(way))
+    if not inner:
+        return patch.centre, 0.1
+    place = foremost + way * min(OUTWARD / max(apart, 1.0), 0.75) + (0.0, 0.0, RAISED)
+    # Where the nipple itself would be stays unknown: never sure, the less so the wider the choice.
+    return patch.nearest(place), 0.45 * float(np.exp(-max(apart - 24.0, 0.0) / 25.0))
+
+
+def _foremost(patch: Patch) -> tuple[Points, bool]:
+    """Return the foremost surface point near the pole, and whether it is a summit of the breast."""
+    forward = np.where(patch.distance < WIDE, -patch.points[..., 1], np.nan)
+    calm: Floats = np.where(np.isnan(forward), np.nan, smoothed(_finite(forward), (3.0, 3.0)))
+    row, column = np.unravel_index(int(np.nanargmax(calm)), calm.shape)
+    return np.asarray(patch.points[row, column]), bool(patch.distance[row, column] < WIDE - 2.0 * GRID)
+
+
+def _finite(grid: Floats) -> Floats:
+    return np.asarray(np.where(np.isnan(grid), -np.inf, grid))

@@ -1,0 +1,147 @@
+"""Where the breasts stand out of the trunk: the crease under both, coarsely, and their poles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import gaussian_filter, maximum_filter, maximum_filter1d, uniform_filter1d
+from scipy.spatial import ConvexHull
+
+from core.errors import LandmarkError
+from core.mesh import Floats, Indices, Points
+from core.trunk import Survey
+
+CELL = 5.0
+"""Cell of the reach map across the body [mm]."""
+
+SIDES = (1.0, -1.0)
+"""Sign of x of the left and of the right side."""
+
+
+@dataclass(frozen=True, eq=False)
+class Anchor:
+    """The crease under both breasts, coarsely: ``z`` lies some 10-20 mm under the fold [mm].
+
+    ``kink`` is how far the body comes forward above it on the weaker side, and ``middle_kink`` on the centre
+    line [mm]; ``half_width`` is that of the trunk [mm].
+    """
+
+    z: float
+    kink: float
+    middle_kink: float
+    half_width: float
+
+
+def reach_map(survey: Survey, half_width: float) -> tuple[Floats, Floats]:
+    """Return how far the trunk reaches forward, shape (levels, columns) [mm], and x of the columns.
+
+    NaN where there is no front. Smoothed by 8 mm.
+    """
+    columns = np.arange(-np.ceil(half_width / CELL), np.ceil(half_width / CELL) + 1) * CELL
+    row, p = survey.row, survey.samples
+    middle, depth = 0.5 * (survey.front + survey.back), survey.back - survey.front
+    column = np.rint((p[:, 0] - survey.middle - columns[0]) / CELL).astype(np.int64)
+    front = (p[:, 1] < (middle - 0.05 * depth)[row]) & (column >= 0) & (column < len(columns))
+    reach = np.full((len(survey.z), len(columns)), -np.inf)
+    np.maximum.at(reach, (row[front], column[front]), -p[front, 1])
+    return smoothed(reach, (8.0 / survey.step, 8.0 / CELL)), columns
+
+
+def smoothed(grid: Floats, sigma: tuple[float, float]) -> Floats:
+    """Return ``grid`` smoothed by a Gaussian over what is finite in it; NaN where nearly nothing is."""
+    known = np.isfinite(grid)
+    weight = gaussian_filter(known.astype(float), sigma, mode="nearest")
+    value = gaussian_filter(np.where(known, grid, 0.0), sigma, mode="nearest")
+    return np.asarray(np.where(weight > 0.2, value / np.maximum(weight, 0.2), np.nan))
+
+
+def find_anchor(survey: Survey) -> Anchor:
+    """Return the level where the body kinks forward on both sides and not in the middle.
+
+    Raises LandmarkError if there is no trunk or no such level. Source: ours.
+    """
+    half_width, usable = survey.trunk()
+    reach, x = reach_map(survey, half_width)
+    up = round(30.0 / survey.step)
+    kink = np.full_like(reach, np.nan)
+    kink[up:-up] = reach[2 * up :] - reach[up:-up] - np.maximum(0.0, reach[: -2 * up] - reach[up:-up])
+    calm = uniform_filter1d(
+        np.where(np.isnan(kink), -100.0, kink), round(20.0 / CELL), axis=1, mode="nearest"
+    )
+    lateral = (np.abs(x) > 0.28 * half_width) & (np.abs(x) < 0.85 * half_width)
+    wide = round(24.0 / survey.step) | 1
+    sides = [maximum_filter1d(calm[:, lateral & (s * x > 0)].max(axis=1), wide) for s in SIDES]
+    both = np.minimum(*sides)
+    middle = np.where(np.isnan(kink), -100.0, kink)[:, np.abs(x) < 0.12 * half_width].max(axis=1)
+    value = np.where(usable, both - 0.8 * np.clip(middle, 0.0, 40.0), -np.inf)
+    best = int(np.argmax(value))
+    return Anchor(float(survey.z[best]), float(both[best]), float(middle[best]), half_width)
+
+
+@dataclass(frozen=True, eq=False)
+class Pole:
+    """The point of one breast that stands out most from the trunk under it, shape (3,) [mm].
+
+    ``prominence`` is how far [mm]; ``inside`` is False if the search ended at its border.
+    """
+
+    position: Points
+    prominence: float
+    inside: bool
+
+
+def find_poles(survey: Survey, anchor: Anchor) -> tuple[Pole, Pole]:
+    """Return the poles of the left and the right breast.
+
+    Prominence is measured from the convex outline of the trunk under the breasts, after the body has been
+    narrowed to the width of the back there. Raises LandmarkError without a chest. Source: ours.
+    """
+    near = (survey.samples[:, 2] > anchor.z - 25.0) & (survey.samples[:, 2] < anchor.z + 130.0)
+    p, row = survey.samples[near], survey.row[near]
+    x = p[:, 0] - survey.middle
+    depth = 0.5 * (survey.front + survey.back)[row] - p[:, 1]
+    under = (survey.z > anchor.z - 45.0) & (survey.z < anchor.z - 10.0) & (survey.tape > 0.0)
+    if not under.any() or survey.z[0] > anchor.z - 12.0:
+        raise LandmarkError(
+            "The trunk under the breasts is missing.", "Open a scan that shows the whole trunk."
+        )
+    width = float(np.median(survey.half_width[under]))
+    window = (depth > 0.0) & (np.abs(x) > 0.17 * width) & (np.abs(x) < max(1.25 * width, width + 35.0))
+    azimuth = np.degrees(np.arctan2(np.abs(x), depth))
+    prominence = _prominence(survey, anchor, p, row)
+    left, right = (
+        _pole(p[part], azimuth[part], prominence[part], anchor)
+        for part in (window & (s * x > 0.0) for s in SIDES)
+    )
+    return left, right
+
+
+def _prominence(survey: Survey, anchor: Anchor, p: Points, row: Indices) -> Floats:
+    base = survey.level_at(anchor.z - 12.0)
+    hull = ConvexHull(survey.samples[survey.row == base][:, :2]).equations
+    back = survey.back_width()
+    shrink = np.clip(back[base] / back, 0.7, 1.0)[row]
+    flat = np.column_stack([survey.middle + (p[:, 0] - survey.middle) * shrink, p[:, 1]])
+    return np.asarray((flat @ hull[:, :2].T + hull[:, 2]).max(axis=1))
+
+
+def _pole(p: Points, azimuth: Floats, prominence: Floats, anchor: Anchor) -> Pole:
+    """Find the pole among the points of one side: the highest summit over azimuth and height, centred."""
+    if len(p) < 200:
+        raise LandmarkError("The front of the chest is missing.", "Open a scan that shows the whole bust.")
+    high = p[:, 2] - anchor.z
+    score = prominence - 0.6 * (np.maximum(azimuth - 52.0, 0.0) + np.maximum(18.0 - azimuth, 0.0))
+    score -= 0.15 * np.maximum(high - 85.0, 0.0)
+    cells = (np.floor((high + 25.0) / 5.0).astype(np.int64), np.floor(azimuth / 3.0).astype(np.int64))
+    grid = np.full((31, 30), -np.inf)
+    np.maximum.at(grid, cells, score)
+    grid = smoothed(grid, (1.2, 0.9))
+    grid = np.where(np.isnan(grid), -np.inf, grid)
+    summit = grid == maximum_filter(grid, (9, 7), mode="nearest")
+    inner = summit[cells] & (azimuth < 66.0) & (high < 122.0)
+    allowed = inner if inner.any() else (azimuth < 60.0) & (high < 100.0)
+    top = p[np.argmax(np.where(allowed, grid[cells], -np.inf))]
+    near = np.flatnonzero(((p - top) ** 2).sum(axis=1) < 25.0**2)
+    best = near[np.argsort(prominence[near])[-len(near) // 2 :]]
+    return Pole(p[best].mean(axis=0), float(prominence[best].mean()), bool(inner.any()))
