@@ -30,8 +30,9 @@ def gaps(skin: Flags) -> list[Indices]:
 def bridge(far: Floats, skin: Flags, shape: Floats, cut: bool) -> Floats:
     """Fill the gaps of one level, shape (BINS,) [mm], after a ``shape`` moved to meet the ends of each gap.
 
-    Where the shape is not known the gap is closed straight. In a hole of the scan the skin also goes on as it
-    ends, and the mean of both counts; where an arm is ``cut`` off, it bends towards that. Source: ours.
+    Where the shape is not known a hole is closed straight, and the side that an arm hides bulges a little.
+    In a hole the skin also goes on as it ends, and the mean of both counts; where an arm is ``cut`` off, it
+    bends towards that. Source: ours.
     """
     result = far.copy()
     round_ = np.full(BINS, np.nan) if cut else _rounded(far, skin)
@@ -44,12 +45,13 @@ def bridge(far: Floats, skin: Flags, shape: Floats, cut: bool) -> Floats:
         if turn < WIDEST:
             straight = first * np.sin(t * turn) + last * np.sin((1.0 - t) * turn)
             straight = first * last * np.sin(turn) / straight
-        result[run] = straight
-        if not (np.isnan(shape[run]).any() or np.isnan(ends).any()):
-            result[run] = shape[run] + (1.0 - t) * (first - ends[0]) + t * (last - ends[1])
+        known = not (np.isnan(shape[run]).any() or np.isnan(ends).any())
+        bulge = (first**2 + last**2 - 2.0 * first * last * np.cos(turn)) / (8.0 * SIDE)
+        result[run] = straight + (3.0 * bulge * t * (1.0 - t) if cut else 0.0)
+        if known:
+            result[run] = shape[run] + (1.0 - t) ** 2 * (first - ends[0]) + t * t * (last - ends[1])
         if cut:
-            chord = first**2 + last**2 - 2.0 * first * last * np.cos(turn)
-            result[run] = np.fmin(result[run], straight + chord / (8.0 * SIDE))
+            result[run] = np.fmin(result[run], straight + bulge)
     return np.where(skin | np.isnan(round_), result, 0.5 * (result + round_))
 
 

@@ -70,7 +70,7 @@ def girth_levels(landmarks: Landmarks) -> Mapping[str, float]:
 
 
 def girth_doubts(found: Mapping[str, Girth]) -> list[str]:
-    """Return one sentence for each girth of the bust that is an estimate, as much of its outline is no skin."""
+    """Return one sentence for each girth of the bust that is an estimate: much of its outline is no skin."""
     return [WARNINGS[name] for name in WARNINGS if name in found and found[name].bridged_mm > MUCH]
 
 

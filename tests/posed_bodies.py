@@ -27,7 +27,7 @@ POSES: dict[str, tuple[tuple[float, float, float], ...]] = {
 
 
 def arms(pose: str, half_width: float, middle: tuple[float, float], bust: float) -> list[Limb]:
-    """Both arms in a pose, for a trunk of this half width about ``middle`` (x, y) and with this bust level."""
+    """Both arms in a pose, for a trunk of this half width about ``middle`` (x, y), with this bust level."""
     limbs: list[Limb] = []
     for sign in (1.0, -1.0):
         joints = [(middle[0] + sign * (half_width + x), middle[1] + y, bust + z) for x, y, z in POSES[pose]]
@@ -42,23 +42,20 @@ def apart(body: Mesh, limbs: list[Limb]) -> Mesh:
         axis = np.subtract(b, a)
         capsule = trimesh.creation.capsule(float(np.linalg.norm(axis)), radius, count=[48, 48])
         turn = trimesh.geometry.align_vectors([0.0, 0.0, 1.0], axis / np.linalg.norm(axis))
-        parts.append((capsule.vertices @ turn[:3, :3].T + a, capsule.faces))
+        parts.append((capsule.vertices @ turn[:3, :3].T + 0.5 * np.add(a, b), capsule.faces))
     starts = np.cumsum([0] + [len(vertices) for vertices, _ in parts[:-1]])
     faces = [np.asarray(faces) + start for (_, faces), start in zip(parts, starts, strict=True)]
     return Mesh(np.concatenate([vertices for vertices, _ in parts]), np.concatenate(faces))
 
 
-def grown(body: Mesh, limbs: list[Limb], cell: float = 4.0, web: float = 6.0) -> Mesh:
-    """One skin round the body and its limbs, with a web of skin between them, as a scanner would see it."""
-    low = np.min(
-        [body.vertices.min(axis=0), *(np.subtract(end, r) for a, b, r in limbs for end in (a, b))], axis=0
+def grown(body: Mesh, limbs: list[Limb], cell: float = 4.0, web: float = 6.0, low: float = -np.inf) -> Mesh:
+    """One skin round the body and its limbs, with a web between them, as scanned, from ``low`` up."""
+    ends = [np.add(end, sign * radius) for a, b, radius in limbs for end in (a, b) for sign in (1.0, -1.0)]
+    first, last = (
+        pick([*ends, *body.vertices], axis=0) + side for pick, side in ((np.min, -10.0), (np.max, 10.0))
     )
-    high = np.max(
-        [body.vertices.max(axis=0), *(np.add(end, r) for a, b, r in limbs for end in (a, b))], axis=0
-    )
-    low[2], high[2] = body.vertices[:, 2].min() - 10.0, high[2] + 10.0
-    low[:2], high[:2] = low[:2] - 10.0, high[:2] + 10.0
-    axes = [np.arange(low[k], high[k], cell) for k in range(3)]
+    first[2] = max(low, body.vertices[:, 2].min() - 10.0)
+    axes = [np.arange(first[k], last[k], cell) for k in range(3)]
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     points = grid.reshape(-1, 3)
     _, nearest = cKDTree(body.vertices).query(points)
@@ -68,7 +65,7 @@ def grown(body: Mesh, limbs: list[Limb], cell: float = 4.0, web: float = 6.0) ->
         t = np.clip((points - a) @ axis / (axis @ axis), 0.0, 1.0)
         limb = radius - np.linalg.norm(points - a - t[:, None] * axis, axis=1)
         inside = np.maximum(inside, limb) + np.maximum(web - np.abs(inside - limb), 0.0) ** 2 / (4.0 * web)
-    return _surface(inside.reshape(grid.shape[:3]), low, cell)
+    return _surface(inside.reshape(grid.shape[:3]), first, cell)
 
 
 def _surface(inside: np.ndarray, low: np.ndarray, cell: float) -> Mesh:
