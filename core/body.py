@@ -81,8 +81,7 @@ def body_of(
     if rebuilt:
         said = (f"Laid a surface through {len(scan.vertices):,} points.",)
         scan = RawScan(*_surface(name, scan, progress))
-    progress("repairing", 0.0)
-    vertices, faces, repairs = repair(scan.vertices, scan.faces)
+    vertices, faces, repairs = repair(scan.vertices, scan.faces, progress)
     if len(faces) == 0:
         raise ScanError(f"{name} has no sound triangles.", "Export the scan again.")
     progress("finding up and front", 0.0)

@@ -8,6 +8,7 @@ import numpy as np
 
 from core.mesh import Faces, Flags, Indices, Points
 from core.pieces import drop_furniture, drop_inner, drop_specks, size_of
+from core.progress import Progress, quiet
 from core.skin import Skin, components, first_equal
 
 Step = Callable[[Skin], tuple[Skin, int]]
@@ -34,10 +35,13 @@ SPIKE, SHARP = 0.1, 1.2
 """The shortest edge at a spike, in parts of the body's size [1]; the sum of the angles at its tip [rad]."""
 
 
-def repair(vertices: Points, faces: Faces) -> tuple[Points, Faces, tuple[str, ...]]:
+def repair(
+    vertices: Points, faces: Faces, progress: Progress = quiet
+) -> tuple[Points, Faces, tuple[str, ...]]:
     """Return clean vertices, shape (n, 3), outward wound faces, shape (m, 3), and one sentence a repair.
 
-    What is sound keeps its order; sound triangles come back as they are. Any unit. Source: ours.
+    What is sound keeps its order; sound triangles come back as they are. Any unit. Raises Cancelled.
+    Source: ours.
     """
     steps: tuple[tuple[Step, str, str], ...] = (
         (_drop_positionless, "Dropped {} without a position.", "vertex"),
@@ -54,7 +58,8 @@ def repair(vertices: Points, faces: Faces) -> tuple[Points, Faces, tuple[str, ..
         (drop_inner, "Dropped {} inside the body or doubling its skin.", "piece"),
     )
     skin, sentences = Skin(vertices, faces), []
-    for step, words, noun in steps:
+    for done, (step, words, noun) in enumerate(steps):
+        progress("repairing", done / len(steps))
         skin, count = step(skin)
         if count:
             sentences.append(words.format(counted(count, noun)))
