@@ -52,6 +52,8 @@ def read_points(name: str, data: bytes, progress: Progress) -> RawScan:
         if _is_point(line):
             break
         start += len(line) + 1
+    else:
+        raise ValueError("no points")
     rows = whole_table(name, text[start:], progress)
     points = rows.columns(0, 3)
     check_size(name, len(points))

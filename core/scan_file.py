@@ -17,7 +17,7 @@ from core.obj_file import read_obj
 from core.off_file import read_off, read_points
 from core.ply_file import read_ply
 from core.progress import Cancelled, Progress, quiet
-from core.raw_scan import AGAIN, RawScan
+from core.raw_scan import AGAIN, RawScan, check_size
 from core.stl_file import is_binary_stl, read_stl
 from core.vtp_file import read_vtp
 
@@ -88,6 +88,7 @@ def read_raw(name: str, data: bytes, progress: Progress = quiet) -> RawScan:
             data = _unpacked(name, data, progress)
         with np.errstate(all="ignore"):
             scan = _reader(name, data)(name, data, progress)
+        check_size(name, len(scan.vertices), len(scan.faces))
         if scan.faces.size and not (scan.faces.min() >= 0 and scan.faces.max() < len(scan.vertices)):
             raise ScanError(f"{name} has triangles with corners that do not exist.", AGAIN)
     except (ScanError, Cancelled):

@@ -70,7 +70,7 @@ class Lines:
 def lines_of(block: bytes) -> Lines:
     """Find the lines in a block of text; what follows a ``#`` is left out."""
     if b"#" in block:
-        block = re.sub(rb"#[^\n\r]*", b"", block)
+        block = re.sub(rb"(?<!\S)#[^\n\r]*", b"", block)
     text = np.frombuffer(block.replace(b"\r", b"\n") + b"\n", dtype=np.uint8)
     ends = np.flatnonzero(text == 10) + 1
     starts = np.concatenate([[0], ends[:-1]])
