@@ -7,6 +7,9 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from core.mesh import Flags, Floats, Points
 
+ALONG_ROWS = 0.3
+"""Rows bend round the body, columns hardly do: how a row goes on counts so much against a column [1]."""
+
 MIRROR = np.array([-1.0, 1.0, 1.0])
 
 
@@ -57,8 +60,9 @@ def _solved(values: Points, unknown: Flags, usable: Flags, order: int) -> Points
     )
     chain = chain[usable.ravel()[chain].all(axis=1) & unknown.ravel()[chain].any(axis=1)]
     matrix: Floats = np.zeros((len(chain), unknown.size))
+    trust = np.where(chain[:, 1] - chain[:, 0] == 1, ALONG_ROWS, 1.0)
     for k, weight in enumerate(weights):
-        matrix[np.arange(len(chain)), chain[:, k]] += weight
+        matrix[np.arange(len(chain)), chain[:, k]] += weight * trust
     flat, free = values.reshape(-1, 3).copy(), unknown.ravel()
     flat[free] = np.linalg.lstsq(matrix[:, free], -matrix[:, ~free] @ flat[~free], rcond=None)[0]
     return flat.reshape(values.shape)

@@ -97,18 +97,21 @@ def deviations(mesh: Mesh, skin: NearSkin) -> tuple[Floats, Floats]:
     near = np.flatnonzero(((body.vertices > low) & (body.vertices < high)).all(axis=1))
     picked = near[:: max(1, len(near) // SAMPLES)]
     points, normals = body.vertices[picked], body.vertex_normals[picked]
-    side = sides(mesh)[1]
-    frames, at_border = Frames.of(mesh), np.bincount(side.ravel())[side] == 1
+    edges, side = sides(mesh)
+    once = np.bincount(side.ravel()) == 1
+    frames, at_border = Frames.of(mesh), once[side]
+    border = np.isin(np.arange(len(mesh.vertices)), edges[once])
     away = np.full(len(points), np.inf)
     for rows, triangles in neighbourhoods(points, mesh):
         u, v, h = frames.coordinates(points[rows], triangles)
         distance2 = frames.distance2(points[rows], triangles, h)
         best, place = distance2.argmin(axis=0), np.arange(len(rows))
         u, v = (table[best, place] for table in frames.nearest_place(points[rows], triangles, u, v))
-        # The side k of a triangle lies opposite to its corner k + 2.
-        opposite = np.stack([v, 1.0 - u - v, u], axis=1)
+        share = np.stack([1.0 - u - v, u, v], axis=1)
         nearest = triangles[best]
-        beside = (at_border[nearest] & (opposite < 1e-9)).any(axis=1)
+        # The side k of a triangle lies opposite to its corner k + 2.
+        beside = (at_border[nearest] & (np.roll(share, 1, axis=1) < 1e-9)).any(axis=1)
+        beside |= (border[mesh.faces[nearest]] & (share > 1.0 - 1e-9)).any(axis=1)
         facing = (normals[rows] * mesh.face_normals[nearest]).sum(axis=1) > 0.0
         away[rows] = np.where(facing & ~beside, np.sqrt(distance2[best, place]), np.inf)
     counts = away < FARTHEST

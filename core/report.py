@@ -85,6 +85,7 @@ def report(solution: Solution) -> dict[str, Any]:
             for line, reached in zip(stages.model.lines, last.lengths, strict=True)
         },
         "marks": {"rest": _marks(solution.rest), "final": _marks(last)},
+        "fit": _fit_report(stages),
         "settings": _settings(stages),
         "notes": [*shape_warnings(solution), *notes(stages)],
         "seconds": {
@@ -128,6 +129,27 @@ def _condition_report(condition: Condition | None) -> dict[str, Any]:
         "definition": "of the control mesh: the largest angle between a triangle's normal and its normal at "
         "rest, and edge lengths over rest lengths; folded from 78 degrees on, strained outside 80 to 120 %, "
         "overstrained outside 70 to 130 %",
+    }
+
+
+def _fit_report(stages: Stages) -> dict[str, Any]:
+    quality = stages.control.quality
+    if quality is None:
+        return {}
+    return {
+        "deviation_mean_mm": quality.deviation_mean,
+        "deviation_95_mm": quality.deviation_95,
+        "deviation_max_mm": quality.deviation_max,
+        "smallest_angle_degrees": quality.smallest_angle,
+        "shortest_edge_mm": quality.shortest_edge,
+        "largest_bend_degrees": quality.largest_bend,
+        "crossings": quality.crossings,
+        "same_way": quality.same_way,
+        "bust_off_mm": quality.bust_off,
+        "fold_off_mm": quality.fold_off,
+        "definition": "deviation: from the skin behind the control mesh to it, by area; largest_bend: of two "
+        "triangles off the fold row; crossings: triangles that cut another; same_way: smallest cosine "
+        "between a triangle and the skin; *_off: of bust points and fold row from their landmarks",
     }
 
 
