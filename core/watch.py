@@ -104,13 +104,16 @@ def _still(moving: MovingFaces) -> Mesh:
 
 
 def _outline(still: Mesh, body: Mesh, z: float) -> Points:
-    """Return the corners of the convex outline of the trunk's still skin at a height, shape (h, 2) [mm]."""
+    """Return the corners of the convex outline of the trunk's still skin at a height, (h, 2) [mm].
+
+    What bridges holes, or where arms were cut off, counts as still.
+    """
     points = cut(still, (0.0, 0.0, z), (0.0, 0.0, 1.0)).points[:, :2]
-    trunk = trunk_levels(body, z)[0].points[:, :2]
-    if not len(points) or not len(trunk):
+    level = trunk_levels(body, z)[0]
+    if not len(points) or not len(level.segments):
         return np.empty((0, 2))
-    away, _ = cKDTree(trunk).query(points)
-    kept = points[away < 1e-6]
+    away, _ = cKDTree(level.segments.reshape(-1, 3)[:, :2]).query(points)
+    kept = np.concatenate([points[away < 1e-6], level.bridges.reshape(-1, 3)[:, :2]])
     return np.asarray(kept[ConvexHull(kept).vertices] if len(kept) > 3 else kept)
 
 

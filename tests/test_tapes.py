@@ -33,7 +33,8 @@ def pushed(moving: MovingFaces) -> np.ndarray:
 
 def test_tapes_are_those_of_the_whole_body(moving: MovingFaces) -> None:
     middle = moving.rest[:, 2].mean()
-    heights = [middle - 40.0, middle + 0.123, middle + 35.0, moving.rest[0, 2]]
+    through_a_vertex = moving.rest[np.argmin(np.abs(moving.rest[:, 2] - middle)), 2]
+    heights = [middle - 40.0, middle + 0.123, middle + 35.0, through_a_vertex]
     tapes = Tapes(moving, heights)
     for places in (moving.rest, pushed(moving)):
         vertices = moving.body.vertices.copy()
