@@ -21,6 +21,9 @@ FARTHEST = 1e9
 SMOOTHEST_FOG = 0.8
 """Mean cosine [1] between the normals of neighbours; points in a volume give 0.66, a very noisy skin 0.9."""
 
+STEEP = 0.7
+"""Sine of the angle between the skin at a point and the way to a neighbour, from which it is no neighbour."""
+
 SMALL_PIECE = 0.002
 """A loose piece with so small a share of the points [1] is a speck: which side it shows does not matter."""
 
@@ -160,7 +163,12 @@ def _outward(spots: Points, direction: Points, outside: Points | None) -> Points
         agree = np.einsum("ij,ij->i", direction, outside)
         if np.mean(np.abs(agree)) > TRUE_NORMALS:
             return np.where(agree[:, None] < 0.0, -direction, direction)
-    tree = minimum_spanning_tree(sparse.csr_array((1.0 - alike + 1e-9, (start, end)), shape=(count, count)))
+    aside = unit(spots[end] - spots[start])
+    steep = np.abs(np.einsum("ij,ij->i", direction[start], aside))
+    steep = np.maximum(steep, np.abs(np.einsum("ij,ij->i", direction[end], aside)))
+    same = steep < STEEP  # straight across lies another skin, as of an arm beside the trunk
+    cost = (1.0 - alike + steep**2 + 1e-9)[same]
+    tree = minimum_spanning_tree(sparse.csr_array((cost, (start[same], end[same])), shape=(count, count)))
     tree = tree + tree.T
     _, piece = connected_components(tree, directed=False)
     sign = np.ones(count)
