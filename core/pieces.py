@@ -11,6 +11,9 @@ from core.skin import Skin, grouped
 SPECK = 0.005
 """A loose piece with less than this share of the largest piece's area [1] is a speck."""
 
+SHREDS = 0.1
+"""Specks that make up more than this share of a skin [1] are none: it is in shreds."""
+
 LOOSE = 0.03
 """So is one with less than this share that is farther off than ``BESIDE``."""
 
@@ -85,6 +88,8 @@ def drop_specks(skin: Skin) -> tuple[Skin, int]:
         return skin, 0
     share = skin.piece_areas / skin.piece_areas.max()
     small = share < SPECK
+    if share[small].sum() > SHREDS * share.sum():
+        return skin, 0  # they are what the skin is made of
     doubtful = np.flatnonzero((share < LOOSE) & ~small)
     if len(doubtful):
         body = cKDTree(_strewn(skin, np.flatnonzero((share >= LOOSE)[skin.piece]), 10 * SAMPLES))

@@ -114,6 +114,13 @@ def test_specks_go_and_a_part_near_the_body_stays():
     assert sentences == ("Dropped 8 specks beside the body.",)
 
 
+def test_a_skin_in_shreds_keeps_them():
+    vertices, faces = person()
+    shreds = vertices[faces[::2]].reshape(-1, 3) + 0.01 * RNG(0).normal(size=(3 * len(faces[::2]), 1))
+    mended = repair(*beside((vertices, faces[1::2]), (shreds, np.arange(len(shreds)).reshape(-1, 3))))
+    assert len(mended[1]) > 0.98 * len(faces)
+
+
 def fin_on(vertices, faces):
     """A strip of two triangles that stands on an inner edge."""
     a, b, _ = faces[1000]
