@@ -124,7 +124,7 @@ def _tries(
     line_height: float,
     warnings: list[str],
 ) -> list[_Try]:
-    """Lay all points, eased where triangles are pointed; if that brings faults, as the rules say too.
+    """Lay all points, eased where triangles are pointed; where that brings faults, eased less and less.
 
     All but the line row is eased as if that ran half way, so that it alone moves with ``line_height``.
     """
@@ -134,7 +134,11 @@ def _tries(
     laid[line], holes[line] = lay_line(ground, laid, creases, 0.5)
     level, upright = _free_ways(template, creases)
     found = []
-    for way in (eased(laid, template.faces, ground.skin, level, upright), laid):
+    smoothest = eased(laid, template.faces, ground.skin, level, upright)
+    for share in (1.0,) if smoothest is laid else (1.0, 0.75, 0.5, 0.25, 0.0):
+        way = smoothest if share == 1.0 else laid + share * (smoothest - laid)
+        off = (way != laid).any(axis=2) & (share < 1.0)
+        way[off] = ground.skin.nearest(way[off]) if off.any() else way[off]
         mesh, half_way = _judged(ground, way)
         faults = half_way
         if line_height != 0.5:

@@ -108,7 +108,7 @@ def test_breast_that_hangs_too_low_is_never_folded_over(template, sag):
     control = fit_control_mesh(template, body, landmarks)
     assert control.quality.crossings == 0
     assert control.quality.largest_bend < 130.0
-    assert corner_angles(control.mesh).min() > 15.0
+    assert corner_angles(control.mesh).min() > 12.0
     bridged = agreement(control.mesh, body.mesh).min() <= 0.3
     assert bridged == any("bridges part of a fold" in warning for warning in control.warnings)
     assert control.warnings
