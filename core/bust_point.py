@@ -15,44 +15,66 @@ NIPPLE = "The nipple: the spot that stands out of the smooth breast around it."
 PROMINENT = "The most prominent point of the breast: no nipple stands out of it."
 MIRRORED = "The most prominent point, shifted towards where the nipple of the other breast lies."
 
+ACROSS = "Estimated, as no breast stands out there: across from the bust point of the other breast."
+
 OUTWARD = 18.0
 """On a smooth breast the bust point lies so far outside the foremost place, towards the pole [mm]."""
 
-RAISED = 2.0
+RAISED = 3.0
 """And so far above it [mm]: nipples were found 0 to 6 mm above the foremost place."""
 
 WIDE = 52.0
 """The foremost place is looked for so far from the pole [mm]."""
 
-FLAT = 4.0
-"""A breast that stands out less than this [mm] is none."""
+FLAT, FAR_FLATTER = 4.0, 0.3
+"""A side that stands out less than this [mm], or than this part of the other, shows no breast."""
 
 
-def bust_points(mesh: Mesh, poles: Sequence[Pole]) -> list[Landmark]:
-    """Return the bust points of the left and the right breast, each with a ring round it."""
+def bust_points(mesh: Mesh, poles: Sequence[Pole], middle: float) -> list[Landmark]:
+    """Return the bust points of the left and the right breast, each with a ring round it.
+
+    ``middle`` is x of the middle of the body [mm].
+    """
     left, right = patches = [breast_patch(mesh, pole.position) for pole in poles]
     nipples = find_nipples(left, right)
-    return [
-        _bust_point(f"bust_point_{side}", patch, pole, own, other, home)
-        for side, patch, pole, own, other, home in zip(
-            SIDES, patches, poles, nipples, nipples[::-1], patches[::-1], strict=True
+    marks = [
+        _bust_point(f"bust_point_{side}", patch, own, other, home)
+        for side, patch, own, other, home in zip(
+            SIDES, patches, nipples, nipples[::-1], patches[::-1], strict=True
         )
     ]
+    missing = missing_sides(poles)
+    if len(missing) != 1:
+        return marks
+    there = marks[1 - SIDES.index(missing[0])]
+    across = _across(mesh, there.position, middle)
+    marks[SIDES.index(missing[0])] = Landmark(f"bust_point_{missing[0]}", across, 0.3, ACROSS, across[None])
+    return marks
 
 
-def _bust_point(
-    name: str, patch: Patch, pole: Pole, own: Nipple | None, other: Nipple | None, home: Patch
-) -> Landmark:
+def _across(mesh: Mesh, there: Points, middle: float) -> Points:
+    """Return the skin in front, across from a point of the other side, shape (3,) [mm]."""
+    place = np.array([2.0 * middle - there[0], there[1], there[2]])
+    away = np.hypot(*(mesh.vertices - place)[:, [0, 2]].T)
+    near = mesh.vertices[away < max(10.0, float(away.min()))]
+    return np.asarray(near[np.argmin(near[:, 1])] if len(near) else place)
+
+
+def missing_sides(poles: Sequence[Pole]) -> list[str]:
+    """Return the sides, of left and right, on which no breast stands out of the chest."""
+    least = max(FLAT, FAR_FLATTER * max(pole.prominence for pole in poles))
+    return [side for side, pole in zip(SIDES, poles, strict=True) if pole.prominence < least]
+
+
+def _bust_point(name: str, patch: Patch, own: Nipple | None, other: Nipple | None, home: Patch) -> Landmark:
     if own is not None and own.sure:
         place, confidence, rule = own.position, nipple_confidence(own), NIPPLE
     elif other is not None and other.sure:
         shift = 0.5 * (other.position - home.centre) * (-1.0, 1.0, 1.0)
         place, confidence, rule = patch.nearest(patch.centre + shift), 0.3, MIRRORED
     else:
-        place, confidence = smooth_point(patch, pole)
+        place, confidence = smooth_point(patch)
         rule = PROMINENT
-    if pole.prominence < FLAT:
-        confidence *= 0.3
     return Landmark(name, place, confidence, rule, patch.ring(place, 12.0))
 
 
@@ -62,7 +84,7 @@ def nipple_confidence(nipple: Nipple) -> float:
     return clear * float(np.exp(-max(nipple.offset - 8.0, 0.0) / 15.0))
 
 
-def smooth_point(patch: Patch, pole: Pole) -> tuple[Points, float]:
+def smooth_point(patch: Patch) -> tuple[Points, float]:
     """Return where a breast without a nipple points to, shape (3,) [mm], and how sure that is (0..1).
 
     The foremost place lies inside the nipple, the pole outside of it: the point lies between. Source: ours.

@@ -15,6 +15,9 @@ from core.trunk import Survey
 CELL = 5.0
 """Cell of the reach map across the body [mm]."""
 
+KINK = 8.0
+"""Over a fold the body comes forward by this at least [mm]."""
+
 SIDES = (1.0, -1.0)
 """Sign of x of the left and of the right side."""
 
@@ -24,13 +27,14 @@ class Anchor:
     """The crease under both breasts, coarsely: ``z`` lies some 10-20 mm under the fold [mm].
 
     ``kink`` is how far the body comes forward above it on the weaker side, and ``middle_kink`` on the centre
-    line [mm]; ``half_width`` is that of the trunk [mm].
+    line [mm]; ``half_width`` is that of the trunk [mm]; ``lone`` tells that only one side comes forward.
     """
 
     z: float
     kink: float
     middle_kink: float
     half_width: float
+    lone: bool = False
 
 
 def reach_map(survey: Survey, half_width: float) -> tuple[Floats, Floats]:
@@ -75,8 +79,12 @@ def find_anchor(survey: Survey) -> Anchor:
     both = np.minimum(*sides)
     middle = np.where(np.isnan(kink), -100.0, kink)[:, np.abs(x) < 0.12 * half_width].max(axis=1)
     value = np.where(usable, both - 0.8 * np.clip(middle, 0.0, 40.0), -np.inf)
+    lone = bool(both[np.argmax(value)] < KINK)
+    if lone:
+        both = np.maximum(*sides)
+        value = np.where(usable, both - 0.8 * np.clip(middle, 0.0, 40.0), -np.inf)
     best = int(np.argmax(value))
-    return Anchor(float(survey.z[best]), float(both[best]), float(middle[best]), half_width)
+    return Anchor(float(survey.z[best]), float(both[best]), float(middle[best]), half_width, lone)
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from types import MappingProxyType
 
 from core.body import Body
-from core.bust_check import check, refusal
-from core.bust_point import bust_points
+from core.bust_check import check, check_anchor
+from core.bust_point import bust_points, missing_sides
 from core.chest import find_anchor, find_poles
 from core.landmark import SIDES, Landmark, Landmarks
 from core.mesh import Mesh, Points
@@ -34,11 +35,11 @@ def find_landmarks(body: Body, placed: Mapping[str, Points] = NOTHING) -> Landma
     else:
         trunk = survey(calm)
         anchor = find_anchor(trunk)
-        if anchor.kink < 8.0 or anchor.middle_kink > 0.5 * anchor.kink:
-            raise refusal("no fold lies under a left and a right breast")
+        check_anchor(anchor)
         poles = find_poles(trunk, anchor)
-        busts = [by_hand.get(mark.name, mark) for mark in bust_points(calm, poles)]
-        found = _levels(busts + folds_and_lowest(calm, busts, anchor.z, by_hand), by_hand)
+        busts = [by_hand.get(mark.name, mark) for mark in bust_points(calm, poles, trunk.middle)]
+        marks = busts + folds_and_lowest(calm, busts, anchor.z, by_hand)
+        found = _levels(marks, by_hand, missing_sides(poles))
         warnings = check(calm, trunk, poles, found)
     further = {mark.name: mark for mark in (*trunk_marks(calm, found), *root_marks(calm, found))}
     points = MappingProxyType({**found.points, **further, **by_hand})
@@ -52,8 +53,14 @@ def _around(mesh: Mesh, by_hand: Mapping[str, Landmark]) -> Landmarks:
     return _levels(busts + folds_and_lowest(mesh, busts, level, by_hand), by_hand)
 
 
-def _levels(marks: list[Landmark], by_hand: Mapping[str, Landmark]) -> Landmarks:
+def _levels(marks: list[Landmark], by_hand: Mapping[str, Landmark], missing: Sequence[str] = ()) -> Landmarks:
+    """Return the landmarks with the levels of the sides that have a breast; others are unsure."""
+    marks = [
+        replace(mark, confidence=0.3 * mark.confidence) if mark.name.endswith(tuple(missing)) else mark
+        for mark in marks
+    ]
     found = {mark.name: by_hand.get(mark.name, mark) for mark in marks}
-    bust = [found[f"bust_point_{side}"].position[2] for side in SIDES]
-    under = [found[f"{name}_{side}"].position[2] for name in ("fold", "lowest") for side in SIDES]
-    return Landmarks(MappingProxyType(found), float(sum(bust)) / 2.0, float(min(under)))
+    sides = [side for side in SIDES if side not in missing] or SIDES
+    bust = [found[f"bust_point_{side}"].position[2] for side in sides]
+    under = [found[f"{name}_{side}"].position[2] for name in ("fold", "lowest") for side in sides]
+    return Landmarks(MappingProxyType(found), float(sum(bust)) / len(bust), float(min(under)))
