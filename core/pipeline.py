@@ -14,7 +14,7 @@ import numpy as np
 from core.body import Body, body_of
 from core.control_mesh import ControlMesh, back_length, fit_control_mesh
 from core.design import Design, OwnLine, ScanSource
-from core.errors import FitError, LandmarkError, LineError
+from core.errors import FitError, LandmarkError, LineError, UserError
 from core.gain import gain_limit
 from core.landmark import Landmarks
 from core.landmarks import find_landmarks
@@ -96,10 +96,10 @@ READING = {
 """Where each part of the reading of a scan begins and ends, as shares of its time, roughly."""
 
 
-class UnsureError(LandmarkError):
-    """No bust was found, on a ``body`` of which it is not certain how it stands: ask which way it does."""
+class UnsureError(UserError):
+    """No bust was found, or none that the template fits, on a ``body`` that may stand otherwise: ask how."""
 
-    def __init__(self, problem: LandmarkError, body: Body, design: Design) -> None:
+    def __init__(self, problem: UserError, body: Body, design: Design) -> None:
         super().__init__(problem.message, problem.hint)
         self.body = body
         self.design = design
@@ -148,11 +148,15 @@ def build(design: Design, previous: Stages | None = None, progress: Progress = q
     stage = _Stager(previous, progress)
     scan, body = stage("read scan", partial(read_body, progress=stage.inside), design.scan)
     try:
-        landmarks = stage("find landmarks", find, body, design.placed)
-    except LandmarkError as problem:
+        return _stages(stage, design, scan, body)
+    except (LandmarkError, FitError) as problem:
         if body.pose.sure:
             raise
         raise UnsureError(problem, body, design) from problem
+
+
+def _stages(stage: _Stager, design: Design, scan: ScanFile, body: Body) -> Stages:
+    landmarks = stage("find landmarks", find, body, design.placed)
     template = stage("read template", read_template, design.template)
     control = stage("fit control mesh", fit_control_mesh, template, body, landmarks, design.line_height)
     patch = stage("find patch", patch_fade, body.mesh, control)

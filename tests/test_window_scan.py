@@ -35,7 +35,7 @@ def doubtful(turn: float) -> Any:
         if told.get("front") is not None:
             return pose
         fronts = {0.0: "-y", 180.0: "+y"}
-        return replace(pose, file_to_mm=about @ pose.file_to_mm, front=fronts[turn], sure=False)
+        return replace(pose, file_to_mm=about @ pose.file_to_mm, front=fronts[turn], sure=False, others=())
 
     return find
 

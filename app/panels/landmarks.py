@@ -14,6 +14,7 @@ from PySide6.QtWidgets import (
     QFrame,
     QHBoxLayout,
     QScrollArea,
+    QSizePolicy,
     QVBoxLayout,
     QWidget,
 )
@@ -198,6 +199,8 @@ class LandmarkRow(QAbstractButton):
         self.setCheckable(True)
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
+        # A button would rather widen the list than be narrower than it likes: the figures would be cut off.
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self.setMinimumHeight(34)
 
     def sizeHint(self) -> QSize:
@@ -226,7 +229,9 @@ class LandmarkRow(QAbstractButton):
         painter.setFont(font("name" if self.isChecked() else "body"))
         painter.setPen(QColor(tokens.text))
         left = Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft
-        painter.drawText(QRectF(28, 0, self.width() - 140, self.height()), left, self.text())
+        room = self.width() - 28 - (70 if self.view.by_hand else 112)
+        title = painter.fontMetrics().elidedText(self.text(), Qt.TextElideMode.ElideRight, room)
+        painter.drawText(QRectF(28, 0, room, self.height()), left, title)
         painter.setFont(font("secondary", tabular=True))
         painter.setPen(QColor(tokens.text if self.isChecked() else tokens.text_quiet))
         past = Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight
