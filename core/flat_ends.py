@@ -12,7 +12,7 @@ from core.mesh import Floats, Points, unit
 TOUCH = 1.3
 """A point nearer to a plane than this [grains] touches it: even points lie up to a grain inside a rim."""
 
-TRIED = 8
+TRIED = 16
 """Faces of the hull, largest first, that are tried as flat ends."""
 
 

@@ -21,8 +21,8 @@ STOUTNESS = (0.85, 2.4)
 HALF = 0.3
 """A flat opening larger than this share of the skin [1], upright, is where a half is missing."""
 
-SHORT = 200.0
-"""A scan that is lower than this [mm of a typical trunk] shows too little of a body."""
+SHORT, FAINT = 300.0, 12.0
+"""A scan lower than this [mm of a typical trunk] must show a fold deeper than this [mm]."""
 
 WHOLE = "Open a scan of a whole upper body."
 
@@ -41,7 +41,7 @@ def refuse_unlike(cloud: Cloud, best: Stance) -> None:
         raise ScanError(
             "This is too flat for an upper body: the front or the back of the trunk is missing.", WHOLE
         )
-    if best.evidence < LEAST and trunk.height[-1] < SHORT:
+    if trunk.height[-1] < SHORT and (best.evidence < LEAST or best.seen.fold.strength < FAINT):
         raise ScanError(
             "Too little is here for an upper body: no bust shows on a short piece of trunk.", WHOLE
         )
