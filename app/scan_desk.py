@@ -74,7 +74,7 @@ class ScanDesk(QObject):
         """Say which of the landmarks that the control mesh hangs on could hardly be seen."""
         marks = [mark for mark in stages.landmarks.points.values() if kind_of(mark.name) in ESSENTIAL]
         worst = min(marks, key=lambda mark: mark.confidence)
-        if tone_of(worst.confidence) == "bad":
+        if tone_of(worst.confidence) == "bad" or stages.landmarks.warnings:
             said, *more = landmark_doubts(stages)
             look = (tr("Look at it"), lambda: self._look_at(worst.name))
             self._window.notices.show_notice("warn", said, " ".join(map(say, more)), [look], lasting=True)
