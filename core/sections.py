@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from dataclasses import dataclass
 
 import numpy as np
@@ -53,31 +52,34 @@ def cut(mesh: Mesh, origin: npt.ArrayLike, normal: npt.ArrayLike) -> Section:
 
 def chains(section: Section) -> list[tuple[Points, bool]]:
     """Join the segments into curves: a list of (points (k, 3) [mm], closed), longest first."""
-    neighbours: dict[int, list[tuple[int, int]]] = defaultdict(list)
-    where: dict[int, tuple[int, int]] = {}
-    for row, (a, b) in enumerate(section.edge_ids.tolist()):
-        neighbours[a].append((row, b))
-        neighbours[b].append((row, a))
-        where.setdefault(a, (row, 0))
-        where.setdefault(b, (row, 1))
-    used = np.zeros(len(section.edge_ids), dtype=bool)
+    ends = section.edge_ids
+    _, first, node = np.unique(ends, return_index=True, return_inverse=True)
+    node = node.reshape(ends.shape)
+    order = np.argsort(node.ravel(), kind="stable")
+    count = np.bincount(node.ravel(), minlength=len(first))
+    place = section.points[first]
+    # Plain lists from here: the walk goes from node to node, which arrays are slow at.
+    segment, bound = (order // 2).tolist(), np.concatenate([[0], np.cumsum(count)]).tolist()
+    both, used = node.sum(axis=1).tolist(), [False] * len(ends)
 
-    def walk(start: int) -> list[int]:
-        path = [start]
+    def walk(at: int) -> list[int]:
+        path = [at]
         while True:
-            step = next(((r, e) for r, e in neighbours[path[-1]] if not used[r]), None)
-            if step is None:
+            for row in segment[bound[at] : bound[at + 1]]:
+                if not used[row]:
+                    break
+            else:
                 return path
-            used[step[0]] = True
-            path.append(step[1])
+            used[row] = True
+            at = both[row] - at
+            path.append(at)
 
-    open_ends = [node for node, links in neighbours.items() if len(links) == 1]
+    seen = np.argsort(first)
     curves = []
-    for start in open_ends + list(neighbours):
+    for start in np.concatenate([seen[count[seen] == 1], seen]).tolist():
         path = walk(start)
         if len(path) > 1:
-            points = np.array([section.segments[where[node]] for node in path])
-            curves.append((points, path[0] == path[-1]))
+            curves.append((place[path], path[0] == path[-1]))
     return sorted(curves, key=lambda curve: arc_length(curve[0])[-1], reverse=True)
 
 
