@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -26,6 +27,9 @@ RAISED = 3.0
 WIDE = 52.0
 """The foremost place is looked for so far from the pole [mm]."""
 
+ALIKE = 4.0
+"""Two smooth breasts point alike if one point lies so near to the other's mirror image [mm]."""
+
 FLAT, FAR_FLATTER = 4.0, 0.3
 """A side that stands out less than this [mm], or than this part of the other, shows no breast."""
 
@@ -43,6 +47,8 @@ def bust_points(mesh: Mesh, poles: Sequence[Pole], middle: float) -> list[Landma
             SIDES, patches, nipples, nipples[::-1], patches[::-1], strict=True
         )
     ]
+    if all(mark.rule == PROMINENT for mark in marks):
+        marks = _evened(marks, patches, middle)
     missing = missing_sides(poles)
     if len(missing) != 1:
         return marks
@@ -50,6 +56,20 @@ def bust_points(mesh: Mesh, poles: Sequence[Pole], middle: float) -> list[Landma
     across = _across(mesh, there.position, middle)
     marks[SIDES.index(missing[0])] = Landmark(f"bust_point_{missing[0]}", across, 0.3, ACROSS, across[None])
     return marks
+
+
+def _evened(marks: list[Landmark], patches: Sequence[Patch], middle: float) -> list[Landmark]:
+    """Return the points of two smooth breasts that are alike as mirror images: halves what is chance."""
+    left, right = (mark.position for mark in marks)
+    over = np.array([2.0 * middle - right[0], right[1], right[2]])
+    if np.linalg.norm(over - left) > ALIKE:
+        return marks
+    mean = 0.5 * (left + over)
+    places = (mean, np.array([2.0 * middle - mean[0], mean[1], mean[2]]))
+    return [
+        replace(mark, position=patch.onto(place))
+        for mark, patch, place in zip(marks, patches, places, strict=True)
+    ]
 
 
 def _across(mesh: Mesh, there: Points, middle: float) -> Points:
@@ -96,7 +116,7 @@ def smooth_point(patch: Patch) -> tuple[Points, float]:
         return patch.centre, 0.1
     place = foremost + way * min(OUTWARD / max(apart, 1.0), 0.75) + (0.0, 0.0, RAISED)
     # Where the nipple itself would be stays unknown: never sure, the less so the wider the choice.
-    return patch.nearest(place), 0.45 * float(np.exp(-max(apart - 24.0, 0.0) / 25.0))
+    return patch.onto(place), 0.45 * float(np.exp(-max(apart - 24.0, 0.0) / 25.0))
 
 
 def _foremost(patch: Patch) -> tuple[Points, bool]:

@@ -69,17 +69,19 @@ def trace(bundle: list[Profile], height: float) -> Trace | None:
 
 def _best_run(points: Points, value: Floats) -> tuple[Indices, float]:
     """Return the best place on each row, shape (r,), and what the run is worth."""
-    total, back = value[0], []
-    places = np.nan_to_num(points[:, :, 1] + 1j * points[:, :, 2], nan=1e6)
+    open_to = [np.flatnonzero(np.isfinite(row)) for row in value]
+    total, links = value[0, open_to[0]], []
     for k in range(1, len(value)):
-        step = np.abs(places[k][:, None] - places[k - 1][None])
+        away = points[k, open_to[k], 1:][:, None] - points[k - 1, open_to[k - 1], 1:][None]
+        step = np.hypot(away[..., 0], away[..., 1])
         reached = total[None] - PULL * np.maximum(step - SLACK, 0.0)
-        back.append(np.argmax(reached, axis=1))
-        total = value[k] + reached[np.arange(len(back[-1])), back[-1]]
-    path = [int(np.argmax(total))]
-    for links in reversed(back):
-        path.append(int(links[path[-1]]))
-    return np.array(path[::-1]), float(total.max())
+        links.append(np.argmax(reached, axis=1))
+        total = value[k, open_to[k]] + reached.max(axis=1)
+    run = [int(np.argmax(total))]
+    for link in reversed(links):
+        run.append(int(link[run[-1]]))
+    path = [places[at] for places, at in zip(open_to, run[::-1], strict=True)]
+    return np.array(path), float(total.max())
 
 
 def _trace(bundle: list[Profile], rows: Indices, path: Indices, lead: float) -> Trace:

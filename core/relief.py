@@ -42,6 +42,24 @@ class Patch:
         """Return the surface point of the grid nearest to ``point``, shape (3,) [mm]."""
         return np.asarray(self.points.reshape(-1, 3)[np.nanargmin(((self.points - point) ** 2).sum(axis=-1))])
 
+    def onto(self, place: Points) -> Points:
+        """Return the surface point nearest to ``place``, between the grid's points too, shape (3,) [mm]."""
+        away = ((self.points - place) ** 2).sum(axis=-1)
+        row, column = divmod(int(np.nanargmin(away)), away.shape[1])
+        at = self.points[row, column]
+        tangents = np.stack([self._slope(row, column, 0), self._slope(row, column, 1)], axis=1)
+        if not np.isfinite(tangents).all():
+            return np.asarray(at)
+        share = np.linalg.lstsq(tangents, place - at, rcond=None)[0]
+        return np.asarray(at + tangents @ np.clip(share, -1.0, 1.0))
+
+    def _slope(self, row: int, column: int, axis: int) -> Points:
+        """Return the step of the surface from one point of the grid to the next along an axis, (3,) [mm]."""
+        line = self.points[:, column] if axis == 0 else self.points[row]
+        at = row if axis == 0 else column
+        low, high = max(at - 1, 0), min(at + 1, len(line) - 1)
+        return np.asarray((line[high] - line[low]) / (high - low))
+
     def ring(self, place: Points, radius: float) -> Points:
         """Return a closed curve on the surface round ``place``, ``radius`` [mm] off, shape (k, 3) [mm]."""
         t = np.linspace(0.0, 2.0 * np.pi, 37)
