@@ -198,6 +198,13 @@ def _shoulders(seen: Look) -> float:
     return float(middle[top:].mean() - middle[: rest + 1].mean()) / depth / 0.2 if len(middle) > 4 else 0.0
 
 
+def _legs(seen: Look) -> float:
+    trunk = seen.trunk
+    middle = np.median(np.flatnonzero(trunk.proper))
+    below = np.sign(middle - np.flatnonzero(trunk.legs)).sum()
+    return float(below) / (0.15 * len(trunk.z))
+
+
 def _upright(seen: Look) -> float:
     return -min(max(0.0, abs(seen.lean - 0.06) - 0.17) / 0.35, 3.0)
 
@@ -225,6 +232,7 @@ CUES = (
     Cue("shoulders nearer to the back", 0.5, _shoulders),
     Cue("the narrow end", 1.2, _taper),
     Cue("where the arms join", 0.5, _arms),
+    Cue("the legs", 0.6, _legs),
     Cue("a trunk that stands", 1.5, _upright),
 )
 """What tells up and front; weights are ours, from bodies deformed in many ways."""

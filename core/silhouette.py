@@ -19,14 +19,18 @@ STEP = 1.4
 GAP = 3
 """Air between trunk and arm is at least this wide [grains]."""
 
+THIN = 0.5
+"""A level whose middle is thinner than this share of its depth is no trunk but legs."""
+
 
 @dataclass(frozen=True, eq=False)
 class Silhouette:
     """A trunk, arms taken out, at k levels square to an axis and c columns across [file units].
 
-    Shape (k,): ``z``, half ``width``, its ends in depth ``low`` and ``high``, and whether ``arms`` lie beside
-    it; NaN where no level could be read. Shape (k, c): how far ``front`` and ``back`` stand out, NaN where
-    nothing is. ``cell`` is the distance of levels and columns; ``own``, shape (n,), which points are trunk.
+    Shape (k,): ``z``, half ``width``, its ends in depth ``low`` and ``high``, NaN where there is no trunk;
+    whether ``arms`` lie beside it, and whether there are only ``legs``. Shape (k, c): how far ``front`` and
+    ``back`` stand out, NaN where nothing is. ``cell`` is the distance of levels and columns; ``own``, shape
+    (n,), tells which points are trunk, or between the arms.
     """
 
     cell: float
@@ -35,6 +39,7 @@ class Silhouette:
     low: Floats
     high: Floats
     arms: Flags
+    legs: Flags
     front: Floats
     back: Floats
     own: Flags
@@ -103,6 +108,7 @@ class Silhouette:
             low=low[::up],
             high=high[::up],
             arms=self.arms[::up],
+            legs=self.legs[::up],
             front=front[::up],
             back=rear[::up],
         )
@@ -115,22 +121,30 @@ def silhouette(points: Points, grain: float) -> Silhouette | None:
     rows = int(row.max()) + 1
     z = points[:, 2].min() + (np.arange(rows) + 0.5) * cell
     own = _own(points, row, rows, grain)
-    beside = np.bincount(row[~own], minlength=rows) > 0
-    points, row = points[own], row[own]
-    width, low, high = np.zeros((2, rows)), np.full(rows, np.inf), np.full(rows, -np.inf)
-    side = (points[:, 0] < 0.0).astype(np.int64)
-    np.maximum.at(width, (side, row), np.abs(points[:, 0]))
-    np.minimum.at(low, row, points[:, 1])
-    np.maximum.at(high, row, points[:, 1])
-    empty = np.bincount(row, minlength=rows) == 0
-    half = np.where(empty, np.nan, width.mean(axis=0))
-    low, high = np.where(empty, np.nan, low), np.where(empty, np.nan, high)
+    core = own & (np.abs(points[:, 0]) < 1.2 * grain)
+    deep, thick = (np.subtract(*_ends(points[some, 1], row[some], rows)[::-1]) for some in (own, core))
+    legs = ~(thick > THIN * deep)  # two limbs, or nothing in the middle
+    trunk = own & ~legs[row]
+    beside = np.bincount(row[~trunk], minlength=rows) > 0
+    mine, level = points[trunk], row[trunk]
+    low, high = _ends(mine[:, 1], level, rows)
+    left, right = _ends(mine[:, 0], level, rows)
+    half = 0.5 * (right - left)
     nothing = np.empty((rows, 0))
-    bare = Silhouette(cell, z, half, low, high, beside, nothing, nothing, own)
+    bare = Silhouette(cell, z, half, low, high, beside, legs & beside, nothing, nothing, own)
     if not (bare.half_width > 0.0 and bare.main_girth > 0.0 and bare.proper.any()):
         return None
-    front, back = (_reach(points * [1.0, sign, 1.0], row, bare, sign) for sign in (1.0, -1.0))
-    return Silhouette(cell, z, half, low, high, beside, front, back, own)
+    front, back = (_reach(mine * [1.0, sign, 1.0], level, bare, sign) for sign in (1.0, -1.0))
+    return replace(bare, front=front, back=back)
+
+
+def _ends(values: Floats, row: Indices, rows: int) -> tuple[Floats, Floats]:
+    """Return the least and the largest of the values in each row, NaN if there are none."""
+    low, high = np.full(rows, np.inf), np.full(rows, -np.inf)
+    np.minimum.at(low, row, values)
+    np.maximum.at(high, row, values)
+    empty = low > high
+    return np.where(empty, np.nan, low), np.where(empty, np.nan, high)
 
 
 def _own(points: Points, row: Indices, rows: int, grain: float) -> Flags:

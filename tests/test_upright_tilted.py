@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+import trimesh
+from odd_objects import limb, together
 from scipy.spatial.transform import Rotation
 from test_refused import sample
 from test_upright import angle_between, torso
@@ -69,6 +71,18 @@ def test_a_foremost_belly_is_no_bust(back):
     pose = find_pose(bent(with_belly(vertices, 95.0), back) @ turn.T, faces)
     assert pose.sure
     assert angle_between(pose, turn) < 3.0
+
+
+def test_legs_are_no_trunk_and_tell_what_is_down():
+    vertices, faces = sample("mannequin")
+    legs = [
+        limb((90.0 * side, -90.0, 20.0), (115.0 * side, -90.0, -800.0), 85.0, 40.0) for side in (-1.0, 1.0)
+    ]
+    whole, skin = together(trimesh.Trimesh(vertices, faces, process=False), *legs)
+    pose = find_pose(whole, skin)
+    assert pose.sure
+    assert angle_between(pose, np.eye(3)) < 0.5
+    assert pose.unit == "mm"
 
 
 def test_moving_turning_or_mirroring_a_body_moves_its_pose_accordingly():
