@@ -31,12 +31,12 @@ def refuse_unlike(cloud: Cloud, best: Stance) -> None:
     """Raise ScanError, with the likeliest reason, if this is no upper body. Source: ours."""
     trunk = best.seen.trunk
     skin = len(cloud.points) * cloud.grain**2
-    halved = any(
-        not end.filled and end.area > HALF * skin and abs(end.normal @ best.up) < np.cos(np.radians(45.0))
-        for end in flat_ends(cloud.points, cloud.grain)
-    )
-    if halved or best.residual > UNLIKE:
+    if _halved(cloud, best, HALF * skin):
         raise ScanError("Only a half of an upper body is here: its other half is missing.", WHOLE)
+    if best.residual > UNLIKE:
+        raise ScanError(
+            "Left and right are not alike enough for an upper body: a half of it may be missing.", WHOLE
+        )
     if trunk.stoutness > STOUTNESS[1] and best.evidence > 0.0:
         raise ScanError(
             "This is too flat for an upper body: the front or the back of the trunk is missing.", WHOLE
@@ -50,3 +50,14 @@ def refuse_unlike(cloud: Cloud, best: Stance) -> None:
             "This does not look like an upper body: no bust was found in front of an even trunk.",
             "Cut away all but the body, or say which way is up and which way is front.",
         )
+
+
+def _halved(cloud: Cloud, best: Stance, area: float) -> bool:
+    """Tell whether the skin is open along an upright plane, and not like a tube, at both ends."""
+    ends = [end for end in flat_ends(cloud.points, cloud.grain) if not end.filled]
+    return any(
+        end.area > area
+        and abs(end.normal @ best.up) < np.cos(np.radians(45.0))
+        and not any(other.normal @ end.normal < -0.7 and other.area > 0.4 * end.area for other in ends)
+        for end in ends
+    )

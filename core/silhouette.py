@@ -19,8 +19,8 @@ STEP = 1.4
 GAP = 3
 """Air between trunk and arm is at least this wide [grains]."""
 
-THIN = 0.5
-"""A level whose middle is thinner than this share of its depth is no trunk but legs."""
+SUNK = 0.25
+"""A level whose middle lies deeper than this share of its depth, in front and at the back, is two legs."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,8 +122,10 @@ def silhouette(points: Points, grain: float) -> Silhouette | None:
     z = points[:, 2].min() + (np.arange(rows) + 0.5) * cell
     own = _own(points, row, rows, grain)
     core = own & (np.abs(points[:, 0]) < 1.2 * grain)
-    deep, thick = (np.subtract(*_ends(points[some, 1], row[some], rows)[::-1]) for some in (own, core))
-    legs = ~(thick > THIN * deep)  # two limbs, or nothing in the middle
+    low, high = _ends(points[own, 1], row[own], rows)
+    fore, rear = _ends(points[core, 1], row[core], rows)
+    sunk = np.fmin(fore - low, high - rear)  # in a hollow, or under a hole, only one side of the middle is
+    legs = ~(sunk < SUNK * (high - low))
     trunk = own & ~legs[row]
     beside = np.bincount(row[~trunk], minlength=rows) > 0
     mine, level = points[trunk], row[trunk]
