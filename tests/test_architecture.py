@@ -16,9 +16,16 @@ ROOT = Path(__file__).parent.parent
 # From the ground up, each floor in order: a module may import what stands to its left or on a floor below.
 FLOORS = {
     "ground": "errors progress mesh sections proximity kernels moving",
-    "anatomy": "raw_scan text_table ply_file obj_file stl_file off_file gltf_file vtp_file scan_file contour surface "
-    "skin pieces repair holes polygon mending calm symmetry silhouette cues flat_ends told stance body_size refusal upright body outline gaps arms trunk_pieces trunk_guide trunk chest relief landmark placed breast_profile fold under_breast bust_point bust_check roots trunk_marks landmarks "
-    "torso template profiles near_skin fit_check ground bridging creases laying easing fit_quality control_mesh doubts measure detect truth accuracy",
+    "reading": "raw_scan text_table ply_file obj_file stl_file off_file gltf_file vtp_file scan_file contour "
+    "surface",
+    "mending": "skin pieces repair holes polygon mending calm",
+    "standing": "symmetry silhouette cues flat_ends told stance body_size refusal upright body",
+    "trunk": "outline gaps arms trunk_pieces trunk_guide trunk",
+    "finding": "chest relief landmark placed breast_profile fold under_breast bust_point bust_check roots "
+    "trunk_marks landmarks",
+    "fitting": "torso template profiles near_skin fit_check ground bridging creases laying easing "
+    "fit_quality control_mesh",
+    "measuring": "doubts measure detect truth accuracy",
     "mechanics": "mechanics band springs cells tensegric lines volume patch tffd",
     "solving": "condition layout sweep model solver gain potential newton sliding exact body_volume "
     "verdict comparison watch",
@@ -35,13 +42,17 @@ FLOORS = {
     "housekeeping panels.setting_field panels.model panels.result panels.scan panels.status panels.busy "
     "panels.question panels.top_bar panels.view_tools",
     "roof": "present present_scan view_area actions recent dialogs application scan_desk desk line_dialog "
-    "line_maker main_window window picture demo self_test limits trials accuracy found settings cli_parser cli __main__",
+    "line_maker main_window window picture demo self_test limits trials accuracy found settings cli_parser "
+    "cli __main__",
 }
-CORE = ("ground", "anatomy", "mechanics", "solving", "document")
+ANATOMY = ("reading", "mending", "standing", "trunk", "finding", "fitting", "measuring")
+CORE = ("ground", *ANATOMY, "mechanics", "solving", "document")
 NUMBERS = {"numpy", "scipy"}
 OUTSIDE = {
     "ground": NUMBERS | {"numba"},
-    "anatomy": NUMBERS | {"trimesh"},
+    **dict.fromkeys(ANATOMY, NUMBERS),
+    "finding": NUMBERS | {"trimesh"},
+    "fitting": NUMBERS | {"trimesh"},
     "mechanics": NUMBERS,
     "solving": NUMBERS | {"threadpoolctl"},
     "document": NUMBERS | {"trimesh", "threadpoolctl", "platformdirs"},

@@ -70,7 +70,7 @@ def test_what_lies_alone_or_nowhere_is_left_out():
 
 
 def test_two_skins_close_to_each_other_stay_two():
-    points = np.concatenate([ball(8000), ball(8000, seed=3) + [212.0, 0.0, 0.0]])
+    points = np.concatenate([ball(8000), ball(8000, seed=3) + np.array([212.0, 0.0, 0.0])])
     skin = Mesh(*surface_of(points))
     assert len(skin.vertices) - len(skin.edges) + len(skin.faces) == 4
     assert skin.enclosed_volume() == pytest.approx(8.0 / 3.0 * np.pi * 100.0**3, rel=0.004)
