@@ -33,7 +33,7 @@ def trunk_marks(mesh: Mesh, found: Landmarks) -> list[Landmark]:
     heights = [found.underbust_level, found.bust_level]
     levels = dict(zip(("_underbust", ""), trunk_levels(mesh, heights), strict=True))
     stable = stable_level(mesh, found.underbust_level)
-    marks = _fronts(mesh, levels, middle)
+    marks = _fronts(mesh, levels, middle, _level_confidence(found))
     marks += [_back(mesh, guide, level, name) for name, level in levels.items()]
     marks += [_side(guide, stable, name, sign) for name, sign in zip(SIDES, (1.0, -1.0), strict=True)]
     marks += [_armpit(mesh, guide, found, s) for s in (0, 1)]
@@ -83,13 +83,24 @@ def _split(level: Level) -> float:
     return 0.5 * float(level.points[:, 1].min() + level.points[:, 1].max()) if len(level.points) else 0.0
 
 
-def _fronts(mesh: Mesh, levels: dict[str, Level], middle: float) -> list[Landmark | None]:
+def _level_confidence(found: Landmarks) -> dict[str, float]:
+    """Return how sure the two levels are: as the points that they were taken from."""
+    low = [mark for name, mark in found.points.items() if name.startswith(("fold", "lowest"))]
+    deepest = min(low, key=lambda mark: float(mark.position[2]), default=None)
+    busts = [found.points[f"bust_point_{side}"].confidence for side in SIDES]
+    return {"": max(busts), "_underbust": deepest.confidence if deepest else 1.0}
+
+
+def _fronts(
+    mesh: Mesh, levels: dict[str, Level], middle: float, sure: dict[str, float]
+) -> list[Landmark | None]:
     under, bust = levels["_underbust"], levels[""]
     line = _line(mesh, middle, under.z - 20.0, bust.z + 60.0, False, _split(bust))
     marks: list[Landmark | None] = []
     for name, level, rule in (("", bust, FRONT), ("_underbust", under, FRONT_UNDER)):
         place = _at(line, level.z)
-        marks.append(None if place is None else Landmark(f"front_centre{name}", place, 0.8, rule, line))
+        if place is not None:
+            marks.append(Landmark(f"front_centre{name}", place, min(0.8, sure[name]), rule, line))
     return marks
 
 
