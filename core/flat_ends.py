@@ -12,6 +12,9 @@ from core.mesh import Floats, Points, unit
 TOUCH = 1.3
 """A point nearer to a plane than this [grains] touches it: even points lie up to a grain inside a rim."""
 
+DRIFT, BEYOND = np.cos(np.radians(8.0)), 0.01
+"""A flat end lies along the hull, to an angle [cosine]; no more than this share of points is beyond it."""
+
 TRIED = 16
 """Faces of the hull, largest first, that are tried as flat ends."""
 
@@ -62,6 +65,7 @@ def flat_ends(
 
 def _flat_end(points: Points, grain: float, normal: Floats, offset: float) -> FlatEnd | None:
     """Lay a plane through all points that touch a hull face; None if they do not go all the way round."""
+    first_normal = normal
     for _ in range(3):
         depth = offset - points @ normal
         touching = points[np.abs(depth) < TOUCH * grain]
@@ -71,6 +75,9 @@ def _flat_end(points: Points, grain: float, normal: Floats, offset: float) -> Fl
         fitted = np.linalg.svd(touching - centre, full_matrices=False)[2][2]
         normal = fitted * np.sign(fitted @ normal)
         offset = float(centre @ normal) + 0.3 * grain
+    beyond = (points @ normal - offset > TOUCH * grain).mean()
+    if normal @ first_normal < DRIFT or beyond > BEYOND:  # it slid into the body: a round place, no flat one
+        return None
     first = unit(np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))]))
     flat = (touching - centre) @ np.stack([first, np.cross(normal, first)], axis=1)
     try:
