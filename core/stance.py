@@ -19,9 +19,6 @@ TURN = 15.0
 FILE_AXIS = 0.5
 """What a file adds to a stance that is upright in it [1]: most scanners know what is up."""
 
-WORSE = 1.0
-"""An up that makes a stance less likely by this [1] was misled by something else than a level cut."""
-
 LEVEL = 3.0
 """A cut that is level in the file to this angle [degrees] was level when it was made."""
 
@@ -105,8 +102,7 @@ def settled(cloud: Cloud, stance: Stance) -> Stance:
     middle = cloud.points.mean(axis=0)
     offset = stance.offset + float(middle @ (side - stance.left))
     again = _ways_to_stand(cloud, MirrorPlane(side, offset, stance.residual), up, (1,))
-    found = max(again, key=lambda other: other.back @ stance.back, default=stance)
-    return found if found.score > stance.score - WORSE else stance
+    return max(again, key=lambda other: other.back @ stance.back, default=stance)
 
 
 def _true_up(cloud: Cloud, stance: Stance) -> Floats:

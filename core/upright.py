@@ -29,6 +29,8 @@ READINGS = 4
 RIVAL = 2.0
 """Ways to stand that score less than the best by this [1] stay rough: they cannot win."""
 
+NOTHING_ELSE = "It should hold an upper body, and little else."
+
 DIFFERENT = 30.0
 """Ways to stand whose up and front lie nearer than this [degrees] are one."""
 
@@ -78,6 +80,8 @@ def find_pose(
     """
     if unit is not None and unit not in MILLIMETRES:
         raise ScanError(f"The unit {unit!r} is not known.", f"Choose one of {', '.join(MILLIMETRES)}.")
+    if len(faces) == 0:
+        raise ScanError("No trunk can be made out in this scan.", NOTHING_ELSE)
     told_up, told_front = read_directions(up, front)
     told = told_up is not None and told_front is not None
     cloud = even_cloud(vertices, faces)
@@ -115,9 +119,7 @@ def _readings(cloud: Cloud, up: Told | None, front: Told | None) -> list[Stance]
         planes = [_told_plane(cloud, up, front)]
     found = [stance for plane in planes for stance in stances(cloud, plane, up, front)]
     if not found:
-        raise ScanError(
-            "No trunk can be made out in this scan.", "It should hold an upper body, and little else."
-        )
+        raise ScanError("No trunk can be made out in this scan.", NOTHING_ELSE)
     chosen: list[Stance] = []
     for stance in sorted(found, key=lambda stance: -stance.score):
         if len(chosen) < READINGS and all(stance.differs(other, DIFFERENT) for other in chosen):
