@@ -41,7 +41,7 @@ def ways(pose: Pose) -> list[Way]:
         *(unit(other[:3, :3]) for other in pose.others),
         *(turn @ now for turn in about),
     ]:
-        if not any(turn[2] @ old[2] > SAME and turn[1] @ old[1] > SAME for old in found):
+        if not any(_alike(turn, old) for old in found):
             found.append(turn)
     return [_way(turn, turn @ now.T) for turn in found[:MOST]]
 
@@ -49,6 +49,12 @@ def ways(pose: Pose) -> list[Way]:
 def pictures(body: Body, size: tuple[int, int], clay: tuple[int, int, int]) -> list[tuple[Way, Picture]]:
     """Return each way with a picture of the body as it would stand; see ``portrait``."""
     return [(way, portrait(body.calm, way.turn, size, clay)) for way in ways(body.pose)]
+
+
+def _alike(turn: Floats, old: Floats) -> bool:
+    """Whether two ways look the same, or would be told by the same axes."""
+    near = bool(turn[2] @ old[2] > SAME and turn[1] @ old[1] > SAME)
+    return near or all(_nearest(turn[k]) == _nearest(old[k]) for k in (1, 2))
 
 
 def _way(file_to_body: Floats, turn: Floats) -> Way:
