@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.body import Body
-from core.calm import calmed
 from core.creases import Crease, find_creases
 from core.easing import eased
 from core.errors import FitError
@@ -17,13 +16,8 @@ from core.fit_quality import FitQuality, measure_fit
 from core.ground import Ground, survey_ground
 from core.landmark import Landmarks
 from core.laying import lay_line, lay_outline, lay_rest
-from core.mesh import Flags, Floats, Indices, Mesh, Points
+from core.mesh import Flags, Indices, Mesh, Points
 from core.template import Template
-from core.torso import cropped
-from core.trunk import trunk_levels
-
-AROUND = 40.0
-"""The skin within this of a level is calmed before it is measured there [mm]."""
 
 MOST_HOLES = 0.5
 """A scan that lacks more than this part of a breast, or of all that the template lies on, is refused."""
@@ -67,10 +61,10 @@ def fit_control_mesh(
     ground = survey_ground(template, body.calm, landmarks)
     outline, holes = lay_outline(ground, landmarks)
     creases, lacking, holed = find_creases(ground, outline, landmarks)
-    warnings = [_without_fold(template, number) for number in [*lacking, *holed]] + _arm_warning(ground)
+    lost = [*lacking, *holed]
     tries: list[_Try] = []
     while True:
-        tries += _tries(ground, outline, creases, holed, line_height, warnings)
+        tries += _tries(ground, outline, creases, holed, line_height, lost)
         best = min(tries, key=lambda one: one.weight)
         faulty = template.faces[tries[-1].faults.any | tries[-1].half_way.any]
         blamed = set(template.column[faulty].ravel().tolist()) & set(creases)
@@ -78,7 +72,7 @@ def fit_control_mesh(
             break
         shallowest = min(blamed, key=lambda number: creases[number].depth)
         del creases[shallowest]
-        warnings = [*warnings, _without_fold(template, shallowest)]
+        lost = [*lost, shallowest]
     holes = holes | best.holes
     _refuse_holes(template, holes)
     if best.faults.folded.any():
@@ -87,13 +81,13 @@ def fit_control_mesh(
             "Correct the bust points and folds, or choose the other template.",
         )
     quality = measure_fit(best.mesh, ground.skin, *_off_landmarks(template, best.mesh, landmarks))
-    more = [*_hole_warning(int(holes.sum())), *quality.warnings]
-    return _control_mesh(template, best.mesh, [*best.warnings, *more], quality)
+    warnings = [*_fold_warnings(best.lost), *_arm_warning(ground), *_hole_warning(int(holes.sum()))]
+    return _control_mesh(template, best.mesh, [*warnings, *quality.warnings], quality)
 
 
 @dataclass(frozen=True, eq=False)
 class _Try:
-    """One way to lay the template, where it has no skin, and what to tell of it.
+    """One way to lay the template, where it has no skin, and in which columns it ``lost`` the fold.
 
     ``faults`` are its own, ``half_way`` those that it has when the line row runs half way: they choose among
     the ways to lay, so that the line height moves the line row alone.
@@ -103,7 +97,7 @@ class _Try:
     faults: Faults
     half_way: Faults
     holes: Flags
-    warnings: list[str]
+    lost: list[int]
 
     @property
     def weight(self) -> tuple[int, ...]:
@@ -122,7 +116,7 @@ def _tries(
     creases: Mapping[int, Crease],
     holed: list[int],
     line_height: float,
-    warnings: list[str],
+    lost: list[int],
 ) -> list[_Try]:
     """Lay all points, eased where triangles are pointed; where that brings faults, eased less and less.
 
@@ -152,7 +146,7 @@ def _tries(
             smooth = eased(points, template.faces, ground.skin, level & only, upright & only)
             judged = [_judged(ground, smooth), _judged(ground, points)]
             mesh, faults = min(judged, key=lambda one: one[1].weight)
-        found.append(_Try(mesh, faults, half_way, holes, warnings))
+        found.append(_Try(mesh, faults, half_way, holes, lost))
         if found[-1].sound:
             break
     return found
@@ -220,12 +214,13 @@ def _arm_warning(ground: Ground) -> list[str]:
     return ["The arms touch the body below the bust points: the sides of the mesh may lie on an arm."]
 
 
-def _without_fold(template: Template, number: int) -> str:
-    side = "left" if number > 0 else "right"
-    place = template.columns[abs(number)].meaning
-    return (
-        f"No fold under the {side} breast could be followed in the column '{place}': its height is estimated."
-    )
+def _fold_warnings(lost: list[int]) -> list[str]:
+    sides = [side for side, sign in (("left", 1), ("right", -1)) if any(sign * number > 0 for number in lost)]
+    return [
+        f"The fold under the {side} breast could not be followed everywhere: "
+        "some control points lie at an estimated height."
+        for side in sides
+    ]
 
 
 def _control_mesh(template: Template, mesh: Mesh, warnings: list[str], quality: FitQuality) -> ControlMesh:
@@ -242,56 +237,3 @@ def _control_mesh(template: Template, mesh: Mesh, warnings: list[str], quality: 
         tuple(warnings),
         quality,
     )
-
-
-def back_length(body_mesh: Mesh, control: ControlMesh, path_name: str) -> float:
-    """Return the way round the back from one end of a line to the other, along the skin [mm].
-
-    It lies level at the mean height of both ends, without the arms; a hole of the scan is bridged straight.
-    With the front part it makes the whole band. Raises FitError if there is no torso at that height.
-    """
-    path = control.paths[path_name]
-    right, left = control.mesh.vertices[path[0]], control.mesh.vertices[path[-1]]
-    z = 0.5 * (right[2] + left[2])
-    band = cropped(body_mesh, np.abs(body_mesh.vertices[:, 2] - z) < AROUND)
-    level = trunk_levels(calmed(band), [z])[0] if len(band.faces) else None
-    if level is None or len(level.segments) == 0:
-        raise FitError(
-            f"The scan has no back at the height of the {path_name} line.",
-            "Open a scan of a whole upper body.",
-        )
-    axis = 0.5 * (level.points.min(axis=0) + level.points.max(axis=0))[:2]
-    ends = np.array([right[:2], left[:2]]) - axis
-    # The ends take part as segments without length, so that a hole next to them is bridged too.
-    segments = np.concatenate([level.segments[:, :, :2] - axis, np.repeat(ends[:, None], 2, axis=1)])
-    start, end = _behind(ends).tolist()
-    return _length_between(segments, start, end)
-
-
-def _behind(places: Points) -> Floats:
-    """Return the azimuth about the axis, 0 straight back, positive the subject's left, shape (...) [rad]."""
-    return np.asarray(np.arctan2(places[..., 0], places[..., 1]))
-
-
-def _length_between(segments: Points, start: float, end: float) -> float:
-    """Return the length of the segments, shape (s, 2, 2) [mm], between two azimuths [rad], with gaps."""
-    azimuth = _behind(segments)
-    order = np.argsort(azimuth, axis=1)
-    azimuth = np.take_along_axis(azimuth, order, axis=1)
-    segments = np.take_along_axis(segments, order[:, :, None], axis=1)
-    inside = (azimuth[:, 1] >= start) & (azimuth[:, 0] <= end) & (np.ptp(azimuth, axis=1) < np.pi)
-    azimuth, segments = azimuth[inside], segments[inside]
-    span = np.maximum(azimuth[:, 1] - azimuth[:, 0], 1e-12)
-    share = (np.minimum(azimuth[:, 1], end) - np.maximum(azimuth[:, 0], start)) / span
-    length = np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1)
-    return float((length * np.clip(share, 0.0, 1.0)).sum()) + _gaps(azimuth, segments)
-
-
-def _gaps(azimuth: Floats, segments: Points) -> float:
-    """Return the summed width of the gaps between segments (s, 2, 2) [mm] with azimuths (s, 2) [rad]."""
-    order = np.argsort(azimuth[:, 0])
-    azimuth, segments = azimuth[order], segments[order]
-    last = np.maximum.accumulate(azimuth[:, 1])
-    reached = np.maximum.accumulate(np.where(azimuth[:, 1] == last, np.arange(len(last)), 0))
-    gap = np.flatnonzero(azimuth[1:, 0] > last[:-1] + 1e-9)
-    return float(np.linalg.norm(segments[gap + 1, 0] - segments[reached[gap], 1], axis=1).sum())

@@ -11,8 +11,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from core.back_length import back_length
 from core.body import Body, body_of
-from core.control_mesh import ControlMesh, back_length, fit_control_mesh
+from core.control_mesh import ControlMesh, fit_control_mesh
 from core.design import Design, OwnLine, ScanSource
 from core.errors import FitError, LandmarkError, LineError, UserError
 from core.gain import gain_limit

@@ -24,7 +24,7 @@ FLOORS = {
     "finding": "chest relief landmark placed breast_profile fold under_breast bust_point bust_check roots "
     "trunk_marks landmarks",
     "fitting": "torso template profiles near_skin fit_check ground bridging creases laying easing "
-    "fit_quality control_mesh",
+    "fit_quality control_mesh back_length",
     "measuring": "doubts measure detect truth accuracy",
     "mechanics": "mechanics band springs cells tensegric lines volume patch tffd",
     "solving": "condition layout sweep model solver gain potential newton sliding exact body_volume "

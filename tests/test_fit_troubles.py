@@ -41,7 +41,7 @@ def test_hole_in_a_fold_is_said(template):
     below_fold = whole.mesh.vertices[template.point(1, template.bust_column)] - (0.0, 0.0, 20.0)
     holed = body_of(without(body.mesh, below_fold, 12.0))
     control = fit_control_mesh(template, holed, landmarks_at(places))
-    assert [w for w in control.warnings if "left breast" in w and "'bust point'" in w]
+    assert any("The fold under the left breast" in warning for warning in control.warnings)
     assert not any("right breast" in warning for warning in control.warnings)
 
 
@@ -122,7 +122,7 @@ def test_breast_that_cannot_be_followed_is_refused(template):
 def test_column_that_spoils_the_mesh_gives_up_its_fold_and_says_so(template):
     body, landmarks = hanging(sag=1.2)
     control = fit_control_mesh(template, body, landmarks)
-    assert any("'outer middle'" in warning for warning in control.warnings)
+    assert any("could not be followed everywhere" in warning for warning in control.warnings)
     assert agreement(control.mesh, body.mesh).min() > 0.3
     assert corner_angles(control.mesh).min() > 8.0
 
@@ -130,4 +130,4 @@ def test_column_that_spoils_the_mesh_gives_up_its_fold_and_says_so(template):
 def test_body_without_folds_says_so(template):
     control = fit_control_mesh(template, body_of(analytic_body(bump=0.0)), analytic_landmarks())
     assert len(control.warnings) == 2
-    assert all("No fold under the" in warning for warning in control.warnings)
+    assert all("could not be followed everywhere" in warning for warning in control.warnings)
