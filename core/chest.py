@@ -126,7 +126,8 @@ def find_poles(survey: Survey, anchor: Anchor) -> tuple[Pole, Pole]:
 
 
 def _prominence(survey: Survey, anchor: Anchor, p: Points, row: Indices) -> Floats:
-    base = survey.level_at(anchor.z - 12.0)
+    shown = np.unique(survey.row)  # a gap all round leaves levels without skin
+    base = shown[np.argmin(np.abs(survey.z[shown] - (anchor.z - 12.0)))]
     hull = ConvexHull(survey.samples[survey.row == base][:, :2]).equations
     back = survey.back_width()
     shrink = np.clip(back[base] / back, 0.7, 1.0)[row]

@@ -17,7 +17,7 @@ from core.raw_scan import AGAIN, RawScan, check_size, fans, joined, no_faces, st
 
 _KINDS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
-_POINTS, _TRIANGLES, _STRIP, _FAN = 0, 4, 5, 6
+_TRIANGLES, _STRIP, _FAN = 4, 5, 6
 _MOST_NODES, _DEEPEST = 10_000, 100
 _MOST_MARKS = 2_000_000
 _WHOLE = "Export it as one GLB file with all in it."

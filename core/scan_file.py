@@ -39,7 +39,7 @@ FORMATS = (*_READERS, "gz")
 _SIGNS = {
     "ply": re.compile(rb"ply\r?[\n\r]"),
     "glb": re.compile(rb"glTF"),
-    "vtp": re.compile(rb"(<\?xml[^>]*>\s*)?(<!--.*?-->\s*)*<VTKFile", re.DOTALL),
+    "vtp": re.compile(rb"(<\?xml[^>]*>\s*)?(<!--(?:(?!-->).)*-->\s*)*<VTKFile", re.DOTALL),
     "off": re.compile(rb"(ST)?C?N?OFF\s"),
 }
 """How files of some formats begin, whatever they are called."""

@@ -108,12 +108,6 @@ class Sides:
         corner, face = np.divmod(side, len(self.faces))
         return self.faces[face, corner], self.faces[face, (corner + 1) % 3]
 
-    def sharing(self) -> Indices:
-        """Return how many triangles share each side, shape (3, m)."""
-        result = np.empty(len(self.order), dtype=np.int64)
-        result[self.order] = np.repeat(self.count, self.count)
-        return result.reshape(3, -1)
-
 
 def match_sides(faces: Faces, vertex_count: int) -> Sides:
     """Match the sides of ``faces``, shape (m, 3), with corners below ``vertex_count``."""

@@ -42,8 +42,6 @@ THINNING = 0.7
 NEIGHBOURS = 24
 """Points that a smooth patch is laid through."""
 
-"""Cells of the grid in which the distance to the skin is written."""
-
 
 def surface_of(
     points: Points, normals: Points | None = None, progress: Progress = quiet

@@ -9,10 +9,12 @@ import pytest
 from test_landmarks import NAMES, SIDES, found, part, sample, truth
 
 from core.body import Body
+from core.chest import find_anchor
 from core.errors import LandmarkError
 from core.landmark import Landmarks
 from core.landmarks import find_landmarks
 from core.mesh import Mesh
+from core.trunk import survey
 from core.under_breast import CREASE, MIRRORED
 from core.upright import Pose
 
@@ -43,6 +45,16 @@ def test_holes_under_both_breasts_are_no_refusal() -> None:
     landmarks = holed("mannequin", 35.0, *SIDES)
     assert all(landmarks.points[f"fold_{side}"].confidence < 0.3 for side in SIDES)
     assert len(landmarks.warnings) == 2
+
+
+def test_a_narrow_gap_all_round_under_the_fold_loses_nothing() -> None:
+    whole = sample("person")
+    trunk = survey(whole)
+    level = trunk.z[trunk.level_at(find_anchor(trunk).z - 12.0)]  # what prominence is measured from
+    apart = np.abs(whole.vertices[whole.faces, 2].mean(axis=1) - level) > 1.5
+    split = find_landmarks(body(part(whole, apart)))
+    for name in ("bust_point_left", "bust_point_right"):
+        assert np.linalg.norm(split.position(name) - found("person").position(name)) < 1.0
 
 
 @cache

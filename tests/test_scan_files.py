@@ -81,6 +81,7 @@ LAUGHS = b'<?xml version="1.0"?><!DOCTYPE a [<!ENTITY a "ha">]><VTKFile type="Po
 HOSTILE = [
     ("a.vtp", LAUGHS, "not a scan|damaged"),
     ("a.vtp", b"<VTKFile>" + b"<a>" * 300_000, "damaged"),
+    ("a.vtp", b"<!---->" * 60 + b"x", "not a scan|damaged|no VTP"),
     ("a.vtp", b"<VTKFile type='PolyData'></VTKFile>", "no VTP file with a surface"),
     ("a.vtp", vtp().replace(b"<VTKFile ", b'<VTKFile compressor="vtkLZ4DataCompressor" '), "does not read"),
     ("a.gltf", b"[" * 1_000_000, "damaged"),
