@@ -116,8 +116,8 @@ def solve(options: argparse.Namespace) -> int:
 def limits(options: argparse.Namespace) -> int:
     """Print how short each line can be made before the body strains, folds or turns inside out."""
     from app.limits import limits_text
-    from core.limits import all_limits
     from core.pipeline import build
+    from core.studies.limits import all_limits
 
     design = design_of(options.input, options)
     stages = build(design)

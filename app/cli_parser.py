@@ -13,7 +13,7 @@ from core import __version__
 from core.errors import UserError
 from core.own_lines import HELP as LINE_HELP
 from core.placing import HELP as LANDMARK_HELP
-from core.upright import MILLIMETRES
+from core.standing.upright import MILLIMETRES
 from core.volume import CONTROLS
 
 COMMANDS = {

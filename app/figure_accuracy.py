@@ -19,7 +19,7 @@ from core.accuracy import DOUBTED, TRUSTED, Case
 from core.errors import UserError
 from core.mesh import Faces, Floats, Points
 from core.project import whole_file
-from core.scan_file import read_triangles, scan_bytes
+from core.reading.scan_file import read_triangles, scan_bytes
 
 COLUMNS, ROWS = 5, 4
 CELL = (3.9, 4.3)

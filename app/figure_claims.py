@@ -24,7 +24,7 @@ from app.figure_study import (
 )
 from core.exact import solve_exact
 from core.mesh import Floats
-from core.sphere import sphere_model
+from core.studies.sphere import sphere_model
 
 AGREES, PARTLY, DIFFERS = "agrees", "partly", "does not"
 LENGTHS = (MODEST, 0.9, 0.8, 0.7, 0.6, EXCESSIVE)

@@ -14,7 +14,7 @@ from core import __version__
 from core.mechanics import DEFAULT_LINE_STIFFNESS
 from core.pipeline import GAIN_SHARE, Stages
 from core.project import whole_file
-from core.search import RATIOS, Finding, search
+from core.studies.search import RATIOS, Finding, search
 from core.tffd import GAUSS_WIDTH, HAT_RANGE
 from core.volume import ADAPTIVE_DAMPING, ADAPTIVE_STEP
 

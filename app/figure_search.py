@@ -9,8 +9,8 @@ import numpy as np
 
 from app.figure_study import BODIES, LINE, TEMPLATE, Study
 from core.model import ConstrainedModel, constrained_model
-from core.search import FIRST_TURNS, RATIOS, TEMPLATES, Finding, mirrored_mean
 from core.solver import Targets, iterate
+from core.studies.search import FIRST_TURNS, RATIOS, TEMPLATES, Finding, mirrored_mean
 
 COLUMNS = tuple(field.name for field in fields(Finding))
 _HEADING = (

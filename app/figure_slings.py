@@ -9,7 +9,7 @@ from app.figure_scene import body_picture, view_of
 from app.figure_study import BODIES, CONTROLS, TURNS, Study, bust_heights, curve
 from app.figure_style import COLOURS, Figure, sheet, show, trimmed
 from core.design import OwnLine
-from core.search import routes
+from core.studies.search import routes
 
 RATIOS = (0.97, 0.6)
 

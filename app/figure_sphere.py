@@ -9,7 +9,7 @@ from app.figure_study import Study
 from app.figure_style import Figure, sheet, show, trimmed
 from core.exact import solve_exact
 from core.mesh import Points
-from core.sphere import SphereModel, sphere_model
+from core.studies.sphere import SphereModel, sphere_model
 
 ROWS = (("shorter", 0.8), ("at rest", 1.0), ("longer", 1.15))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from core.scan_file import FORMATS
+from core.reading.scan_file import FORMATS
 
 PACKED = ".gz"
 """Any scan may be packed."""

@@ -9,7 +9,7 @@ import numpy as np
 from app.portrait import Picture, portrait
 from core.body import Body
 from core.mesh import Floats, unit
-from core.upright import AXES, Pose
+from core.standing.upright import AXES, Pose
 
 MOST = 4
 """Ways that are offered."""

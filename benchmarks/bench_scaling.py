@@ -19,14 +19,14 @@ from threadpoolctl import threadpool_limits
 
 from core.control_mesh import ControlMesh
 from core.exact import solve_exact
-from core.gain import gain_limit
-from core.layout import layout_of
 from core.mechanics import DEFAULT_LINE_STIFFNESS, Mechanics
 from core.mesh import Mesh
 from core.model import ConstrainedModel, constrained_model
-from core.newton import Balance
-from core.potential import Potential
 from core.solver import Targets, at_rest, turn
+from core.solving.gain import gain_limit
+from core.solving.layout import layout_of
+from core.solving.newton import Balance
+from core.solving.potential import Potential
 
 HEIGHTS = (-150.0, -92.0, -30.0, 0.0, 38.0, 70.0, 105.0, 145.0)
 ANGLES = (0.0, 20.0, 33.0, 45.0, 62.0, 80.0, 97.0)

@@ -26,14 +26,14 @@ from threadpoolctl import threadpool_limits
 from core.body import read_scan
 from core.control_mesh import fit_control_mesh
 from core.exact import solve_exact
-from core.gain import gain_limit
 from core.landmarks import find_landmarks
-from core.layout import layout_of
-from core.limits import shortest
 from core.mesh import Floats
 from core.model import ConstrainedModel, constrained_model
-from core.potential import Place, Potential
 from core.solver import Targets, at_rest, turn
+from core.solving.gain import gain_limit
+from core.solving.layout import layout_of
+from core.solving.potential import Place, Potential
+from core.studies.limits import shortest
 from core.template import read_template
 
 try:

@@ -24,7 +24,7 @@ from scan_files import CLOUDS, HOUSES  # noqa: E402
 
 from core.body import body_of  # noqa: E402
 from core.errors import UserError  # noqa: E402
-from core.scan_file import read_raw  # noqa: E402
+from core.reading.scan_file import read_raw  # noqa: E402
 
 MEMORY, SECONDS, BODY_EVERY = 3 << 30, 10, 200
 

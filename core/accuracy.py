@@ -16,7 +16,7 @@ from core.detect import detection
 from core.errors import UserError
 from core.landmark import SIDES
 from core.mesh import Floats, Points
-from core.scan_file import scan_bytes
+from core.reading.scan_file import scan_bytes
 from core.truth import APEXES, Truth
 
 UPRIGHT = 20.0

@@ -6,17 +6,17 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from core.calm import calmed, noise_of
+from core.cleaning.calm import calmed, noise_of
+from core.cleaning.holes import Hole, find_holes
+from core.cleaning.mending import mended
+from core.cleaning.repair import repair
 from core.errors import ScanError
-from core.holes import Hole, find_holes
-from core.mending import mended
 from core.mesh import Faces, Mesh, Points
 from core.progress import Progress, quiet
-from core.raw_scan import RawScan
-from core.repair import repair
-from core.scan_file import read_raw, scan_bytes
-from core.surface import FEWEST_POINTS, is_cloud, surface_of
-from core.upright import Pose, find_pose
+from core.reading.raw_scan import RawScan
+from core.reading.scan_file import read_raw, scan_bytes
+from core.reading.surface import FEWEST_POINTS, is_cloud, surface_of
+from core.standing.upright import Pose, find_pose
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,12 +10,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from core.body_volume import BodyChange, solve_body_exact
-from core.condition import Condition, RestShape
 from core.exact import solve_exact
 from core.model import ConstrainedModel
-from core.newton import Balance
 from core.solver import Record, State, Targets, Watch, at_rest, record, turn
+from core.solving.body_volume import BodyChange, solve_body_exact
+from core.solving.condition import Condition, RestShape
+from core.solving.newton import Balance
 from core.verdict import Verdict, judge
 
 TURN_CONTROLS = ("adaptive", "conventional")

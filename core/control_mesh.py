@@ -8,14 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.body import Body
-from core.creases import Crease, find_creases
-from core.easing import eased
 from core.errors import FitError
-from core.fit_check import Faults, find_faults
-from core.fit_quality import FitQuality, measure_fit
-from core.ground import Ground, survey_ground
+from core.fitting.creases import Crease, find_creases
+from core.fitting.easing import eased
+from core.fitting.fit_check import Faults, find_faults
+from core.fitting.fit_quality import FitQuality, measure_fit
+from core.fitting.ground import Ground, survey_ground
+from core.fitting.laying import lay_line, lay_outline, lay_rest
 from core.landmark import Landmarks
-from core.laying import lay_line, lay_outline, lay_rest
 from core.mesh import Flags, Indices, Mesh, Points
 from core.template import Template
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from core.body import Body
-from core.calm import noise_of
+from core.cleaning.calm import noise_of
 from core.doubts import doubts
 from core.landmark import Landmarks
 from core.landmarks import find_landmarks

@@ -14,10 +14,10 @@ import numpy as np
 
 from core.mesh import Floats
 from core.model import ConstrainedModel
-from core.newton import Balance, balance_at, energy_steps
-from core.potential import Potential
-from core.sliding import Skin, sliding_steps
 from core.solver import Targets, at_rest, iterate
+from core.solving.newton import Balance, balance_at, energy_steps
+from core.solving.potential import Potential
+from core.solving.sliding import Skin, sliding_steps
 
 NEWTON_LIMIT = 200
 """Newton steps after which the search is given up; half a dozen are the rule."""

@@ -7,16 +7,16 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from core.body import Body
-from core.bust_check import check, check_anchor
-from core.bust_point import bust_points, missing_sides
-from core.chest import find_anchor, find_poles
+from core.finding.bust_check import check, check_anchor
+from core.finding.bust_point import bust_points, missing_sides
+from core.finding.chest import find_anchor, find_poles
+from core.finding.placed import placed_marks
+from core.finding.roots import root_marks
+from core.finding.trunk_marks import trunk_marks
+from core.finding.under_breast import ABOVE, folds_and_lowest
 from core.landmark import SIDES, Landmark, Landmarks
 from core.mesh import Mesh, Points
-from core.placed import placed_marks
-from core.roots import root_marks
 from core.trunk import survey
-from core.trunk_marks import trunk_marks
-from core.under_breast import ABOVE, folds_and_lowest
 
 NOTHING: Mapping[str, Points] = MappingProxyType({})
 

@@ -9,14 +9,14 @@ from functools import cached_property
 import numpy as np
 from scipy import sparse
 
-from core.band import Operator, compact
 from core.control_mesh import ControlMesh
-from core.layout import Layout, layout_of
 from core.lines import Line, line_on
 from core.mechanics import Mechanics
+from core.members.band import Operator, compact
+from core.members.springs import Springs, laplacian, springs
 from core.mesh import Floats, Indices, Points
-from core.springs import Springs, laplacian, springs
-from core.sweep import Sweep, glued_sweep, sliding_sweep
+from core.solving.layout import Layout, layout_of
+from core.solving.sweep import Sweep, glued_sweep, sliding_sweep
 from core.tensegric import TensegricModel, tensegric_model
 from core.volume import VolumeMeasure, volume_measure
 

@@ -11,12 +11,11 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from core.back_length import back_length
 from core.body import Body, body_of
 from core.control_mesh import ControlMesh, fit_control_mesh
 from core.design import Design, OwnLine, ScanSource
 from core.errors import FitError, LandmarkError, LineError, UserError
-from core.gain import gain_limit
+from core.fitting.back_length import back_length
 from core.landmark import Landmarks
 from core.landmarks import find_landmarks
 from core.mechanics import Mechanics
@@ -28,6 +27,7 @@ from core.placing import PlacedMark, in_mm
 from core.progress import Progress, quiet
 from core.project import ScanFile, read_scan_file
 from core.solver import Marks, Targets
+from core.solving.gain import gain_limit
 from core.template import read_template
 from core.tffd import Binding, Weights, bind, uncollared
 from core.watch import BodyWatch

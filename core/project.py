@@ -13,7 +13,7 @@ from pathlib import Path
 
 from core.design import Design, ScanSource, from_json, to_json
 from core.errors import ProjectError
-from core.scan_file import scan_bytes
+from core.reading.scan_file import scan_bytes
 
 SUFFIX = ".busk"
 _LARGEST_SCAN = 2_000_000_000

@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Any
 
 from core import __version__
-from core.condition import Condition
 from core.design import WornLine, to_json
 from core.export import write_control_points, write_mesh
 from core.lines import Line
@@ -22,6 +21,7 @@ from core.pipeline import Stages
 from core.project import whole_file
 from core.solution import Solution
 from core.solver import Record
+from core.solving.condition import Condition
 
 _LIBRARIES = ("numpy", "scipy", "trimesh")
 _SETTINGS = ("template", "line_height", "weights", "scaled_normals", "dense_volume")

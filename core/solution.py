@@ -8,12 +8,12 @@ from functools import cached_property
 
 from threadpoolctl import threadpool_limits
 
-from core.body_volume import solve_body_exact
 from core.comparison import judge_balance, shape_of
 from core.exact import NEWTON_LIMIT, newton
 from core.mesh import Mesh, Points
 from core.pipeline import Stages, targets_of
 from core.solver import Record, State, at_rest, iterate, record
+from core.solving.body_volume import solve_body_exact
 from core.tffd import deform
 from core.verdict import Verdict, judge
 

@@ -1,7 +1,7 @@
 """Turns: one sweep to local balance, then the volume and the lengths are measured and the forces refreshed.
 
 Paper section 5 tells the turn in words; the equations are ours. What is unbalanced at the beginning of a turn
-- cables, lines, volume force - moves the points as ``core.sweep`` tells.
+- cables, lines, volume force - moves the points as ``core.solving.sweep`` tells.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ The paper (section 2) gives no formula. Three laws of our own are exactly balanc
 a cable between points i and j pulls with ``q_ij * (x_i - x_j)``, and a constant pseudo-force at each point
 balances all its cables at rest, so that what remains is ``q_ij`` times the change of ``x_i - x_j``.
 "Prestressed": cables after Hooke, shorter by nature than at rest, and such pseudo-forces. "Co-rotated": see
-``core.cells``.
+``core.members.cells``.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse import linalg as sparse_linalg
 
-from core.band import Entries, Operator, compact
-from core.cells import Cells, cells
 from core.mechanics import Mechanics
+from core.members.band import Entries, Operator, compact
+from core.members.cells import Cells, cells
+from core.members.springs import Springs, laplacian, springs
 from core.mesh import Flags, Floats, Indices, Mesh, Points, frozen
-from core.springs import Springs, laplacian, springs
 
 
 @dataclass(frozen=True, eq=False)

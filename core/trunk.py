@@ -9,14 +9,14 @@ import numpy.typing as npt
 from scipy.ndimage import median_filter
 from scipy.spatial import ConvexHull
 
-from core.arms import SLACK
 from core.errors import LandmarkError
-from core.gaps import bearing_bin, bridge, eroded, gaps
 from core.mesh import Flags, Floats, Indices, Mesh, Points
-from core.outline import BINS, Outlines, outlines, places, reach
 from core.sections import hull_perimeter
-from core.trunk_guide import SIDES, STEP, Guide, cut_off, guide_of
-from core.trunk_pieces import beside, kept_pieces, main_pieces, split_pieces
+from core.slicing.arms import SLACK
+from core.slicing.gaps import bearing_bin, bridge, eroded, gaps
+from core.slicing.outline import BINS, Outlines, outlines, places, reach
+from core.slicing.trunk_guide import SIDES, STEP, Guide, cut_off, guide_of
+from core.slicing.trunk_pieces import beside, kept_pieces, main_pieces, split_pieces
 
 STABLE_STEP = 5.0
 """Step of the search for the stable under-bust level [mm]."""

@@ -13,7 +13,7 @@ import numpy as np
 from core.errors import UserError
 from core.landmark import NAMES, SIDES
 from core.mesh import Floats, Points
-from core.upright import MILLIMETRES
+from core.standing.upright import MILLIMETRES
 
 FILE = "truth.json"
 MOST_BYTES = 100_000_000

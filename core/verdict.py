@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.condition import Condition
 from core.mesh import Floats, Indices
 from core.solver import Record
+from core.solving.condition import Condition
 
 MOTIONS = ("settled", "settling", "vibrating", "diverging")
 """What a run can do."""

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 from scipy import sparse
 
-from core.band import Entries, Operator, compact, joined
+from core.members.band import Entries, Operator, compact, joined
 from core.mesh import Faces, Flags, Floats, Indices, Mesh, Points, frozen
 
 CONTROLS = ("none", "conventional", "accumulating", "adaptive", "exact")

@@ -12,11 +12,11 @@ from core.comparison import judge_balance, shape_of
 from core.control_mesh import ControlMesh
 from core.design import OwnLine
 from core.exact import solve_exact
-from core.gain import gain_limit
 from core.mechanics import CONTACTS, HOLDS, LAWS, VOLUMES, Mechanics
 from core.model import ConstrainedModel, constrained_model
 from core.pipeline import GAIN_SHARE, with_own_lines
 from core.solver import Targets, iterate
+from core.solving.gain import gain_limit
 from core.verdict import Verdict, judge
 
 BODIES = ("mannequin 168", "mannequin 120", "person 168", "person 120", "torso", "skew torso")

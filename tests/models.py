@@ -10,8 +10,8 @@ from shapes import torso
 
 from core.mechanics import Mechanics
 from core.model import ConstrainedModel, constrained_model
-from core.potential import Potential
 from core.solver import State, Targets, iterate
+from core.solving.potential import Potential
 
 LAWS = (
     Mechanics(),

@@ -16,36 +16,43 @@ ROOT = Path(__file__).parent.parent
 # From the ground up, each floor in order: a module may import what stands to its left or on a floor below.
 FLOORS = {
     "ground": "errors progress mesh sections proximity kernels moving",
-    "reading": "raw_scan text_table ply_file obj_file stl_file off_file gltf_file vtp_file scan_file contour "
-    "surface",
-    "mending": "skin pieces repair holes polygon mending calm",
-    "standing": "symmetry silhouette cues flat_ends told stance body_size refusal upright body",
-    "trunk": "outline gaps arms trunk_pieces trunk_guide trunk",
-    "finding": "chest relief landmark placed breast_profile fold under_breast bust_point bust_check roots "
-    "trunk_marks landmarks",
-    "fitting": "torso template profiles near_skin fit_check ground bridging creases laying easing "
-    "fit_quality control_mesh back_length",
+    "reading": "reading.raw_scan reading.text_table reading.ply_file reading.obj_file reading.stl_file "
+    "reading.off_file reading.gltf_file reading.vtp_file reading.scan_file reading.contour "
+    "reading.surface",
+    "cleaning": "cleaning.skin cleaning.pieces cleaning.repair cleaning.holes cleaning.polygon "
+    "cleaning.mending cleaning.calm",
+    "standing": "standing.symmetry standing.silhouette standing.cues standing.flat_ends standing.told "
+    "standing.stance standing.body_size standing.refusal standing.upright body",
+    "slicing": "slicing.outline slicing.gaps slicing.arms slicing.trunk_pieces slicing.trunk_guide trunk",
+    "finding": "finding.chest finding.relief landmark finding.placed finding.breast_profile finding.fold "
+    "finding.under_breast finding.bust_point finding.bust_check finding.roots "
+    "finding.trunk_marks landmarks",
+    "fitting": "fitting.torso template fitting.profiles fitting.near_skin fitting.fit_check "
+    "fitting.ground fitting.bridging fitting.creases fitting.laying fitting.easing "
+    "fitting.fit_quality control_mesh fitting.back_length",
     "measuring": "doubts measure detect truth accuracy",
-    "mechanics": "mechanics band springs cells tensegric lines volume patch tffd",
-    "solving": "condition layout sweep model solver gain potential newton sliding exact body_volume "
-    "verdict comparison watch",
-    "document": "placing design own_lines project pipeline limits trial search sphere live export solution "
-    "report",
+    "mechanics": "mechanics members.band members.springs members.cells tensegric lines volume patch tffd",
+    "solving": "solving.condition solving.layout solving.sweep model solver solving.gain "
+    "solving.potential solving.newton solving.sliding exact solving.body_volume verdict "
+    "comparison watch",
+    "document": "placing design own_lines project pipeline studies.limits studies.trial studies.search "
+    "studies.sphere live export solution report",
     "seeing": "camera scene_stage scene_body scene_bands scene_control scene_trace scene portrait ways",
     "wording": "display tokens words samples model_choices scan_formats",
-    "printing": "figure_style figure_scene figure_study figure_bodies figure_sphere figure_side figure_turns "
-    "figure_map figure_slings figure_claims figure_search figure_page figures figure_accuracy",
+    "printing": "figure_style figure_scene figure_study figure_bodies figure_sphere figure_side "
+    "figure_turns figure_map figure_slings figure_claims figure_search figure_page figures "
+    "figure_accuracy",
     "asking": "edit session",
     "dress": "icons theme parts",
     "showing": "background canvas overlay pointer viewport live_plot verdict_chip convergence notice "
-    "panels.length_slider panels.number_field panels.line_row panels.lines panels.landmarks panels.rail "
-    "housekeeping panels.setting_field panels.model panels.result panels.scan panels.status panels.busy "
-    "panels.question panels.top_bar panels.view_tools",
-    "roof": "present present_scan view_area actions recent dialogs application scan_desk desk line_dialog "
-    "line_maker main_window window picture demo self_test limits trials accuracy found settings cli_parser "
-    "cli __main__",
+    "panels.length_slider panels.number_field panels.line_row panels.lines panels.landmarks "
+    "panels.rail housekeeping panels.setting_field panels.model panels.result panels.scan "
+    "panels.status panels.busy panels.question panels.top_bar panels.view_tools",
+    "roof": "present present_scan view_area actions recent dialogs application scan_desk desk "
+    "line_dialog line_maker main_window window picture demo self_test limits trials accuracy "
+    "found settings cli_parser cli __main__",
 }
-ANATOMY = ("reading", "mending", "standing", "trunk", "finding", "fitting", "measuring")
+ANATOMY = ("reading", "cleaning", "standing", "slicing", "finding", "fitting", "measuring")
 CORE = ("ground", *ANATOMY, "mechanics", "solving", "document")
 NUMBERS = {"numpy", "scipy"}
 OUTSIDE = {

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from fit_bodies import RADIUS, analytic_body, landmarks_at, sample_of
 
-from core.back_length import back_length
 from core.control_mesh import ControlMesh, fit_control_mesh
 from core.errors import FitError
+from core.fitting.back_length import back_length
 from core.mesh import Mesh
 from core.template import read_template
 

@@ -6,11 +6,11 @@ from models import small
 from scipy import sparse
 from shapes import mid_bust, torso
 
-from core.band import Band, Entries, band_of, compact, joined, pair_entries
 from core.exact import solve_exact
-from core.layout import sliding_entries
 from core.mechanics import Mechanics
+from core.members.band import Band, Entries, band_of, compact, joined, pair_entries
 from core.model import constrained_model
+from core.solving.layout import sliding_entries
 
 SEEDS = pytest.mark.parametrize("seed", range(6))
 
@@ -133,7 +133,7 @@ def test_the_order_of_the_coordinates_is_irrelevant_to_the_answer(contact, monke
     def plain(count, first, second):
         return Band(np.arange(3 * count), 3 * count - 1)  # as they come, in a band as wide as the matrix
 
-    monkeypatch.setattr("core.layout.band_of", plain)
+    monkeypatch.setattr("core.solving.layout.band_of", plain)
     model = constrained_model(torso(skew=0.3), worn=["mid-bust"], mechanics=choice)
     assert model.layout.band.reach == model.layout.band.size - 1
     other = solve_exact(model, mid_bust(model, 0.95))

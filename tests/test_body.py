@@ -8,10 +8,10 @@ import pytest
 import trimesh
 
 from core.body import read_scan
+from core.cleaning.repair import repair
 from core.errors import ScanError
 from core.mesh import Mesh
-from core.repair import repair
-from core.scan_file import read_triangles
+from core.reading.scan_file import read_triangles
 
 SAMPLES = Path(__file__).parents[1] / "resources" / "samples"
 PLY_HEADER = (

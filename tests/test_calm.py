@@ -8,9 +8,9 @@ import trimesh
 from shapes import SAMPLES
 
 from core.body import read_scan
-from core.calm import GIANT, calmed, noise_of, thinned
+from core.cleaning.calm import GIANT, calmed, noise_of, thinned
+from core.cleaning.skin import Skin
 from core.mesh import Mesh
-from core.skin import Skin
 
 
 @pytest.fixture(scope="module")

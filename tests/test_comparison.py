@@ -7,11 +7,11 @@ import pytest
 from shapes import torso
 
 from core.comparison import MOST_TURNS, Comparison, judge_balance
-from core.condition import rest_shape
 from core.exact import solve_exact
-from core.gain import gain_limit
 from core.model import constrained_model
 from core.solver import Marks, Targets, iterate
+from core.solving.condition import rest_shape
+from core.solving.gain import gain_limit
 
 MODEL = constrained_model(torso(), worn=["mid-bust"])
 CALM = 0.9 * gain_limit(MODEL)

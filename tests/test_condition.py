@@ -5,10 +5,10 @@ import pytest
 from shapes import fitted, octahedron, tent, tent_model, torso
 
 from core.comparison import shape_of
-from core.condition import Condition, condition, rest_shape
 from core.exact import solve_exact
 from core.mechanics import Mechanics
 from core.model import constrained_model
+from core.solving.condition import Condition, condition, rest_shape
 
 SIDE = np.sqrt(41.0)  # from a corner of the tent to its tip
 

@@ -20,7 +20,7 @@ from fit_bodies import (
 from scipy.spatial import cKDTree
 
 from core.control_mesh import fit_control_mesh
-from core.fit_check import agreement, bends, corner_angles
+from core.fitting.fit_check import agreement, bends, corner_angles
 from core.mesh import Mesh
 from core.template import TEMPLATES, read_template
 

@@ -22,7 +22,8 @@ class NoQt:
 
 sys.meta_path.insert(0, NoQt())
 """
-QT_FREE = [f"core.{path.stem}" for path in sorted((ROOT / "core").glob("[!_]*.py"))]
+CORE = sorted(path for path in (ROOT / "core").rglob("*.py") if path.stem != "__init__")
+QT_FREE = [".".join(path.relative_to(ROOT).with_suffix("").parts) for path in CORE]
 QT_FREE += [f"app.{path.stem}" for path in sorted((ROOT / "app").glob("scene*.py"))] + [
     "app.camera",
     "app.cli",

@@ -12,8 +12,8 @@ from core.exact import newton, solve_exact
 from core.lines import line_on
 from core.mechanics import Mechanics
 from core.model import assemble, constrained_model
-from core.potential import Potential
 from core.solver import Targets, iterate
+from core.solving.potential import Potential
 from core.tensegric import tensegric_model
 from core.volume import volume_measure
 

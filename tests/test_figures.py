@@ -22,7 +22,7 @@ from app.figure_style import trimmed
 from app.figures import FIGURES, draw, make_some
 from core.errors import UserError
 from core.mesh import Mesh
-from core.search import RATIOS, Finding, mirrored_mean, routes
+from core.studies.search import RATIOS, Finding, mirrored_mean, routes
 
 
 @pytest.fixture(scope="module")

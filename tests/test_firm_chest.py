@@ -7,10 +7,10 @@ from scipy.optimize import minimize
 from shapes import fitted, mid_bust, run, tent, torso
 
 from core.exact import solve_exact
-from core.gain import gain_limit
 from core.mechanics import Mechanics
 from core.model import constrained_model
 from core.solver import Targets
+from core.solving.gain import gain_limit
 from core.tensegric import tensegric_model, tissue_depth
 
 FIRM = Mechanics(firm_chest=0.1)

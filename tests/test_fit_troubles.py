@@ -6,7 +6,7 @@ from fit_bodies import analytic_body, analytic_landmarks, body_of, hanging, land
 
 from core.control_mesh import fit_control_mesh
 from core.errors import FitError
-from core.fit_check import agreement, corner_angles
+from core.fitting.fit_check import agreement, corner_angles
 from core.mesh import Mesh
 from core.template import TEMPLATES, read_template
 

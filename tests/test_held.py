@@ -13,9 +13,9 @@ from core.exact import newton, solve_exact
 from core.lines import line_on
 from core.mechanics import Mechanics
 from core.model import assemble, constrained_model
-from core.potential import Potential
 from core.solver import Targets
-from core.sphere import sphere_model
+from core.solving.potential import Potential
+from core.studies.sphere import sphere_model
 from core.tensegric import tensegric_model
 from core.volume import volume_measure
 

@@ -16,7 +16,7 @@ from core.mechanics import Mechanics
 from core.mesh import Mesh
 from core.model import ConstrainedModel, constrained_model
 from core.solver import Targets
-from core.sphere import sphere
+from core.studies.sphere import sphere
 from core.tensegric import tensegric_model
 from core.volume import volume_measure
 

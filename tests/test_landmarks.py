@@ -11,13 +11,13 @@ import pytest
 import trimesh
 
 from core.body import Body
-from core.bust_point import MIRRORED, NIPPLE, PROMINENT
 from core.errors import LandmarkError
+from core.finding.bust_point import MIRRORED, NIPPLE, PROMINENT
+from core.finding.relief import relief_kernels
 from core.landmark import Landmarks
 from core.landmarks import find_landmarks
 from core.mesh import Mesh
-from core.relief import relief_kernels
-from core.upright import Pose
+from core.standing.upright import Pose
 
 ROOT = Path(__file__).parents[1]
 TRUTH = json.loads((ROOT / "tests/data/truth.json").read_text(encoding="utf-8"))

@@ -9,14 +9,14 @@ import pytest
 from test_landmarks import NAMES, SIDES, found, part, sample, truth
 
 from core.body import Body
-from core.chest import find_anchor
 from core.errors import LandmarkError
+from core.finding.chest import find_anchor
+from core.finding.under_breast import CREASE, MIRRORED
 from core.landmark import Landmarks
 from core.landmarks import find_landmarks
 from core.mesh import Mesh
+from core.standing.upright import Pose
 from core.trunk import survey
-from core.under_breast import CREASE, MIRRORED
-from core.upright import Pose
 
 
 def body(mesh: Mesh) -> Body:

@@ -9,14 +9,14 @@ from models import LAWS, cable_force, energy_of, law_of, settled, small
 from scipy.optimize import minimize
 from shapes import central_difference, run, tent, torso
 
-from core.cells import cells
 from core.exact import solve_exact
 from core.mechanics import CONTACTS, HOLDS, Mechanics
+from core.members.cells import cells
+from core.members.springs import laplacian
 from core.model import constrained_model
-from core.potential import Potential
 from core.solver import State, Targets, at_rest, turn
-from core.sphere import sphere_control
-from core.springs import laplacian
+from core.solving.potential import Potential
+from core.studies.sphere import sphere_control
 from core.tensegric import tensegric_model
 from core.volume import CONTROLS, Pressure
 

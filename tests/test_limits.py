@@ -9,10 +9,10 @@ from shapes import fitted, torso
 from app.cli import main
 from core.comparison import shape_of
 from core.exact import solve_exact
-from core.limits import PRECISION, SIGNS, all_limits, shortest
 from core.lines import RATIO_LIMITS
 from core.mechanics import Mechanics
 from core.model import constrained_model
+from core.studies.limits import PRECISION, SIGNS, all_limits, shortest
 
 WORN = ("mid-bust", "full-bust")
 CHOICES = {

@@ -10,12 +10,12 @@ import pytest
 import trimesh
 
 from core.body import Body
-from core.calm import calmed
+from core.cleaning.calm import calmed
 from core.landmark import Landmarks
 from core.measure import girth_at, girths
 from core.mesh import Mesh
+from core.standing.upright import Pose
 from core.trunk import stable_level, trunk_levels
-from core.upright import Pose
 
 ROOT = Path(__file__).parents[1]
 TRUTH = json.loads((ROOT / "tests/data/truth.json").read_text(encoding="utf-8"))

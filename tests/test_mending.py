@@ -9,12 +9,12 @@ from scipy.spatial import cKDTree
 from shapes import SAMPLES
 
 from core.body import read_scan
-from core.holes import find_holes, hole_sentences
-from core.mending import mend, mended
+from core.cleaning.holes import find_holes, hole_sentences
+from core.cleaning.mending import mend, mended
+from core.cleaning.polygon import triangulated
+from core.cleaning.repair import repair
+from core.cleaning.skin import Skin
 from core.mesh import Mesh
-from core.polygon import triangulated
-from core.repair import repair
-from core.skin import Skin
 
 CENTRES = {"back": (0.0, 30.0, 260.0), "belly": (10.0, -170.0, 60.0), "side": (140.0, -80.0, 180.0)}
 

@@ -15,7 +15,7 @@ from app.scene import Scene
 from app.ways import pictures, ways
 from core.body import read_scan
 from core.mesh import Mesh
-from core.upright import Pose
+from core.standing.upright import Pose
 
 CLAY = (200, 150, 120)
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import trimesh
 
+from core.fitting.profiles import Profile, exits, find_fold, heading, profile
 from core.mesh import Mesh
-from core.profiles import Profile, exits, find_fold, heading, profile
 from core.sections import arc_length
 
 AXIS = np.zeros(3)

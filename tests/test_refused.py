@@ -10,8 +10,8 @@ from core.body import Body
 from core.errors import UserError
 from core.landmarks import find_landmarks
 from core.mesh import Mesh
-from core.scan_file import read_triangles
-from core.upright import find_pose
+from core.reading.scan_file import read_triangles
+from core.standing.upright import find_pose
 
 OBJECTS = objects()
 TILTED = Rotation.from_euler("xyz", (25.0, -20.0, 70.0), degrees=True).as_matrix()

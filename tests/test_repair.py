@@ -9,9 +9,9 @@ import pytest
 import trimesh
 from shapes import SAMPLES
 
+from core.cleaning.repair import repair
 from core.mesh import Mesh
-from core.repair import repair
-from core.scan_file import read_triangles
+from core.reading.scan_file import read_triangles
 
 RNG = np.random.default_rng
 

@@ -14,8 +14,8 @@ from scan_files import CLOUDS, CORNERS, HOUSES, TRIANGLES, VOLUME, gltf, off, pl
 from core.errors import ScanError
 from core.mesh import Mesh
 from core.progress import Cancelled
-from core.raw_scan import RawScan
-from core.scan_file import LARGEST_FILE, read_raw, read_triangles, scan_bytes
+from core.reading.raw_scan import RawScan
+from core.reading.scan_file import LARGEST_FILE, read_raw, read_triangles, scan_bytes
 
 
 @pytest.mark.parametrize("name", HOUSES)
@@ -151,7 +151,7 @@ def test_places_far_from_the_origin_keep_all_digits_of_the_file():
 
 
 def test_too_much_is_refused_with_a_number(monkeypatch):
-    monkeypatch.setattr("core.raw_scan.MOST_TRIANGLES", 10)
+    monkeypatch.setattr("core.reading.raw_scan.MOST_TRIANGLES", 10)
     for name in ("little.ply", "groups.obj", "binary.stl", "plain.off", "binary.glb"):
         with pytest.raises(ScanError, match="too fine") as refusal:
             read_raw(name, HOUSES[name])
@@ -159,7 +159,7 @@ def test_too_much_is_refused_with_a_number(monkeypatch):
 
 
 def test_a_packed_bomb_is_left_alone(monkeypatch):
-    monkeypatch.setattr("core.scan_file.LARGEST_FILE", 30_000_000)
+    monkeypatch.setattr("core.reading.scan_file.LARGEST_FILE", 30_000_000)
     bomb = gzip.compress(bytes(100_000_000), 1)
     with pytest.raises(ScanError, match="too large when unpacked"):
         read_raw("a.obj.gz", bomb)

@@ -8,7 +8,7 @@ from shapes import octahedron, torso
 
 from core.mesh import Mesh
 from core.sections import arc_length, chains, cut, hull_perimeter, resample
-from core.sphere import sphere
+from core.studies.sphere import sphere
 
 BALL = sphere(rings=31, spokes=64)
 

@@ -14,10 +14,10 @@ from core.exact import NEWTON_LIMIT, newton, solve_exact
 from core.mechanics import HOLDS, Mechanics
 from core.model import constrained_model
 from core.pipeline import with_own_lines
-from core.potential import Potential
-from core.sliding import Skin
 from core.solver import State, Targets, at_rest, turn
-from core.sphere import sphere_model
+from core.solving.potential import Potential
+from core.solving.sliding import Skin
+from core.studies.sphere import sphere_model
 from core.volume import CONTROLS, Pressure
 
 SLIDING = Mechanics(line_contact="sliding")

@@ -11,9 +11,9 @@ from core.lines import line_on
 from core.mechanics import DEFAULT_LINE_STIFFNESS
 from core.mesh import Mesh
 from core.model import assemble, constrained_model
-from core.potential import Potential
 from core.solver import Marks, State, Targets, at_rest, iterate, record, turn
-from core.sphere import sphere
+from core.solving.potential import Potential
+from core.studies.sphere import sphere
 from core.tensegric import tensegric_model
 from core.volume import Pressure, volume_measure
 

@@ -14,7 +14,7 @@ from core.exact import Balance, solve_exact
 from core.mechanics import CONTACTS, HOLDS, LAWS, Mechanics
 from core.mesh import Points
 from core.solver import Targets, iterate
-from core.sphere import SphereModel, sphere_model
+from core.studies.sphere import SphereModel, sphere_model
 
 LINES = ("horizontal", "vertical")
 

@@ -10,9 +10,9 @@ from core.body import body_of
 from core.errors import ScanError
 from core.mesh import Mesh
 from core.progress import Cancelled
-from core.raw_scan import RawScan
-from core.scan_file import read_triangles
-from core.surface import is_cloud, surface_of
+from core.reading.raw_scan import RawScan
+from core.reading.scan_file import read_triangles
+from core.reading.surface import is_cloud, surface_of
 
 SAMPLES = Path(__file__).parents[1] / "resources" / "samples"
 

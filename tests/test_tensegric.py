@@ -5,7 +5,7 @@ import pytest
 from scipy import sparse
 from shapes import string, tent, torso
 
-from core.springs import incidence_of, laplacian
+from core.members.springs import incidence_of, laplacian
 from core.tensegric import tensegric_model
 
 

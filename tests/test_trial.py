@@ -11,8 +11,8 @@ from app.cli import main
 from app.samples import SAMPLES
 from app.trials import LENGTHS, STIFFNESSES
 from core.mechanics import LAWS, Mechanics
-from core.sphere import sphere_control
-from core.trial import CONTROLS, TURNS, Subject, _stays_below, trials
+from core.studies.sphere import sphere_control
+from core.studies.trial import CONTROLS, TURNS, Subject, _stays_below, trials
 
 TORSO = Subject("torso", torso(), "mid-bust", Mechanics(volume_of="both"))
 

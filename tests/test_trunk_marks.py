@@ -16,11 +16,11 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkImplicitPolyDataDistance
 
+from core.finding.roots import root_marks
+from core.finding.trunk_marks import trunk_marks
 from core.landmark import NAMES, SIDES, Landmark, Landmarks
 from core.measure import girth_levels
 from core.mesh import Mesh
-from core.roots import root_marks
-from core.trunk_marks import trunk_marks
 
 ROOT = Path(__file__).parents[1]
 TRUTH = json.loads((ROOT / "tests/data/truth.json").read_text(encoding="utf-8"))

@@ -9,9 +9,9 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from core.errors import ScanError
-from core.scan_file import read_triangles
-from core.symmetry import even_cloud, mirror_planes
-from core.upright import AXES, MILLIMETRES, find_pose
+from core.reading.scan_file import read_triangles
+from core.standing.symmetry import even_cloud, mirror_planes
+from core.standing.upright import AXES, MILLIMETRES, find_pose
 
 SAMPLES = Path(__file__).parents[1] / "resources" / "samples"
 CANONICAL = np.eye(4)

@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapes import fitted, mid_bust
 
-from core.condition import Condition
 from core.model import constrained_model
 from core.solver import Targets, at_rest, iterate
+from core.solving.condition import Condition
 from core.verdict import MOTIONS, SETTLED_STEP, STATES, Verdict, judge
 
 TURNS = np.arange(60)

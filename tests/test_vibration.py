@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from shapes import central_difference, errors_of, fitted, mid_bust, run, torso
 
-from core.gain import gain_limit
 from core.mechanics import Mechanics
 from core.model import constrained_model
 from core.solver import State, Targets, at_rest, turn
+from core.solving.gain import gain_limit
 from core.volume import Pressure
 
 CONTROLS = ("none", "conventional", "adaptive")

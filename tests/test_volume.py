@@ -6,9 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapes import central_difference, octahedron, tent, torso
 
-from core.gain import sum_of
 from core.mesh import Mesh
-from core.sphere import sphere
+from core.solving.gain import sum_of
+from core.studies.sphere import sphere
 from core.tensegric import tensegric_model
 from core.volume import CONTROLS, Pressure, next_pressure, volume_measure
 

@@ -19,7 +19,7 @@ import core.pipeline
 from app.main_window import MainWindow
 from core.body import Body
 from core.progress import Progress
-from core.upright import Pose, find_pose
+from core.standing.upright import Pose, find_pose
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

@@ -1,0 +1,173 @@
+"""Mending of a skin in mm: seams between its parts are sewn and small holes closed; large ones stay open."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from core.cleaning.holes import border_loops, find_holes, frame_of, hole_sentences
+from core.cleaning.polygon import triangulated
+from core.cleaning.repair import counted
+from core.cleaning.skin import Skin
+from core.mesh import Faces, Floats, Indices, Mesh, Points
+
+CLOSED = 30.0
+"""Holes up to this length are closed [mm]."""
+
+SEAM = 2.0
+"""Borders of different parts nearer than this are sewn together [mm]."""
+
+CRACK = 30.0
+"""The two sides of one border are sewn to each other only where the way between them is longer [mm]."""
+
+
+def mended(mesh: Mesh) -> tuple[Mesh, tuple[str, ...]]:
+    """Return an upright ``mesh`` [mm] mended, and one sentence a repair and an open hole."""
+    mesh, sewn, closed = mend(mesh)
+    sentences = []
+    if sewn:
+        sentences.append(f"Joined {counted(sewn, 'vertex')} along seams between parts of the scan.")
+    if closed:
+        sentences.append(f"Closed {counted(closed, 'hole')} up to {CLOSED:.0f} mm across.")
+    return mesh, (*sentences, *hole_sentences(mesh, find_holes(mesh)))
+
+
+def mend(mesh: Mesh) -> tuple[Mesh, int, int]:
+    """Return ``mesh`` with seams sewn and small holes closed, and how many vertices and holes that were.
+
+    Old vertices keep their order, those sewn to another are gone; new ones come last. A closed hole follows
+    the curvature of the skin round it. Source: ours.
+    """
+    skin = Skin(mesh.vertices, mesh.faces)
+    start, end = skin.sides.ends(skin.sides.border)
+    if len(start) == 0:
+        return mesh, 0, 0
+    twin = _twins(mesh, start, end)
+    home = np.minimum(twin, np.arange(len(twin)))
+    vertices = 0.5 * (mesh.vertices + mesh.vertices[twin])
+    loops = [home[loop] for loop in border_loops(start, end, twin)]
+    small = [loop for loop in loops if _is_small(loop, vertices)]
+    sewn = int((home != np.arange(len(home))).sum())
+    if not sewn and not small:
+        return mesh, 0, 0
+    faces, added, closed = [home[mesh.faces]], [vertices], 0
+    count, tree = len(vertices), cKDTree(vertices)
+    edges = _edges_at(np.concatenate([*small, start[:0]]), faces[0])
+    for loop in small:
+        near = tree.query_ball_point(vertices[loop].mean(axis=0), CLOSED)
+        patch, new = _filled(vertices[loop], vertices[near], mesh.vertex_normals[near])
+        corners = np.concatenate([loop, count + np.arange(len(new))])[patch]
+        if _joins_anew(corners, loop, edges):
+            continue
+        faces.append(corners)
+        added.append(new)
+        count, closed = count + len(new), closed + 1
+    whole = Skin(np.concatenate(added), np.concatenate(faces)).compact()
+    return Mesh(whole.vertices, whole.faces), sewn, closed
+
+
+def _is_small(loop: Indices, vertices: Points) -> bool:
+    simple = len(loop) >= 3 and len(np.unique(loop)) == len(loop)
+    return simple and bool(frame_of(vertices[loop])[1][:2].max() <= CLOSED)
+
+
+def _twins(mesh: Mesh, start: Indices, end: Indices) -> Indices:
+    """Return for each vertex the one that it is sewn to, itself if none, shape (n,)."""
+    twin = np.arange(len(mesh.vertices))
+    place, loop, size = np.full(len(twin), -1), np.full(len(twin), -1), np.zeros(len(twin), dtype=np.int64)
+    for number, each in enumerate(border_loops(start, end, twin)):
+        place[each], loop[each], size[each] = np.arange(len(each)), number, len(each)
+    border = np.flatnonzero(loop >= 0)
+    if len(border) < 2:
+        return twin
+    tree = cKDTree(mesh.vertices[border])
+    distance, row = tree.query(mesh.vertices[border], k=min(8, len(border)), distance_upper_bound=SEAM)
+    other = border[np.minimum(row, len(border) - 1)]
+    steps = np.abs(place[other] - place[border][:, None])
+    steps = np.minimum(steps, size[border][:, None] - steps)
+    way = steps * float(np.median(np.linalg.norm(mesh.vertices[end] - mesh.vertices[start], axis=1)))
+    foreign = (loop[other] != loop[border][:, None]) | (way > CRACK)
+    distance = np.where(foreign, distance, np.inf)
+    best = np.argmin(distance, axis=1)
+    rows = np.arange(len(border))
+    wanted = np.where(np.isfinite(distance[rows, best]), other[rows, best], border)
+    twin[border] = wanted
+    twin = np.where(twin[twin] == np.arange(len(twin)), twin, np.arange(len(twin)))
+    return _without_tangles(mesh, twin)
+
+
+def _without_tangles(mesh: Mesh, twin: Indices) -> Indices:
+    """Part again what would leave a face without an area, or an edge with more than two faces."""
+    for _ in range(3):
+        home = np.minimum(twin, np.arange(len(twin)))
+        if (home == np.arange(len(home))).all():
+            return twin
+        faces = home[mesh.faces]
+        sides = Skin(mesh.vertices, faces).sides
+        wrong = np.zeros(len(twin), dtype=bool)
+        flat = (faces == np.roll(faces, 1, axis=1)).any(axis=1)
+        wrong[faces[flat].ravel()] = True
+        crowded = sides.start[sides.count > 2]
+        for ends in sides.ends(sides.order[crowded]):
+            wrong[ends] = True
+        if not wrong.any():
+            return twin
+        twin = np.where(wrong[home], np.arange(len(twin)), twin)
+    return np.arange(len(twin))
+
+
+def _edges_at(loop: Indices, faces: Faces) -> Indices:
+    """Return the keys of all edges of the faces that touch ``loop``, ascending."""
+    touched = np.zeros(int(faces.max(initial=0)) + 1, dtype=bool)
+    touched[loop] = True
+    near = faces[touched[faces].any(axis=1)]
+    return np.unique(_keys(near))
+
+
+def _keys(faces: Faces) -> Indices:
+    ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)]), axis=0)
+    return np.asarray((ends[0] << 31 | ends[1]).ravel())
+
+
+def _joins_anew(corners: Faces, loop: Indices, edges: Indices) -> bool:
+    """Tell whether a patch holds an edge, other than those of its ``loop``, that the skin has already."""
+    around = np.sort(np.stack([loop, np.roll(loop, -1)]), axis=0)
+    inner = np.setdiff1d(_keys(corners), around[0] << 31 | around[1])
+    return bool(np.isin(inner, edges).any())
+
+
+def _filled(border: Points, near: Points, normals: Points) -> tuple[Faces, Points]:
+    """Return triangles over a hole, and the new places in it, shape (k, 3).
+
+    ``border``, shape (b, 3), in the order of the sides of the skin; ``near``, shape (c, 3), is the skin round
+    it. Corners below b are those of the border, others new.
+    """
+    axes, extent = frame_of(border)
+    middle = border.mean(axis=0)
+    local = (border - middle) @ axes.T
+    faces, inside = triangulated(local[::-1, :2])
+    faces = np.where(faces < len(border), len(border) - 1 - faces, faces)
+    if len(inside) == 0:
+        return faces, np.empty((0, 3))
+    around = (near - middle) @ axes.T
+    around = around[(normals @ axes[2] > 0.3) & (np.abs(around[:, 2]) < extent[0])]
+    bend = _quadric(np.concatenate([around, local]), max(extent[0], 1e-9))
+    rest = local[:, 2] - bend(local[:, :2])
+    weight = 1.0 / np.maximum(((inside[:, None] - local[None, :, :2]) ** 2).sum(axis=2), 1e-12)
+    height = bend(inside) + weight @ rest / weight.sum(axis=1)
+    return faces, middle + np.column_stack([inside, height]) @ axes
+
+
+def _quadric(places: Points, scale: float) -> Callable[[Floats], Floats]:
+    """Fit a quadric height over the plane to ``places``, shape (k, 3); the middle counts most."""
+
+    def terms(flat: Floats) -> Floats:
+        u, v = flat[:, 0] / scale, flat[:, 1] / scale
+        return np.stack([np.ones_like(u), u, v, u * u, u * v, v * v], axis=1)
+
+    weight = np.exp(-((places[:, :2] / scale) ** 2).sum(axis=1))
+    basis = terms(places[:, :2]) * weight[:, None]
+    solution = np.linalg.lstsq(basis, places[:, 2] * weight, rcond=1e-6)[0]
+    return lambda flat: np.asarray(terms(flat) @ solution)

@@ -1,0 +1,1 @@
+"""The rules behind the landmarks, one a room."""

@@ -1,0 +1,131 @@
+"""The bust points: on the nipple where one stands out of the breast, else where a smooth breast points to."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from core.finding.chest import Pole, smoothed
+from core.finding.relief import GRID, Nipple, Patch, breast_patch, find_nipples
+from core.landmark import SIDES, Landmark
+from core.mesh import Floats, Mesh, Points
+
+NIPPLE = "The nipple: the spot that stands out of the smooth breast around it."
+PROMINENT = "The most prominent point of the breast: no nipple stands out of it."
+MIRRORED = "The most prominent point, shifted towards where the nipple of the other breast lies."
+
+ACROSS = "Estimated, as no breast stands out there: across from the bust point of the other breast."
+
+OUTWARD = 18.0
+"""On a smooth breast the bust point lies so far outside the foremost place, towards the pole [mm]."""
+
+RAISED = 3.0
+"""And so far above it [mm]: nipples were found 0 to 6 mm above the foremost place."""
+
+WIDE = 52.0
+"""The foremost place is looked for so far from the pole [mm]."""
+
+ALIKE = 4.0
+"""Two smooth breasts point alike if one point lies so near to the other's mirror image [mm]."""
+
+FLAT, FAR_FLATTER = 4.0, 0.3
+"""A side that stands out less than this [mm], or than this part of the other, shows no breast."""
+
+
+def bust_points(mesh: Mesh, poles: Sequence[Pole], middle: float) -> list[Landmark]:
+    """Return the bust points of the left and the right breast, each with a ring round it.
+
+    ``middle`` is x of the middle of the body [mm].
+    """
+    left, right = patches = [breast_patch(mesh, pole.position) for pole in poles]
+    nipples = find_nipples(left, right)
+    marks = [
+        _bust_point(f"bust_point_{side}", patch, own, other, home)
+        for side, patch, own, other, home in zip(
+            SIDES, patches, nipples, nipples[::-1], patches[::-1], strict=True
+        )
+    ]
+    if all(mark.rule == PROMINENT for mark in marks):
+        marks = _evened(marks, patches, middle)
+    missing = missing_sides(poles)
+    if len(missing) != 1:
+        return marks
+    there = marks[1 - SIDES.index(missing[0])]
+    across = _across(mesh, there.position, middle)
+    marks[SIDES.index(missing[0])] = Landmark(f"bust_point_{missing[0]}", across, 0.3, ACROSS, across[None])
+    return marks
+
+
+def _evened(marks: list[Landmark], patches: Sequence[Patch], middle: float) -> list[Landmark]:
+    """Return the points of two smooth breasts that are alike as mirror images: halves what is chance."""
+    left, right = (mark.position for mark in marks)
+    over = np.array([2.0 * middle - right[0], right[1], right[2]])
+    if np.linalg.norm(over - left) > ALIKE:
+        return marks
+    mean = 0.5 * (left + over)
+    places = (mean, np.array([2.0 * middle - mean[0], mean[1], mean[2]]))
+    return [
+        replace(mark, position=patch.onto(place))
+        for mark, patch, place in zip(marks, patches, places, strict=True)
+    ]
+
+
+def _across(mesh: Mesh, there: Points, middle: float) -> Points:
+    """Return the skin in front, across from a point of the other side, shape (3,) [mm]."""
+    place = np.array([2.0 * middle - there[0], there[1], there[2]])
+    away = np.hypot(*(mesh.vertices - place)[:, [0, 2]].T)
+    near = mesh.vertices[away < max(10.0, float(away.min()))]
+    return np.asarray(near[np.argmin(near[:, 1])] if len(near) else place)
+
+
+def missing_sides(poles: Sequence[Pole]) -> list[str]:
+    """Return the sides, of left and right, on which no breast stands out of the chest."""
+    least = max(FLAT, FAR_FLATTER * max(pole.prominence for pole in poles))
+    return [side for side, pole in zip(SIDES, poles, strict=True) if pole.prominence < least]
+
+
+def _bust_point(name: str, patch: Patch, own: Nipple | None, other: Nipple | None, home: Patch) -> Landmark:
+    if own is not None and own.sure:
+        place, confidence, rule = own.position, nipple_confidence(own), NIPPLE
+    elif other is not None and other.sure:
+        shift = 0.5 * (other.position - home.centre) * (-1.0, 1.0, 1.0)
+        place, confidence, rule = patch.nearest(patch.centre + shift), 0.3, MIRRORED
+    else:
+        place, confidence = smooth_point(patch)
+        rule = PROMINENT
+    return Landmark(name, place, confidence, rule, patch.ring(place, 12.0))
+
+
+def nipple_confidence(nipple: Nipple) -> float:
+    """Return how sure it is (0..1) that the spot is the nipple."""
+    clear = 0.6 * min(nipple.clarity / 6.0, 1.0) + 0.4 * float(np.clip((nipple.ratio - 0.9) / 1.2, 0.0, 1.0))
+    return clear * float(np.exp(-max(nipple.offset - 8.0, 0.0) / 15.0))
+
+
+def smooth_point(patch: Patch) -> tuple[Points, float]:
+    """Return where a breast without a nipple points to, shape (3,) [mm], and how sure that is (0..1).
+
+    The foremost place lies inside the nipple, the pole outside of it: the point lies between. Source: ours.
+    """
+    foremost, inner = _foremost(patch)
+    way = patch.centre - foremost
+    apart = float(np.linalg.norm(way))
+    if not inner:
+        return patch.centre, 0.1
+    place = foremost + way * min(OUTWARD / max(apart, 1.0), 0.75) + (0.0, 0.0, RAISED)
+    # Where the nipple itself would be stays unknown: never sure, the less so the wider the choice.
+    return patch.onto(place), 0.45 * float(np.exp(-max(apart - 24.0, 0.0) / 25.0))
+
+
+def _foremost(patch: Patch) -> tuple[Points, bool]:
+    """Return the foremost surface point near the pole, and whether it is a summit of the breast."""
+    forward = np.where(patch.distance < WIDE, -patch.points[..., 1], np.nan)
+    calm: Floats = np.where(np.isnan(forward), np.nan, smoothed(_finite(forward), (3.0, 3.0)))
+    row, column = np.unravel_index(int(np.nanargmax(calm)), calm.shape)
+    return np.asarray(patch.points[row, column]), bool(patch.distance[row, column] < WIDE - 2.0 * GRID)
+
+
+def _finite(grid: Floats) -> Floats:
+    return np.asarray(np.where(np.isnan(grid), -np.inf, grid))

@@ -1,0 +1,134 @@
+"""Folds and lowest points of both breasts, and how sure they are: what a hole hides is estimated and said."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.finding.breast_profile import OWN, Profile, profiles
+from core.finding.fold import Trace, trace
+from core.landmark import SIDES, Landmark
+from core.mesh import Mesh, Points
+
+HOLLOW = 0.006
+"""A crease is hollower than this [1/mm]."""
+
+ABOVE = 14.0
+"""Folds lie about so far above the level where the body comes forward [mm]."""
+
+CREASE = "The sharpest crease below the breast, on the upright profile through the bust point."
+NO_CREASE = "The most hollow place below the breast: the upright profile shows no crease."
+ESTIMATED = "Estimated, as the scan has a hole there: from the crease beside the hole."
+MIRRORED = "Estimated, as the scan has a hole there: from the fold of the other breast."
+GUESSED = "Estimated, as the scan shows no fold there: from the height of the hole."
+LOWEST = "The lowest point of the breast between the bust point and the fold."
+
+MIRROR = np.array([-1.0, 1.0, 1.0])
+
+
+@dataclass(frozen=True, eq=False)
+class Under:
+    """What was found under one breast; ``fold`` is None where its crease does not show."""
+
+    bundle: Sequence[Profile]
+    trace: Trace | None
+    fold: Landmark | None
+
+
+def folds_and_lowest(
+    mesh: Mesh, busts: Sequence[Landmark], level: float, placed: Mapping[str, Landmark]
+) -> list[Landmark]:
+    """Return folds and lowest points below the bust points ``busts``, left and right.
+
+    ``level`` is where the body comes forward under both [mm]; folds in ``placed`` stay where they are.
+    """
+    sides = [_under(mesh, bust, level, side, placed) for side, bust in zip(SIDES, busts, strict=True)]
+    marks = []
+    for k, side in enumerate(SIDES):
+        own, other, shift = sides[k], sides[1 - k], (busts[k].position, busts[1 - k].position)
+        fold = own.fold if own.fold and not _doubtful(own, other, shift) else None
+        fold = fold or _estimated(own, other, side, shift, level)
+        marks += [fold, _lowest(own, other, fold, side, shift)]
+    return marks
+
+
+def _under(mesh: Mesh, bust: Landmark, level: float, side: str, placed: Mapping[str, Landmark]) -> Under:
+    name = f"fold_{side}"
+    bottom = min(level - 75.0, placed[name].position[2] - 20.0) if name in placed else level - 75.0
+    bundle = profiles(mesh, bust.position, bottom)
+    if name in placed:
+        return Under(bundle, None, placed[name])
+    crease = trace(bundle, level + ABOVE)
+    torn = not bundle[OWN].whole
+    if crease is None or not crease.seen[crease.own] or (torn and crease.depth < HOLLOW):
+        return Under(bundle, crease, None)
+    rule = CREASE if crease.depth > HOLLOW else NO_CREASE
+    place = crease.curve[crease.own]
+    confidence = _confidence(crease) * (0.5 if torn else 1.0)
+    return Under(bundle, crease, Landmark(name, place, confidence, rule, crease.curve))
+
+
+def _confidence(crease: Trace) -> float:
+    """Return how sure (0..1) the fold is: a deep crease without a rival, and smooth."""
+    confidence = min(crease.depth / 0.035, 1.0) * (0.3 + 0.7 * np.clip(crease.lead / 0.012, 0.0, 1.0))
+    return float(confidence * np.exp(-crease.rough / 5.0))
+
+
+def _estimated(own: Under, other: Under, side: str, busts: tuple[Points, Points], level: float) -> Landmark:
+    """Return the fold that a hole hides: as on the other side, else as its visible parts or the hole lie."""
+    name = f"fold_{side}"
+    mirrored = _mirrored(other, busts)
+    if mirrored is not None:
+        return Landmark(name, mirrored, 0.3, MIRRORED, mirrored[None])
+    beside = _beside(own.trace, busts[0])
+    if own.trace and beside is not None:
+        return Landmark(name, beside, 0.2, ESTIMATED, own.trace.curve)
+    points, hidden = own.bundle[OWN].points, np.flatnonzero(~own.bundle[OWN].seen)
+    if len(points) > 1 and len(hidden) > 3:
+        return Landmark(name, 0.5 * (points[hidden[0]] + points[hidden[-1]]), 0.1, GUESSED, points)
+    z = level + ABOVE
+    y = float(np.interp(z, points[::-1, 2], points[::-1, 1]))
+    place = np.array([busts[0][0], y, z])
+    return Landmark(name, place, 0.05, GUESSED, place[None])
+
+
+def _doubtful(own: Under, other: Under, busts: tuple[Points, Points]) -> bool:
+    """Tell whether a hole makes one side unlike the other, so that the whole one is to be trusted."""
+    if own.fold is None or own.trace is None or own.bundle[OWN].whole or not other.bundle[OWN].whole:
+        return False
+    mirrored = _mirrored(other, busts)
+    return mirrored is not None and abs(float(mirrored[2] - own.fold.position[2])) > 8.0
+
+
+def _mirrored(other: Under, busts: tuple[Points, Points]) -> Points | None:
+    """Return the fold of the other breast below the own bust point, shape (3,) [mm]; None if it is unsure."""
+    if other.fold is None or other.fold.rule == NO_CREASE:
+        return None
+    return np.asarray(busts[0] + MIRROR * (other.fold.position - busts[1]))
+
+
+def _beside(crease: Trace | None, bust: Points) -> Points | None:
+    """Return the fold below ``bust`` from the visible parts of the crease on both sides of it, (3,) [mm]."""
+    if crease is None or crease.seen.sum() < 4 or crease.depth < 0.0:
+        return None
+    x = crease.curve[:, 0] - bust[0]
+    known = crease.seen & (np.abs(x) < 42.0)
+    if known.sum() < 3 or not (x[known].min() < -2.0 and x[known].max() > 2.0):
+        return None
+    y, z = (float(np.polyval(np.polyfit(x[known], crease.curve[known, k], 2), 0.0)) for k in (1, 2))
+    return np.array([bust[0], y, z])
+
+
+def _lowest(own: Under, other: Under, fold: Landmark, side: str, busts: tuple[Points, Points]) -> Landmark:
+    """Return the lowest point of the profile between bust point and fold."""
+    profile = own.bundle[OWN]
+    end = int(np.argmin(((profile.points - fold.position) ** 2).sum(axis=1)))
+    curve = np.concatenate([profile.points[: end + 1][profile.seen[: end + 1]], fold.position[None]])
+    if fold.rule == MIRRORED and other.fold is not None:
+        points = other.bundle[OWN].points
+        last = int(np.argmin(((points - other.fold.position) ** 2).sum(axis=1)))
+        lowest = points[np.argmin(points[: last + 1, 2])]
+        curve = np.concatenate([curve, [busts[0] + MIRROR * (lowest - busts[1])]])
+    return Landmark(f"lowest_{side}", curve[np.argmin(curve[:, 2])], fold.confidence, LOWEST, curve)

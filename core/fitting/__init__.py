@@ -1,0 +1,1 @@
+"""How the template is laid on a body, and how well it lies."""

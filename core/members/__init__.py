@@ -1,0 +1,1 @@
+"""What pulls inside the control mesh, and its stiffness in band storage."""

@@ -1,0 +1,178 @@
+"""glTF files, as text or as GLB: the triangles of all meshes where their nodes put them."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from core.errors import ScanError
+from core.mesh import Faces, Floats, Indices
+from core.progress import Progress
+from core.reading.raw_scan import AGAIN, RawScan, check_size, fans, joined, no_faces, strips, vectors
+
+_KINDS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
+_TRIANGLES, _STRIP, _FAN = 4, 5, 6
+_MOST_NODES, _DEEPEST = 10_000, 100
+_MOST_MARKS = 2_000_000
+_WHOLE = "Export it as one GLB file with all in it."
+
+Json = Any
+Matrix = Floats
+
+
+def read_gltf(name: str, data: bytes, progress: Progress) -> RawScan:
+    """Read a glTF or GLB file. Raises ScanError, ValueError and the like if it is damaged.
+
+    Nothing but the file itself is read: buffers in other files or on a network are refused.
+    Source: Khronos, glTF 2.0 specification.
+    """
+    document, binary = _glb(name, data) if data[:4] == b"glTF" else (data, b"")
+    if sum(document.count(mark) for mark in (b"[", b"{", b",")) > _MOST_MARKS:
+        raise _too_much(name)
+    reader = _Reader(name, json.loads(document), binary)
+    parts, points, triangles = list[RawScan](), 0, 0
+    for primitive, matrix in reader.placed():
+        progress("reading", len(parts) / (len(parts) + 1))
+        parts.append(reader.part(primitive, matrix))
+        points, triangles = points + len(parts[-1].vertices), triangles + len(parts[-1].faces)
+        check_size(name, points, triangles)
+        if len(parts) > _MOST_NODES:
+            raise _too_much(name)
+    return joined(parts)
+
+
+def _too_much(name: str) -> ScanError:
+    return ScanError(f"{name} describes more than a scan needs.", "Export the body alone.")
+
+
+def _packed(name: str) -> ScanError:
+    return ScanError(
+        f"{name} is compressed in a way that Busk does not read.", "Export it without mesh compression."
+    )
+
+
+def _glb(name: str, data: bytes) -> tuple[bytes, bytes]:
+    """Return the two chunks of a GLB file: the description, and what it describes."""
+    if int.from_bytes(data[4:8], "little") != 2:
+        raise ScanError(f"{name} is a glTF file of an old kind.", "Export it as glTF 2.0.")
+    chunks, at = dict[bytes, bytes](), 12
+    while at + 8 <= len(data):
+        size = int.from_bytes(data[at : at + 4], "little")
+        if at + 8 + size > len(data):
+            raise ScanError(f"{name} is cut short: its header promises more than the file holds.", AGAIN)
+        chunks.setdefault(data[at + 4 : at + 8], data[at + 8 : at + 8 + size])
+        at += 8 + size
+    return chunks[b"JSON"], chunks.get(b"BIN\0", b"")
+
+
+class _Reader:
+    """What a file describes, taken apart on demand."""
+
+    def __init__(self, name: str, document: Json, binary: bytes) -> None:
+        self.name, self.json = name, document
+        if document["asset"]["version"].split(".")[0] != "2":
+            raise ScanError(f"{name} is a glTF file of an old kind.", "Export it as glTF 2.0.")
+        needed = document.get("extensionsRequired", [])
+        if any("draco" in each or "meshopt" in each for each in needed):
+            raise _packed(name)
+        self._buffers = [self._buffer(each, binary) for each in document.get("buffers", [])[:_MOST_NODES]]
+
+    def _buffer(self, buffer: Json, binary: bytes) -> bytes:
+        uri = buffer.get("uri")
+        if uri is None:
+            return binary
+        head, comma, _ = uri[:200].partition(",")
+        if not uri.startswith("data:") or not head.endswith(";base64") or not comma:
+            raise ScanError(f"{self.name} keeps its triangles in another file.", _WHOLE)
+        return base64.b64decode(uri[len(head) + 1 :], validate=True)
+
+    def placed(self) -> Iterator[tuple[Json, Matrix]]:
+        """Give each part of the scene's meshes, and the matrix that puts it there, shape (4, 4)."""
+        nodes = self.json.get("nodes", [])
+        scenes = self.json.get("scenes", [])
+        if scenes:
+            roots = scenes[self.json.get("scene", 0)].get("nodes", [])
+        else:
+            children = {child for node in nodes for child in node.get("children", [])}
+            roots = [k for k in range(len(nodes)) if k not in children]
+        waiting, visited = [(root, np.eye(4), 0) for root in roots], 0
+        while waiting:
+            k, above, depth = waiting.pop()
+            visited += 1
+            if visited > _MOST_NODES or depth > _DEEPEST:
+                raise _too_much(self.name)
+            matrix = above @ _matrix(nodes[k])
+            if "mesh" in nodes[k]:
+                for primitive in self.json["meshes"][nodes[k]["mesh"]]["primitives"]:
+                    yield primitive, matrix
+            waiting += [(child, matrix, depth + 1) for child in nodes[k].get("children", [])]
+
+    def part(self, primitive: Json, matrix: Matrix) -> RawScan:
+        """Return one part of a mesh in the frame of the scene."""
+        if any("draco" in each for each in primitive.get("extensions", {})):
+            raise _packed(self.name)
+        named = primitive["attributes"]
+        vertices = vectors(self._values(named["POSITION"]))
+        turn = matrix[:3, :3]
+        faces = self._faces(primitive, len(vertices))
+        if np.linalg.det(turn) < 0.0:
+            faces = faces[:, ::-1]
+        normals = None
+        if "NORMAL" in named:
+            normals = vectors(self._values(named["NORMAL"])) @ np.linalg.pinv(turn)
+        return RawScan(vertices @ turn.T + matrix[:3, 3], faces, normals)
+
+    def _faces(self, primitive: Json, count: int) -> Faces:
+        mode = primitive.get("mode", _TRIANGLES)
+        if mode not in (_TRIANGLES, _STRIP, _FAN):
+            return no_faces()
+        corners: Indices = np.arange(count)
+        if "indices" in primitive:
+            corners = self._values(primitive["indices"]).ravel().astype(np.int64)
+        if mode == _TRIANGLES:
+            return corners.reshape(-1, 3)
+        return (strips if mode == _STRIP else fans)(corners, np.array([len(corners)]))
+
+    def _values(self, index: int) -> npt.NDArray[np.generic]:
+        """Return the rows of an accessor, shape (count, width)."""
+        accessor = self.json["accessors"][index]
+        kind, width = np.dtype(_KINDS[accessor["componentType"]]), _WIDTHS[accessor["type"]]
+        if "sparse" in accessor or "bufferView" not in accessor:
+            raise ScanError(f"{self.name} is written in a way that Busk does not read.", "Export it as PLY.")
+        view = self.json["bufferViews"][accessor["bufferView"]]
+        buffer = self._buffers[view["buffer"]]
+        start, row = view.get("byteOffset", 0) + accessor.get("byteOffset", 0), kind.itemsize * width
+        stride, count = view.get("byteStride", row), accessor["count"]
+        if (
+            min(start, count) < 0
+            or stride < row
+            or start + max(count - 1, 0) * stride + row * (count > 0) > len(buffer)
+        ):
+            raise ScanError(f"{self.name} is cut short: its header promises more than the file holds.", AGAIN)
+        check_size(self.name, count // (1 if width == 3 else 3))
+        values = np.ndarray((count, width), kind, buffer, start, (stride, kind.itemsize)).copy()
+        if accessor.get("normalized") and kind.kind in "iu":
+            return values.astype(np.float64) / np.iinfo(kind).max
+        return values
+
+
+def _matrix(node: Json) -> Matrix:
+    """Return how a node is placed under the one above it, shape (4, 4)."""
+    if "matrix" in node:
+        return np.array(node["matrix"], dtype=np.float64).reshape(4, 4).T
+    x, y, z, w = (float(part) for part in node.get("rotation", (0, 0, 0, 1)))
+    turn = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ]
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.array(turn) * np.array(node.get("scale", (1, 1, 1)), dtype=np.float64)
+    matrix[:3, 3] = np.array(node.get("translation", (0, 0, 0)), dtype=np.float64)
+    return matrix

@@ -1,0 +1,134 @@
+"""Scan files: what a file of any known format holds, or in one sentence why it cannot be had."""
+
+from __future__ import annotations
+
+import re
+import stat
+import zlib
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from core.errors import ScanError
+from core.mesh import Faces, Points
+from core.progress import Cancelled, Progress, quiet
+from core.reading.gltf_file import read_gltf
+from core.reading.obj_file import read_obj
+from core.reading.off_file import read_off, read_points
+from core.reading.ply_file import read_ply
+from core.reading.raw_scan import AGAIN, RawScan, check_size
+from core.reading.stl_file import is_binary_stl, read_stl
+from core.reading.vtp_file import read_vtp
+
+Reader = Callable[[str, bytes, Progress], RawScan]
+
+_READERS: dict[str, Reader] = {
+    "ply": read_ply,
+    "obj": read_obj,
+    "stl": read_stl,
+    "off": read_off,
+    "glb": read_gltf,
+    "gltf": read_gltf,
+    "vtp": read_vtp,
+    **dict.fromkeys(("xyz", "pts", "txt", "csv"), read_points),
+}
+FORMATS = (*_READERS, "gz")
+"""Endings of the files that can be read; gz stands behind one of the others."""
+
+_SIGNS = {
+    "ply": re.compile(rb"ply\r?[\n\r]"),
+    "glb": re.compile(rb"glTF"),
+    "vtp": re.compile(rb"(<\?xml[^>]*>\s*)?(<!--(?:(?!-->).)*-->\s*)*<VTKFile", re.DOTALL),
+    "off": re.compile(rb"(ST)?C?N?OFF\s"),
+}
+"""How files of some formats begin, whatever they are called."""
+
+LARGEST_FILE = 500_000_000
+"""More than this [bytes] no scan needs, packed or not."""
+
+_THINNER = f"Thin the scan until its file is smaller than {LARGEST_FILE // 1_000_000} MB."
+_STEP = 1 << 20
+
+
+def scan_bytes(path: Path) -> bytes:
+    """Return what a scan file holds. Raises ScanError."""
+    try:
+        kind = path.stat()
+        if not stat.S_ISREG(kind.st_mode):  # a pipe or a device may never end
+            raise ScanError(f"{path.name} cannot be read: it is no file.", "Choose another scan.")
+        if kind.st_size > LARGEST_FILE:
+            raise ScanError(f"{path.name} is too large.", _THINNER)
+        with path.open("rb") as file:
+            return file.read(LARGEST_FILE)
+    except FileNotFoundError:
+        raise ScanError(f"There is no file {path}.", "Check the name, or choose another scan.") from None
+    except (OSError, ValueError) as problem:
+        reason = getattr(problem, "strerror", None) or "its name is no name of a file"
+        raise ScanError(f"{path.name} cannot be read: {reason}.", "Choose another scan.") from problem
+
+
+def read_triangles(name: str, data: bytes, progress: Progress = quiet) -> tuple[Points, Faces]:
+    """Return the vertices, shape (n, 3), and triangles, shape (m, 3), of ``read_raw`` alone."""
+    scan = read_raw(name, data, progress)
+    return scan.vertices, scan.faces
+
+
+def read_raw(name: str, data: bytes, progress: Progress = quiet) -> RawScan:
+    """Return what the bytes of a scan file hold; a cloud of points has no triangles.
+
+    The content tells the format, or the ending of ``name`` where it does not. All objects and groups of the
+    file are put together; larger polygons are cut into triangles. Raises ScanError, Cancelled.
+    """
+    progress("reading", 0.0)
+    if not data:
+        raise ScanError(f"{name} is empty.", AGAIN)
+    try:
+        if data[:2] == b"\x1f\x8b":
+            data = _unpacked(name, data, progress)
+        with np.errstate(all="ignore"):
+            scan = _reader(name, data)(name, data, progress)
+        check_size(name, len(scan.vertices), len(scan.faces))
+        if scan.faces.size and not (scan.faces.min() >= 0 and scan.faces.max() < len(scan.vertices)):
+            raise ScanError(f"{name} has triangles with corners that do not exist.", AGAIN)
+    except (ScanError, Cancelled):
+        raise
+    except Exception as problem:  # a malformed file makes a reader fail in any way
+        raise ScanError(
+            f"{name} cannot be read: it is damaged or cut short.",
+            "Export the scan again, as triangles only.",
+        ) from problem
+    progress("reading", 1.0)
+    return scan
+
+
+def _reader(name: str, data: bytes) -> Reader:
+    ending = Path(name.lower().removesuffix(".gz")).suffix.removeprefix(".")
+    told = next((kind for kind, sign in _SIGNS.items() if sign.match(data[:10_000])), None)
+    if told is None and ending not in _READERS and is_binary_stl(data):
+        told = "stl"
+    if told is None and ending not in _READERS:
+        raise ScanError(
+            f"{name} is not a scan that can be read.",
+            "Export it as one of: PLY, OBJ, STL, OFF, glTF, VTP, XYZ.",
+        )
+    return _READERS[told or ending]
+
+
+def _unpacked(name: str, data: bytes, progress: Progress) -> bytes:
+    """Unpack gzip, but never more than what a scan needs."""
+    parts, held, at = list[bytes](), 0, 0
+    unpacker = zlib.decompressobj(wbits=31)
+    while not unpacker.eof:
+        progress("reading", at / len(data))
+        packed = unpacker.unconsumed_tail or data[at : at + _STEP]
+        at += 0 if unpacker.unconsumed_tail else _STEP
+        if not packed:
+            raise ValueError("a packed file without an end")
+        parts.append(unpacker.decompress(packed, 16 * _STEP))
+        held += len(parts[-1])
+        if held > LARGEST_FILE:
+            raise ScanError(f"{name} is too large when unpacked.", _THINNER)
+    if not held:
+        raise ScanError(f"{name} is empty.", AGAIN)
+    return b"".join(parts)

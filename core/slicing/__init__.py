@@ -1,0 +1,1 @@
+"""Level curves of the trunk alone: over holes and gaps, without arms."""

@@ -1,0 +1,1 @@
+"""The parts of a run: turns, gains and the exact answer."""
