@@ -97,6 +97,15 @@ def resample(curve: Points, step: float) -> Points:
     return np.stack([np.interp(at, s, curve[:, k]) for k in range(curve.shape[1])], axis=1)
 
 
+def curvature(x: Floats, y: Floats) -> Floats:
+    """Return the curvature of a plane curve, shape (k,) [1/mm], positive where it turns from x to y."""
+    if len(x) < 3:
+        return np.zeros(len(x))
+    dx, dy = np.gradient(x), np.gradient(y)
+    bend = dx * np.gradient(dy) - dy * np.gradient(dx)
+    return np.asarray(bend / np.maximum(dx**2 + dy**2, 1e-9) ** 1.5)
+
+
 def hull_perimeter(points: Points) -> float:
     """Return the length of a tape round ``points``, shape (k, 3), in their level [mm]; 0 if none."""
     if len(points) < 3:

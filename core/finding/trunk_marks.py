@@ -7,7 +7,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from core.landmark import SIDES, Landmark, Landmarks
 from core.mesh import Flags, Floats, Mesh, Points
-from core.sections import arc_length, chains, cut, resample
+from core.sections import arc_length, chains, curvature, cut, resample
 from core.slicing.trunk_guide import STEP, Guide, guide_of
 from core.trunk import Level, stable_level, trunk_levels
 
@@ -236,8 +236,8 @@ def _foot(line: Points, z: float, name: str, back: bool, rule: str) -> Landmark 
         return None
     line = line if line[0, 2] > line[-1, 2] else line[::-1]
     even = resample(line, 1.0)
-    dy, dz = (np.gradient(gaussian_filter1d(even[:, k], 8.0, mode="nearest")) for k in (1, 2))
-    bend = (dz * np.gradient(dy) - dy * np.gradient(dz)) / np.maximum(dy**2 + dz**2, 1e-9) ** 1.5
+    y, height = gaussian_filter1d(even[:, 1:].T, 8.0, mode="nearest")
+    bend = curvature(height, y)
     allowed = (even[:, 2] < z - 5.0) & (even[:, 2] > z - 100.0)
     allowed[:10] = allowed[-10:] = False
     if not allowed.any():
