@@ -1,6 +1,9 @@
 """Every format gives the same house, and what no scan is ends in one sentence, soon, in little memory."""
 
+import base64
+import codecs
 import gzip
+import json
 import os
 import random
 import tracemalloc
@@ -78,6 +81,7 @@ def test_a_claim_that_the_file_cannot_hold_reserves_no_memory(name):
 
 NODES = b'{"asset": {"version": "2.0"}, "nodes": [{"children": [0, 0]}], "scenes": [{"nodes": [0]}]}'
 LAUGHS = b'<?xml version="1.0"?><!DOCTYPE a [<!ENTITY a "ha">]><VTKFile type="PolyData">&a;</VTKFile>'
+PIECES = gzip.compress(b"1 2 3\n", 1, mtime=0)
 HOSTILE = [
     ("a.vtp", LAUGHS, "not a scan|damaged"),
     ("a.vtp", b"<VTKFile>" + b"<a>" * 300_000, "damaged"),
@@ -99,6 +103,14 @@ HOSTILE = [
     ("a.off", b"4OFF\n1 0 0\n", "rare kind"),
     ("a.off", b"OFF BINARY\n\0\0\0\1", "rare kind"),
     ("a.xyz", b"some words\nabout nothing\n", "damaged"),
+    ("a.csv", b"1,5,2,5,3,5\n" * 3, "a comma may stand"),
+    ("a.csv", b"1.200,5;2.500,0;3,5\n", "a comma may stand"),
+    ("a.xyz", b"1 2 3\n1 2\n", "damaged"),
+    ("a.xyz", b"1 2 3\n" * 20_000_000, "too fine"),
+    ("a.obj", b"v 1 2 3\n" * 10_000_002, "too fine"),
+    ("a.stl", b"solid\nfacet\n" + b"\n" * 40_000_000 + b"endsolid", "more than a scan needs"),
+    ("a.xyz.gz", PIECES * 10_001, "damaged"),
+    ("a.xyz.gz", PIECES + b"rubbish", "damaged"),
     ("a.ply.gz", HOUSES["packed.ply.gz"][:-20], "damaged"),
     ("a.ply.gz", gzip.compress(b""), "is empty"),
 ]
@@ -109,6 +121,79 @@ def test_a_hostile_file_is_refused_in_one_sentence(name, data, words):
     with pytest.raises(ScanError, match=words) as refusal:
         read_raw(name, data)
     assert refusal.value.hint
+
+
+LISTS = {
+    "semicolons": b"1;2;3\n1,5;-2,5;3,5\n",
+    "blanks": b"1 2 3\n1,5 -2,5 3,5\n",
+    "tabs": b"1\t2\t3\n1,5\t-2,5\t3,5\n",
+    "spaced": b"1, 2, 3\n1.5, -2.5, 3.5\n",
+    "colours": b"1 2 3 255,0,0\n1.5 -2.5 3.5 255,0,0\n",
+    "six": b"1,2,3,255,-0,0\n1.5,-2.5,3.5,255,0,0\n",
+    "closed": b"1 2 3\n1.5 -2.5 3.5\nend of file\n\n",
+    "marked": codecs.BOM_UTF8 + b"1 2 3\n1.5 -2.5 3.5\n",
+    "vertices": codecs.BOM_UTF8 + b"v 1 2 3\nv 1,5 -2,5 3,5\n",
+}
+
+
+@pytest.mark.parametrize("name", LISTS)
+def test_a_list_is_read_whatever_stands_between_and_behind_its_numbers(name):
+    for ending in ("csv", "xyz", "ply", "obj"):
+        scan = read_raw(f"a.{ending}", LISTS[name])
+        assert np.array_equal(scan.vertices, [[1, 2, 3], [1.5, -2.5, 3.5]])
+
+
+@pytest.mark.parametrize(
+    "name", ["text.ply", "groups.obj", "text.stl", "binary.stl", "plain.off", "text.gltf"]
+)
+def test_the_content_tells_the_format_and_no_wrong_name(name):
+    right = read_raw(name, HOUSES[name])
+    for ending in ("ply", "obj", "stl", "off", "gltf", "xyz", "vtp", "dat"):
+        for mark in (b"", b"" if name == "binary.stl" else codecs.BOM_UTF8):
+            scan = read_raw(f"a.{ending}", mark + HOUSES[name])
+            assert np.array_equal(scan.vertices, right.vertices)
+            assert np.array_equal(scan.faces, right.faces)
+
+
+def test_a_file_packed_in_pieces_is_read_whole():
+    half = len(HOUSES["groups.obj"]) // 2
+    pieces = [gzip.compress(HOUSES["groups.obj"][a:b]) for a, b in ((0, half), (half, None))]
+    found = read_raw("a.obj.gz", b"".join(pieces) + bytes(512))
+    assert np.array_equal(found.vertices, read_raw("a.obj", HOUSES["groups.obj"]).vertices)
+
+
+def test_a_gltf_file_is_read_with_the_file_beside_it_and_with_no_other(tmp_path):
+    text = json.loads(gltf(binary=False))
+    content = base64.b64decode(text["buffers"][0]["uri"].partition(",")[2])
+    folder = tmp_path / "scan"
+    folder.mkdir()
+    for place in (folder, tmp_path):
+        (place / "the house.bin").write_bytes(content)
+    (folder / "link.bin").symlink_to(tmp_path / "the house.bin")
+
+    def read(uri):
+        text["buffers"][0]["uri"] = uri
+        (folder / "house.gltf").write_text(json.dumps(text))
+        return read_raw("house.gltf", scan_bytes(folder / "house.gltf"))
+
+    assert np.array_equal(read("the%20house.bin").faces, read_raw("a.gltf", HOUSES["text.gltf"]).faces)
+    outside = (
+        "../the house.bin",
+        "..%2Fthe house.bin",
+        str(tmp_path / "the house.bin"),
+        "link.bin",
+        "no.bin",
+        "..",
+    )
+    for uri in outside:
+        with pytest.raises(ScanError, match="in another file"):
+            read(uri)
+
+
+def test_corners_of_single_triangles_are_no_more_points_than_shared_ones(monkeypatch):
+    monkeypatch.setattr("core.reading.raw_scan.MOST_POINTS", 20)
+    for name in ("binary.stl", "text.stl"):
+        assert len(read_raw(name, HOUSES[name]).vertices) == 3 * len(TRIANGLES) > 20
 
 
 @pytest.mark.parametrize("name", sorted(HOUSES))

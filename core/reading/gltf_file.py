@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import base64
+import codecs
 import json
+import re
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,14 +16,25 @@ import numpy.typing as npt
 from core.errors import ScanError
 from core.mesh import Faces, Floats, Indices
 from core.progress import Progress
-from core.reading.raw_scan import AGAIN, RawScan, check_size, fans, joined, no_faces, strips, vectors
+from core.reading.raw_scan import (
+    AGAIN,
+    RawScan,
+    check_size,
+    fans,
+    joined,
+    no_faces,
+    strips,
+    too_much,
+    vectors,
+)
 
 _KINDS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 _MOST_NODES, _DEEPEST = 10_000, 100
 _MOST_MARKS = 2_000_000
-_WHOLE = "Export it as one GLB file with all in it."
+_WHOLE = "Put that file beside it, or export all as one GLB file."
+_OUTSIDE = re.compile(rb'"uri"\s*:\s*"(?!data:)')
 
 Json = Any
 Matrix = Floats
@@ -29,12 +43,12 @@ Matrix = Floats
 def read_gltf(name: str, data: bytes, progress: Progress) -> RawScan:
     """Read a glTF or GLB file. Raises ScanError, ValueError and the like if it is damaged.
 
-    Nothing but the file itself is read: buffers in other files or on a network are refused.
+    Nothing but the file itself is read: buffers in other files are put in before, by ``with_buffers``.
     Source: Khronos, glTF 2.0 specification.
     """
     document, binary = _glb(name, data) if data[:4] == b"glTF" else (data, b"")
-    if sum(document.count(mark) for mark in (b"[", b"{", b",")) > _MOST_MARKS:
-        raise _too_much(name)
+    if _marks(document) > _MOST_MARKS:
+        raise too_much(name)
     reader = _Reader(name, json.loads(document), binary)
     parts, points, triangles = list[RawScan](), 0, 0
     for primitive, matrix in reader.placed():
@@ -43,12 +57,45 @@ def read_gltf(name: str, data: bytes, progress: Progress) -> RawScan:
         points, triangles = points + len(parts[-1].vertices), triangles + len(parts[-1].faces)
         check_size(name, points, triangles)
         if len(parts) > _MOST_NODES:
-            raise _too_much(name)
+            raise too_much(name)
     return joined(parts)
 
 
-def _too_much(name: str) -> ScanError:
-    return ScanError(f"{name} describes more than a scan needs.", "Export the body alone.")
+def with_buffers(path: Path, data: bytes, most: int) -> bytes:
+    """Return a glTF file as text with what it keeps in files beside it put in, up to ``most`` bytes.
+
+    Names that lead out of its folder, and files that are not there, stay as they are. Raises OSError.
+    """
+    if not data[:1000].lstrip(codecs.BOM_UTF8 + b" \t\r\n").startswith(b"{") or not _OUTSIDE.search(data):
+        return data
+    if _marks(data) > _MOST_MARKS:
+        return data
+    try:
+        document = json.loads(data)
+        for buffer in document["buffers"][:_MOST_NODES]:
+            beside = _beside(path, buffer.get("uri"))
+            most -= beside.stat().st_size if beside else 0
+            if beside and most >= 0:
+                content = base64.b64encode(beside.read_bytes()).decode()
+                buffer["uri"] = f"data:application/octet-stream;base64,{content}"
+        return json.dumps(document).encode()
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        return data  # the reader tells what is wrong with it
+
+
+def _beside(path: Path, uri: Any) -> Path | None:
+    """Return the file in the folder of ``path`` that a plain name means, None if there is none."""
+    spelled = uri.encode() if isinstance(uri, str) else b""
+    name = re.sub(rb"%([\da-fA-F]{2})", lambda code: bytes.fromhex(code[1].decode()), spelled).decode()
+    if not re.fullmatch(r"[^/\\:\0]{1,255}", name):
+        return None
+    file = (path.parent / name).resolve()
+    return file if file.parent == path.parent.resolve() and file.is_file() else None
+
+
+def _marks(document: bytes) -> int:
+    """Return how many values a text of JSON may hold, roughly."""
+    return sum(document.count(mark) for mark in (b"[", b"{", b","))
 
 
 def _packed(name: str) -> ScanError:
@@ -106,7 +153,7 @@ class _Reader:
             k, above, depth = waiting.pop()
             visited += 1
             if visited > _MOST_NODES or depth > _DEEPEST:
-                raise _too_much(self.name)
+                raise too_much(self.name)
             matrix = above @ _matrix(nodes[k])
             if "mesh" in nodes[k]:
                 for primitive in self.json["meshes"][nodes[k]["mesh"]]["primitives"]:

@@ -18,18 +18,19 @@ def read_obj(name: str, data: bytes, progress: Progress) -> RawScan:
     Corners may count from the first vertex (1, 2, ...) or back from the latest one (-1, -2, ...). Normals
     count only if there are as many as vertices: of a point cloud. Source: Wavefront's OBJ format.
     """
+    check_size(name, max(data.count(b"\nv "), data.count(b"\nvn ")), data.count(b"\nf "))  # at once
     if b"\\\n" in data or b"\\\r\n" in data:
         data = re.sub(rb"\\\r?\n", b" ", data)
     vertices, normals, faces = [np.empty((0, 3))], [np.empty((0, 3))], [no_faces()]
     points = triangles = 0
-    for block in blocks(data, progress):
+    for block in blocks(name, data, progress):
         lines = lines_of(block)
         at = lines.marked(b"v")
         vertices.append(table(lines.picked(at, 1)).columns(0, 3))
         normals.append(table(lines.picked(lines.marked(b"vn"), 2)).columns(0, 3))
         faces.append(_polygons(lines, points + np.cumsum(at)))
         points, triangles = points + int(at.sum()), triangles + len(faces[-1])
-        check_size(name, points, triangles)
+        check_size(name, max(points, sum(map(len, normals))), triangles)
     directions = np.concatenate(normals)
     return RawScan(
         np.concatenate(vertices), np.concatenate(faces), directions if len(directions) == points else None

@@ -29,12 +29,20 @@ class RawScan:
 
 
 def check_size(name: str, points: int, triangles: int = 0) -> None:
-    """Refuse a scan that holds more than what can be worked on. Raises ScanError."""
-    if points > MOST_POINTS or triangles > MOST_TRIANGLES:
+    """Refuse a scan that holds more than what can be worked on. Raises ScanError.
+
+    Points that are no more than the corners of single triangles are no reason: most of them become one.
+    """
+    if points > max(MOST_POINTS, 3 * triangles) or triangles > MOST_TRIANGLES:
         raise ScanError(
             f"{name} is too fine: it holds {points:,} points and {triangles:,} triangles.",
             f"Thin the scan to at most {MOST_POINTS:,} points and {MOST_TRIANGLES:,} triangles.",
         )
+
+
+def too_much(name: str) -> ScanError:
+    """Return the refusal of a file with more in it than the finest body has."""
+    return ScanError(f"{name} describes more than a scan needs.", "Export the body alone.")
 
 
 def joined(parts: list[RawScan]) -> RawScan:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import re
 import stat
 import zlib
@@ -13,9 +14,9 @@ import numpy as np
 from core.errors import ScanError
 from core.mesh import Faces, Points
 from core.progress import Cancelled, Progress, quiet
-from core.reading.gltf_file import read_gltf
+from core.reading.gltf_file import read_gltf, with_buffers
 from core.reading.obj_file import read_obj
-from core.reading.off_file import read_off, read_points
+from core.reading.off_file import begins_with_points, read_off, read_points
 from core.reading.ply_file import read_ply
 from core.reading.raw_scan import AGAIN, RawScan, check_size
 from core.reading.stl_file import is_binary_stl, read_stl
@@ -41,18 +42,24 @@ _SIGNS = {
     "glb": re.compile(rb"glTF"),
     "vtp": re.compile(rb"(<\?xml[^>]*>\s*)?(<!--(?:(?!-->).)*-->\s*)*<VTKFile", re.DOTALL),
     "off": re.compile(rb"(ST)?C?N?OFF\s"),
+    "gltf": re.compile(rb"\s*\{"),
+    "stl": re.compile(rb"\s*solid\b[^\n\r]*[\n\r]+\s*facet\s", re.IGNORECASE),
+    "obj": re.compile(rb"(?:[^\n\r]*[\n\r])*?[ \t]*v[ \t]+[-+.\d][^\n\r]*[\n\r]"),
 }
 """How files of some formats begin, whatever they are called."""
 
-LARGEST_FILE = 500_000_000
-"""More than this [bytes] no scan needs, packed or not."""
+LARGEST_FILE = 600_000_000
+"""More than this [bytes] no scan needs, packed or not: as text, 2 million triangles of an STL file fit."""
+
+MOST_MEMBERS = 10_000
+"""A packed file may be packed in so many pieces; programs that pack in blocks need one for each 64 kB."""
 
 _THINNER = f"Thin the scan until its file is smaller than {LARGEST_FILE // 1_000_000} MB."
 _STEP = 1 << 20
 
 
 def scan_bytes(path: Path) -> bytes:
-    """Return what a scan file holds. Raises ScanError."""
+    """Return what a scan file holds, a glTF file with what it keeps in files beside it. Raises ScanError."""
     try:
         kind = path.stat()
         if not stat.S_ISREG(kind.st_mode):  # a pipe or a device may never end
@@ -60,7 +67,7 @@ def scan_bytes(path: Path) -> bytes:
         if kind.st_size > LARGEST_FILE:
             raise ScanError(f"{path.name} is too large.", _THINNER)
         with path.open("rb") as file:
-            return file.read(LARGEST_FILE)
+            return with_buffers(path, file.read(LARGEST_FILE), LARGEST_FILE)
     except FileNotFoundError:
         raise ScanError(f"There is no file {path}.", "Check the name, or choose another scan.") from None
     except (OSError, ValueError) as problem:
@@ -86,6 +93,7 @@ def read_raw(name: str, data: bytes, progress: Progress = quiet) -> RawScan:
     try:
         if data[:2] == b"\x1f\x8b":
             data = _unpacked(name, data, progress)
+        data = data.removeprefix(codecs.BOM_UTF8)
         with np.errstate(all="ignore"):
             scan = _reader(name, data)(name, data, progress)
         check_size(name, len(scan.vertices), len(scan.faces))
@@ -103,10 +111,13 @@ def read_raw(name: str, data: bytes, progress: Progress = quiet) -> RawScan:
 
 
 def _reader(name: str, data: bytes) -> Reader:
+    """Return the reader that the content asks for, or else the ending of the name."""
     ending = Path(name.lower().removesuffix(".gz")).suffix.removeprefix(".")
     told = next((kind for kind, sign in _SIGNS.items() if sign.match(data[:10_000])), None)
-    if told is None and ending not in _READERS and is_binary_stl(data):
+    if is_binary_stl(data):
         told = "stl"
+    elif told is None and ending != "off" and begins_with_points(data):  # OFF files may begin with counts
+        told = "xyz"
     if told is None and ending not in _READERS:
         raise ScanError(
             f"{name} is not a scan that can be read.",
@@ -116,19 +127,27 @@ def _reader(name: str, data: bytes) -> Reader:
 
 
 def _unpacked(name: str, data: bytes, progress: Progress) -> bytes:
-    """Unpack gzip, but never more than what a scan needs."""
-    parts, held, at = list[bytes](), 0, 0
-    unpacker = zlib.decompressobj(wbits=31)
-    while not unpacker.eof:
-        progress("reading", at / len(data))
-        packed = unpacker.unconsumed_tail or data[at : at + _STEP]
-        at += 0 if unpacker.unconsumed_tail else _STEP
-        if not packed:
-            raise ValueError("a packed file without an end")
-        parts.append(unpacker.decompress(packed, 16 * _STEP))
-        held += len(parts[-1])
-        if held > LARGEST_FILE:
-            raise ScanError(f"{name} is too large when unpacked.", _THINNER)
+    """Unpack gzip, all its members, but never more than what a scan needs."""
+    parts, held, at, waiting = list[bytes](), 0, 0, b""
+    for _ in range(MOST_MEMBERS):
+        unpacker = zlib.decompressobj(wbits=31)
+        while not unpacker.eof:
+            progress("reading", at / len(data))
+            if not waiting:
+                waiting, at = data[at : at + _STEP], at + _STEP
+            if not waiting:
+                raise ValueError("a packed file without an end")
+            parts.append(unpacker.decompress(waiting, 16 * _STEP))
+            waiting = unpacker.unconsumed_tail
+            held += len(parts[-1])
+            if held > LARGEST_FILE:
+                raise ScanError(f"{name} is too large when unpacked.", _THINNER)
+        waiting = unpacker.unused_data or data[at : at + _STEP]
+        at += 0 if unpacker.unused_data else _STEP
+        if not waiting.strip(b"\0"):  # some programs fill up with zeros
+            break
+    else:
+        raise ValueError("packed in too many pieces")
     if not held:
         raise ScanError(f"{name} is empty.", AGAIN)
     return b"".join(parts)

@@ -40,9 +40,9 @@ def _text_corners(name: str, data: bytes, progress: Progress) -> Points:
     if b"endsolid" not in data[-1000:].lower():
         raise ScanError(f"{name} is cut short, or it is not an STL file.", AGAIN)
     found, points = [np.empty((0, 3))], 0
-    for block in blocks(data, progress):
+    for block in blocks(name, data, progress):
         lines = lines_of(block)
         found.append(table(lines.picked(lines.marked(b"vertex"), 6)).columns(0, 3))
         points += len(found[-1])
-        check_size(name, points, points // 3)
+        check_size(name, points, -(-points // 3))
     return np.concatenate(found)

@@ -11,10 +11,13 @@ import numpy.typing as npt
 
 from core.mesh import Flags, Floats, Indices
 from core.progress import Progress
-from core.reading.raw_scan import check_size
+from core.reading.raw_scan import check_size, too_much
 
 BLOCK = 1 << 23
 """How much text is read at a time [bytes]; a line must not be longer."""
+
+MOST_LINES = 40_000_000
+"""The finest scan as text has fewer lines; a small packed file may hold many more."""
 
 NUMBERS_A_POINT = 8
 """How many numbers a point may come with before so many are too many."""
@@ -22,8 +25,13 @@ NUMBERS_A_POINT = 8
 Text = npt.NDArray[np.uint8]
 
 
-def blocks(data: bytes, progress: Progress) -> Iterator[bytes]:
-    """Cut text at line ends into blocks that fit into memory. Raises ValueError on an endless line."""
+def blocks(name: str, data: bytes, progress: Progress) -> Iterator[bytes]:
+    """Cut text at line ends into blocks that fit into memory.
+
+    Raises ScanError on too many lines, ValueError on an endless one.
+    """
+    if max(data.count(b"\n"), data.count(b"\r")) > MOST_LINES:
+        raise too_much(name)
     start = 0
     while start < len(data):
         progress("reading", start / len(data))
@@ -118,7 +126,7 @@ def whole_table(name: str, data: bytes, progress: Progress) -> Table:
     """Read a text that holds nothing but numbers; empty lines are left out. Raises ScanError, ValueError."""
     parts = [Table(np.empty(0), np.empty(0, dtype=np.int64))]
     held = 0
-    for block in blocks(data, progress):
+    for block in blocks(name, data, progress):
         lines = lines_of(block)
         parts.append(table(lines.picked(np.ones(len(lines.first), dtype=bool))))
         held += len(parts[-1].numbers)
@@ -129,7 +137,12 @@ def whole_table(name: str, data: bytes, progress: Progress) -> Table:
 
 
 def numbers(text: bytes, count: int) -> Floats:
-    """Read ``count`` numbers that blanks keep apart. Raises ValueError if there are not as many."""
+    """Read ``count`` numbers that blanks keep apart; a comma in one is its decimal mark.
+
+    Raises ValueError if there are not as many.
+    """
+    if b"," in text:
+        text = text.replace(b",", b".")
     if b"(" in text or b"#" in text:  # nan(ind), 1.#QNAN: how some programs write that there is no number
         text = re.sub(rb"-?(nan|ind)\([a-z]*\)|-?1\.#[A-Z]+\w*", b"nan", text)
     read = np.fromstring(text, sep=" ") if count else np.empty(0)
