@@ -7,8 +7,9 @@ import os
 import tempfile
 import threading
 from collections.abc import Callable, Iterator
-from functools import cache
+from functools import cache, lru_cache, wraps
 from pathlib import Path
+from typing import Any
 
 import pytest
 from PySide6.QtCore import QSettings
@@ -16,6 +17,8 @@ from PySide6.QtWidgets import QApplication
 from small_project import write_project
 from threadpoolctl import threadpool_limits
 
+import core.body
+from core import pipeline
 from core.design import Design, ScanSource, WornLine
 from core.pipeline import Stages, build
 
@@ -49,6 +52,29 @@ def one_blas_thread() -> Iterator[None]:
     """As in the solver's thread: two make the wide matrices of a sphere many times slower."""
     with threadpool_limits(1):
         yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def stages_made_once() -> Iterator[None]:
+    """Of the way from a file to a fitted model each stage is made once for equal inputs: they are frozen."""
+    with pytest.MonkeyPatch.context() as patch:
+        for name in ("body_of", "find", "read_template", "fit_control_mesh", "patch_fade", "_back_lengths"):
+            patch.setattr(pipeline, name, remembered(getattr(pipeline, name)))
+        yield
+
+
+def remembered(make: Callable[..., Any]) -> Callable[..., Any]:
+    """Keep the last results of ``make``; a test that replaces how bodies are stood up gets its own."""
+
+    @lru_cache(maxsize=16)
+    def kept(_: object, *inputs: object, **told: object) -> object:
+        return make(*inputs, **told)
+
+    @wraps(make)
+    def again(*inputs: object, progress: object = None, **told: object) -> object:
+        return kept(core.body.find_pose, *inputs, **told)
+
+    return again
 
 
 @pytest.fixture(scope="session")
