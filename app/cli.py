@@ -11,6 +11,9 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import scipy.linalg  # noqa: F401  its BLAS must be there to be held to one thread
+from threadpoolctl import threadpool_limits
+
 from app.cli_parser import command_options, window_options
 from app.settings import dressed, settings_of
 from core.design import Design, ScanSource, cannot_hold
@@ -44,7 +47,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _run(words: list[str]) -> int:
     if words and words[0] in COMMANDS:
-        return COMMANDS[words[0]](command_options(words[0], words[1:]))
+        with threadpool_limits(1):  # two threads of BLAS wait for each other, and spin, over small products
+            return COMMANDS[words[0]](command_options(words[0], words[1:]))
     options = window_options(words)
     if options.file is not None and not Path(options.file).exists():
         raise UserError(f"There is no file {options.file}, and no such command.", "See 'busk --help'.")

@@ -19,13 +19,13 @@ FLOORS = {
     "reading": "reading.raw_scan reading.text_table reading.ply_file reading.obj_file reading.stl_file "
     "reading.off_file reading.gltf_file reading.vtp_file reading.scan_file reading.contour "
     "reading.surface",
-    "cleaning": "cleaning.skin cleaning.pieces cleaning.repair cleaning.holes cleaning.polygon "
+    "cleaning": "cleaning.skin cleaning.pieces cleaning.inner cleaning.repair cleaning.holes cleaning.polygon "
     "cleaning.mending cleaning.calm",
     "standing": "standing.symmetry standing.silhouette standing.cues standing.flat_ends standing.told "
     "standing.stance standing.body_size standing.refusal standing.upright body",
     "slicing": "slicing.outline slicing.gaps slicing.arms slicing.trunk_pieces slicing.trunk_guide trunk",
-    "finding": "finding.chest finding.relief landmark finding.placed finding.breast_profile finding.fold "
-    "finding.under_breast finding.bust_point finding.bust_check finding.roots "
+    "finding": "finding.chest finding.relief landmark placing finding.breast_profile finding.fold "
+    "finding.under_breast finding.bust_point finding.bust_check finding.sampling finding.roots "
     "finding.trunk_marks landmarks",
     "fitting": "fitting.torso template fitting.profiles fitting.near_skin fitting.fit_check "
     "fitting.ground fitting.bridging fitting.creases fitting.laying fitting.easing "
@@ -35,7 +35,7 @@ FLOORS = {
     "solving": "solving.condition solving.layout solving.sweep model solver solving.gain "
     "solving.potential solving.newton solving.sliding exact solving.body_volume verdict "
     "comparison watch",
-    "document": "placing design own_lines project pipeline studies.limits studies.trial studies.search "
+    "document": "design own_lines project pipeline studies.limits studies.trial studies.search "
     "studies.sphere live export solution report",
     "seeing": "camera scene_stage scene_body scene_bands scene_control scene_trace scene portrait ways",
     "wording": "display tokens words samples model_choices scan_formats",
@@ -70,7 +70,8 @@ OUTSIDE = {
     "dress": {"PySide6.QtCore", "PySide6.QtGui", "PySide6.QtWidgets", "PySide6.QtSvg"},
     "showing": {"numpy", "pyvista", "pyvistaqt", "pyqtgraph", "vtkmodules", "PySide6.QtCore", "PySide6.QtGui"}
     | {"PySide6.QtWidgets", "PySide6.QtOpenGLWidgets"},
-    "roof": {"PySide6", "numpy", "pyvista", "pyvistaqt", "platformdirs", "PySide6.QtCore", "PySide6.QtGui"}
+    "roof": NUMBERS
+    | {"PySide6", "pyvista", "pyvistaqt", "platformdirs", "threadpoolctl", "PySide6.QtCore", "PySide6.QtGui"}
     | {"PySide6.QtWidgets", "PySide6.QtPrintSupport"},
 }
 PANELS = ("lines", "landmarks", "model", "rail", "result", "scan", "status", "top_bar", "view_tools")
