@@ -8,15 +8,11 @@ from typing import Any
 import numpy as np
 
 from core.body import Body
-from core.cleaning.calm import noise_of
 from core.doubts import doubts
 from core.landmark import Landmarks
 from core.landmarks import find_landmarks
-from core.measure import girth_doubts, girths
+from core.measure import girth_doubts, girths, levels
 from core.mesh import Points
-
-FURTHER = {"waist": ("waist_front",), "hip": ("hip_front",), "armpit": ("armpit_left", "armpit_right")}
-"""Levels beside those of the bust, and the landmarks whose mean height they are."""
 
 MOST = 60
 """So many points of a curve are told at most."""
@@ -44,9 +40,9 @@ def detection(body: Body, landmarks: Landmarks | None = None) -> dict[str, Any]:
     }
     return {
         "landmarks": marks,
-        "levels": _levels(landmarks),
+        "levels": levels(landmarks),
         "girths": {name: asdict(girth) for name, girth in found.items()},
-        "noise_mm": round(noise_of(body.mesh), 3),
+        "noise_mm": round(body.noise, 3),
         "unit": body.pose.unit,
         "up": body.pose.up,
         "front": body.pose.front,
@@ -56,16 +52,6 @@ def detection(body: Body, landmarks: Landmarks | None = None) -> dict[str, Any]:
         "repairs": list(body.repairs),
         "warnings": doubts(body, landmarks) + girth_doubts(found),
     }
-
-
-def _levels(landmarks: Landmarks) -> dict[str, float]:
-    """Return the heights [mm] of bust and under-bust, and of what else was found; armpits at their mean."""
-    levels = {"bust": float(landmarks.bust_level), "underbust": float(landmarks.underbust_level)}
-    for name, marks in FURTHER.items():
-        heights = [landmarks.position(mark)[2] for mark in marks if mark in landmarks.points]
-        if heights:
-            levels[name] = float(np.mean(heights))
-    return levels
 
 
 def _thinned(curve: Points) -> list[list[float]]:

@@ -7,18 +7,22 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from core.body import Body
-from core.finding.bust_check import check, check_anchor
+from core.finding.bust_check import check, check_anchor, check_placed, placed_warnings
 from core.finding.bust_point import bust_points, missing_sides
 from core.finding.chest import find_anchor, find_poles
-from core.finding.placed import placed_marks
 from core.finding.roots import root_marks
+from core.finding.sampling import coarse_warning, spacing, trust
 from core.finding.trunk_marks import trunk_marks
 from core.finding.under_breast import ABOVE, folds_and_lowest
 from core.landmark import SIDES, Landmark, Landmarks
 from core.mesh import Mesh, Points
+from core.placing import laid_on
 from core.trunk import survey
 
 NOTHING: Mapping[str, Points] = MappingProxyType({})
+
+UNMEASURED = 0.55
+"""Landmarks that were never held against a known answer claim this part of their confidence: below 0.5."""
 
 
 def find_landmarks(body: Body, placed: Mapping[str, Points] = NOTHING) -> Landmarks:
@@ -28,7 +32,7 @@ def find_landmarks(body: Body, placed: Mapping[str, Points] = NOTHING) -> Landma
     points and folds are all placed, or if a place or its name makes no sense. Source: ours.
     """
     calm = body.calm
-    by_hand = placed_marks(calm, placed)
+    by_hand = laid_on(calm, placed)
     warnings: tuple[str, ...] = ()
     if all(f"{name}_{side}" in by_hand for name in ("bust_point", "fold") for side in SIDES):
         found = _around(calm, by_hand)
@@ -37,12 +41,17 @@ def find_landmarks(body: Body, placed: Mapping[str, Points] = NOTHING) -> Landma
         anchor = find_anchor(trunk)
         check_anchor(anchor)
         poles = find_poles(trunk, anchor)
+        missing = [side for side in missing_sides(poles) if f"bust_point_{side}" not in by_hand]
         busts = [by_hand.get(mark.name, mark) for mark in bust_points(calm, poles, trunk.middle)]
         marks = busts + folds_and_lowest(calm, busts, anchor.z, by_hand)
-        found = _levels(marks, by_hand, missing_sides(poles))
-        warnings = check(calm, trunk, poles, found)
-    further = {mark.name: mark for mark in (*trunk_marks(calm, found), *root_marks(calm, found))}
+        found = _levels(calm, marks, by_hand, missing)
+        warnings = check(calm, trunk, poles, missing, found)
+    further = {
+        mark.name: mark if mark.name.startswith("front_centre") else _less(mark, UNMEASURED)
+        for mark in (*trunk_marks(calm, found), *root_marks(calm, found))
+    }
     points = MappingProxyType({**found.points, **further, **by_hand})
+    warnings = (*warnings, *placed_warnings(found), *coarse_warning(_spacing(calm, found.points)))
     return Landmarks(points, found.bust_level, found.underbust_level, warnings)
 
 
@@ -50,17 +59,33 @@ def _around(mesh: Mesh, by_hand: Mapping[str, Landmark]) -> Landmarks:
     """Return the landmarks round bust points and folds that are all placed, whatever the body looks like."""
     busts = [by_hand[f"bust_point_{side}"] for side in SIDES]
     level = min(by_hand[f"fold_{side}"].position[2] for side in SIDES) - ABOVE
-    return _levels(busts + folds_and_lowest(mesh, busts, level, by_hand), by_hand)
+    found = _levels(mesh, busts + folds_and_lowest(mesh, busts, level, by_hand), by_hand)
+    check_placed(found)
+    return found
 
 
-def _levels(marks: list[Landmark], by_hand: Mapping[str, Landmark], missing: Sequence[str] = ()) -> Landmarks:
+def _levels(
+    mesh: Mesh, marks: list[Landmark], by_hand: Mapping[str, Landmark], missing: Sequence[str] = ()
+) -> Landmarks:
     """Return the landmarks with the levels of the sides that have a breast; others are unsure."""
-    marks = [
-        replace(mark, confidence=0.3 * mark.confidence) if mark.name.endswith(tuple(missing)) else mark
+    sure = trust(_spacing(mesh, {mark.name: mark for mark in marks}))
+    found = {
+        mark.name: by_hand.get(
+            mark.name, _less(mark, sure * (0.3 if mark.name.endswith(tuple(missing)) else 1.0))
+        )
         for mark in marks
-    ]
-    found = {mark.name: by_hand.get(mark.name, mark) for mark in marks}
+    }
     sides = [side for side in SIDES if side not in missing] or SIDES
     bust = [found[f"bust_point_{side}"].position[2] for side in sides]
     under = [found[f"{name}_{side}"].position[2] for name in ("fold", "lowest") for side in sides]
     return Landmarks(MappingProxyType(found), float(sum(bust)) / len(bust), float(min(under)))
+
+
+def _less(mark: Landmark, share: float) -> Landmark:
+    return mark if mark.by_hand else replace(mark, confidence=share * mark.confidence)
+
+
+def _spacing(mesh: Mesh, marks: Mapping[str, Landmark]) -> float:
+    return spacing(
+        mesh, [marks[f"{name}_{side}"].position for name in ("bust_point", "fold") for side in SIDES]
+    )

@@ -3,23 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from core.body import Body
-from core.landmark import Landmarks
+from core.landmark import SIDES, Landmarks
 from core.mesh import Mesh
 from core.trunk import Level, stable_level, trunk_levels
 
-ARMPITS = ("armpit_left", "armpit_right")
+FURTHER = {"waist": ("waist_front",), "hip": ("hip_front",), "armpit": ("armpit_left", "armpit_right")}
+"""Levels beside those of the bust, and the landmarks whose mean height they are."""
+
+BUSTS = tuple(f"bust_point_{side}" for side in SIDES)
+UNDER = tuple(f"{name}_{side}" for name in ("fold", "lowest") for side in SIDES)
+"""The landmarks that the two levels of the bust are taken from."""
 
 MUCH = 50.0
 """Over more than this of an outline that is no skin a girth is an estimate [mm]."""
 
-WARNINGS = {
+CERTAIN = 0.5
+"""Where its height is less sure than this (0..1) the under-bust girth is uncertain."""
+
+ESTIMATES = {
     "bust": "The bust girth goes over a hole of the scan or over a joined arm: it is an estimate.",
     "underbust": "The under-bust girth goes over a hole of the scan or over a joined arm: it is an estimate.",
 }
+UNCERTAIN = "The under-bust girth is uncertain, as the height of the folds is."
 
 
 @dataclass(frozen=True)
@@ -27,12 +36,14 @@ class Girth:
     """A girth at height ``level_mm``: ``tape_mm`` bridges the hollows, ``skin_mm`` follows them.
 
     ``bridged_mm`` of the outline are no skin, but go over holes of the scan or where an arm joins the trunk.
+    ``confidence`` (0..1) is that of the landmarks which the height was taken from.
     """
 
     level_mm: float
     tape_mm: float
     skin_mm: float
     bridged_mm: float = 0.0
+    confidence: float = 1.0
 
 
 def girth_at(mesh: Mesh, z: float) -> Girth:
@@ -51,27 +62,52 @@ def girths(body: Body, landmarks: Landmarks) -> Mapping[str, Girth]:
         "bust": girth_at(body.calm, landmarks.bust_level),
         "underbust": _girth(stable_level(body.calm, landmarks.underbust_level)),
     }
-    further = {name: girth_at(body.calm, z) for name, z in girth_levels(landmarks).items()}
-    return MappingProxyType(found | {name: girth for name, girth in further.items() if girth.tape_mm > 0.0})
+    found |= {name: girth_at(body.calm, z) for name, z in girth_levels(landmarks).items()}
+    sure = _confidences(landmarks)
+    return MappingProxyType(
+        {
+            name: replace(girth, confidence=sure.get(name, 1.0))
+            for name, girth in found.items()
+            if name in ESTIMATES or girth.tape_mm > 0.0
+        }
+    )
+
+
+def _confidences(landmarks: Landmarks) -> dict[str, float]:
+    """Return how sure the heights of the girths are: as the surer bust point, else as the lowest mark."""
+    marks = {"bust": BUSTS, "underbust": UNDER, **FURTHER, "high_bust": FURTHER["armpit"]}
+    found = {name: [landmarks.points[k] for k in own if k in landmarks.points] for name, own in marks.items()}
+    sure = {
+        name: min(own, key=lambda mark: float(mark.position[2])).confidence
+        for name, own in found.items()
+        if own
+    }
+    return sure | {"bust": max((mark.confidence for mark in found["bust"]), default=1.0)}
+
+
+def levels(landmarks: Landmarks) -> dict[str, float]:
+    """Return the heights [mm] of bust and under-bust, and of what else was found; armpits at their mean."""
+    heights = {"bust": float(landmarks.bust_level), "underbust": float(landmarks.underbust_level)}
+    for name, marks in FURTHER.items():
+        found = [float(landmarks.position(mark)[2]) for mark in marks if mark in landmarks.points]
+        if found:
+            heights[name] = sum(found) / len(found)
+    return heights
 
 
 def girth_levels(landmarks: Landmarks) -> Mapping[str, float]:
     """Return the heights [mm] at which further girths are measured, those whose landmarks were found."""
-    points = landmarks.points
-    levels = {
-        name: float(points[mark].position[2])
-        for name, mark in (("waist", "waist_front"), ("hip", "hip_front"))
-        if mark in points
-    }
-    pits = [float(points[name].position[2]) for name in ARMPITS if name in points]
+    found = {name: z for name, z in levels(landmarks).items() if name in ("waist", "hip")}
+    pits = [float(landmarks.position(name)[2]) for name in FURTHER["armpit"] if name in landmarks.points]
     if len(pits) == 2 and min(pits) > landmarks.bust_level + 15.0:
-        levels["high_bust"] = min(pits) - 2.0
-    return MappingProxyType(levels)
+        found["high_bust"] = min(pits) - 2.0
+    return MappingProxyType(found)
 
 
 def girth_doubts(found: Mapping[str, Girth]) -> list[str]:
-    """Return one sentence for each girth of the bust that is an estimate: much of its outline is no skin."""
-    return [WARNINGS[name] for name in WARNINGS if name in found and found[name].bridged_mm > MUCH]
+    """Return one sentence for each girth of the bust that is an estimate, or whose height is uncertain."""
+    estimates = [said for name, said in ESTIMATES.items() if name in found and found[name].bridged_mm > MUCH]
+    return estimates + [UNCERTAIN] * ("underbust" in found and found["underbust"].confidence < CERTAIN)
 
 
 def _girth(level: Level) -> Girth:

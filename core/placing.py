@@ -1,16 +1,16 @@
-"""Where the designer says that a landmark is, in the scan file's own frame: kept, written and read."""
+"""Landmarks placed by hand: written and kept in the frame of the scan file, and laid on the skin."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from core.errors import LandmarkError
-from core.landmark import NAMES
-from core.mesh import Floats, Points
+from core.landmark import NAMES, Landmark
+from core.mesh import Floats, Mesh, Points
+from core.proximity import nearest_on
 
 HELP = (
     "NAME=x,y,z: a landmark that you place yourself, like bust_point_left=112.5,-140,1204; may be repeated. "
@@ -21,6 +21,11 @@ HELP = (
 
 FARTHEST = 1e9
 """A coordinate beyond this [file units] is a mistake."""
+
+PLACED = "Placed by hand."
+
+REACH = 30.0
+"""A placed point may lie so far off the skin [mm]."""
 
 
 @dataclass(frozen=True)
@@ -34,10 +39,15 @@ class PlacedMark:
     position: tuple[float, float, float]
 
     def __post_init__(self) -> None:
-        if self.name not in NAMES:
-            raise LandmarkError(f"There is no landmark {self.name}.", f"Choose one of {', '.join(NAMES)}.")
-        if not all(math.isfinite(x) and abs(x) < FARTHEST for x in self.position):
-            raise LandmarkError(f"{self.name} needs a place with three numbers.", "Give x, y and z.")
+        check_place(self.name, self.position)
+
+
+def check_place(name: str, place: Sequence[float] | Points) -> None:
+    """Raise LandmarkError for a name that no landmark has, and for what is no place."""
+    if name not in NAMES:
+        raise LandmarkError(f"There is no landmark {name}.", f"Choose one of {', '.join(NAMES)}.")
+    if np.shape(place) != (3,) or not (np.abs(place) < FARTHEST).all():
+        raise LandmarkError(f"{name} needs a place with three numbers.", "Give x, y and z.")
 
 
 def placed_mark(text: str) -> PlacedMark:
@@ -61,3 +71,25 @@ def in_file(position: Points, file_to_mm: Floats) -> tuple[float, float, float]:
     """Return where a place of the canonical frame, shape (3,) [mm], is in the scan file."""
     x, y, z = np.linalg.solve(file_to_mm[:3, :3], position - file_to_mm[:3, 3]).tolist()
     return x, y, z
+
+
+def laid_on(mesh: Mesh, placed: Mapping[str, Points]) -> dict[str, Landmark]:
+    """Return ``placed`` points, each of shape (3,) [mm], as landmarks at the nearest place of the skin.
+
+    Raises LandmarkError for a name that no landmark has, and for a place that is not near the skin.
+    """
+    return {name: _laid(mesh, name, np.asarray(place, dtype=np.float64)) for name, place in placed.items()}
+
+
+def _laid(mesh: Mesh, name: str, point: Points) -> Landmark:
+    check_place(name, point)
+    corners = mesh.vertices[mesh.faces]
+    near = (corners.min(axis=1) <= point + REACH).all(axis=1)
+    near &= (corners.max(axis=1) >= point - REACH).all(axis=1)
+    spots = nearest_on(corners[near], np.broadcast_to(point, (int(near.sum()), 3)))
+    away = np.linalg.norm(spots - point, axis=1)
+    if away.min(initial=np.inf) > REACH:
+        raise LandmarkError(
+            f"{name} was placed more than {REACH:.0f} mm off the skin.", "Place it on the skin of the body."
+        )
+    return Landmark(name, spots[np.argmin(away)], 1.0, PLACED, by_hand=True)

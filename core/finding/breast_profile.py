@@ -8,7 +8,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from core.mesh import Flags, Floats, Mesh, Points
-from core.sections import arc_length, chains, cut, resample
+from core.sections import arc_length, chains, curvature, cut, resample
 
 OFFSETS = np.arange(-44.0, 45.0, 4.0)
 """The fold is traced over profiles so far beside the bust point [mm]."""
@@ -19,6 +19,9 @@ OWN = len(OFFSETS) // 2
 BRIDGE = 100.0
 """A profile goes on behind a hole of up to this length [mm]."""
 
+SHORT, LOOSE = 60.0, 15.0
+"""What is shorter than this [mm] may be a marker on the skin: longer pieces count as so much nearer [mm]."""
+
 MARGIN = 9.0
 """So near to a hole [mm] a smoothed profile bends as the hole does, not as the body."""
 
@@ -28,7 +31,7 @@ class Profile:
     """A profile from beside the bust point downwards, a point each mm, shape (k, 3) [mm].
 
     ``bend`` is its curvature, positive where it is hollow [1/mm]; ``seen`` is False near a hole; ``whole``
-    tells that it reaches its lower end without one.
+    tells that it reaches its lower end, or turns to the back above it, without one.
     """
 
     points: Points
@@ -53,11 +56,18 @@ def _profile(mesh: Mesh, bust: Points, offset: float, bottom: float) -> Profile:
     start = bust + np.array([offset, 0.0, 0.0])
     if not pieces:
         return _measured(start[None], np.empty((0, 2, 3)), bottom)
-    distances = [((curve - start) ** 2).sum(axis=1) for curve, _ in pieces]
-    nearest = int(np.argmin([distance.min() for distance in distances]))
-    curve = _downward(*pieces.pop(nearest), int(np.argmin(distances[nearest])))
+    distances = [np.linalg.norm(curve - start, axis=1) for curve, _ in pieces]
+    lengths = [arc_length(curve)[-1] for curve, _ in pieces]
+    away = [d.min() + LOOSE * (length < SHORT) for d, length in zip(distances, lengths, strict=True)]
+    nearest = int(np.argmin(away))
+    own, closed = pieces.pop(nearest)
+    curve = _downward(own, closed, int(np.argmin(distances[nearest])))
     bridges = []
-    ends = [piece[::turn] for piece, closed in pieces if not closed for turn in (1, -1)]
+    ends = [piece[::turn] for piece, ring in pieces if not ring for turn in (1, -1)]
+    if (
+        closed
+    ):  # without a hole: where the body is narrower below, the profile ends at the back of what is here
+        curve, ends = curve[: int(np.argmax(curve[:, 1])) + 1], []
     while curve[-1, 2] > bottom and ends:
         jumps = [
             float(np.linalg.norm(end[0] - curve[-1])) if end[0, 2] < curve[-1, 2] + 25.0 else np.inf
@@ -70,7 +80,8 @@ def _profile(mesh: Mesh, bust: Points, offset: float, bottom: float) -> Profile:
         curve = np.concatenate([curve, ends[nearest]])
         del ends[nearest - nearest % 2 : nearest - nearest % 2 + 2]
     below = np.flatnonzero(curve[:, 2] < bottom)
-    return _measured(curve[: below[0] + 1] if len(below) else curve, np.reshape(bridges, (-1, 2, 3)), bottom)
+    curve = curve[: below[0] + 1] if len(below) else curve
+    return _measured(curve, np.reshape(bridges, (-1, 2, 3)), np.inf if closed else bottom)
 
 
 def _downward(curve: Points, closed: bool, start: int) -> Points:
@@ -96,14 +107,4 @@ def _measured(curve: Points, bridges: Points, bottom: float) -> Profile:
             t = np.clip((points - a) @ (b - a) / length**2, 0.0, 1.0)
             seen &= np.linalg.norm(points - (a + t[:, None] * (b - a)), axis=1) > MARGIN
     whole = bool(seen.all() and points[-1, 2] < bottom + 5.0)
-    return Profile(points, _concavity(points), seen, whole)
-
-
-def _concavity(curve: Points) -> Floats:
-    """Return the curvature of a profile walked downwards, positive where it is hollow, shape (k,) [1/mm]."""
-    if len(curve) < 3:
-        return np.zeros(len(curve))
-    y, z = curve[:, 1], curve[:, 2]
-    dy, dz = np.gradient(y), np.gradient(z)
-    bend = dz * np.gradient(dy) - dy * np.gradient(dz)
-    return np.asarray(bend / np.maximum(dy**2 + dz**2, 1e-9) ** 1.5)
+    return Profile(points, curvature(points[:, 2], points[:, 1]), seen, whole)

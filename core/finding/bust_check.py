@@ -2,22 +2,55 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from core.errors import LandmarkError
-from core.finding.bust_point import FLAT, NIPPLE, missing_sides
+from core.finding.bust_point import FLAT, NIPPLE
 from core.finding.chest import KINK, Anchor, Pole
-from core.finding.under_breast import CREASE, NO_CREASE
-from core.landmark import SIDES, Landmarks
+from core.finding.under_breast import HIDDEN, NO_CREASE, UNSEEN
+from core.landmark import SIDES, Landmark, Landmarks
 from core.mesh import Mesh
 from core.trunk import Survey, stable_level, trunk_levels
 
+SLIMMEST, WIDEST = 550.0, 1600.0
+"""Under-bust girths of adults [mm]: the sizes of bands that are sold, some 600 to 1500, and a little more."""
 
-def refusal(why: str) -> LandmarkError:
-    """Return the error that says ``why`` there is no bust."""
+FULLEST = 500.0
+"""A bust is by less than this wider than the trunk under it [mm]: twice the largest cup that is sold."""
+
+ROUNDEST, FLATTEST = 1.0, 2.3
+"""A trunk is so many times as wide as deep; chairs, bottles and things on a table are not."""
+
+APART = 90.0, 400.0
+"""Bust points lie so far apart [mm]: less is one bump, more the knees or the arms of something."""
+
+UNEVEN = 60.0
+"""The heights of two bust points differ by less than this [mm]: one breast may hang, or the scan lean."""
+
+ASIDE = 40.0
+"""So near to the middle of the trunk lies the middle between the bust points [mm]."""
+
+DEEPEST = 220.0
+"""The under-bust level lies by less than this below that of the bust [mm]."""
+
+OPEN = 0.25
+"""One straight line is no longer than this part of an outline: else a side of the trunk is missing."""
+
+
+def refusal(why: str, placed: Sequence[Landmark] = ()) -> LandmarkError:
+    """Return the error that says ``why`` there is no bust; where points were ``placed``, of these first."""
+    if placed:
+        names = ", ".join(mark.name for mark in placed)
+        return LandmarkError(
+            f"No bust can be found with what was placed by hand ({names}): {why}.",
+            "Place bust points on the breasts and folds under them, or take them away.",
+        )
     return LandmarkError(
         f"No bust can be found: {why}.",
-        "Open a scan of a whole upper body, or say which way is up and which is the front.",
+        "Open a scan of a whole upper body, say which way is up and which is the front, or place both bust "
+        "points and both folds by hand.",
     )
 
 
@@ -28,39 +61,60 @@ def check_anchor(anchor: Anchor) -> None:
         raise refusal("no fold lies under a left and a right breast")
 
 
-def check(mesh: Mesh, trunk: Survey, poles: tuple[Pole, Pole], landmarks: Landmarks) -> tuple[str, ...]:
-    """Return warnings, one sentence each. Raises LandmarkError where this cannot be a bust."""
+def check_placed(landmarks: Landmarks) -> None:
+    """Raise LandmarkError where points that were placed by hand contradict each other."""
+    points = landmarks.points
+    for kind in ("bust_point", "fold"):
+        left, right = (points[f"{kind}_{side}"] for side in SIDES)
+        if (left.by_hand or right.by_hand) and left.position[0] <= right.position[0]:
+            raise refusal("left and right are swapped", _placed(landmarks))
+    if _placed(landmarks) and landmarks.bust_level <= landmarks.underbust_level:
+        raise refusal("the folds lie above the bust points", _placed(landmarks))
+
+
+def _placed(landmarks: Landmarks) -> list[Landmark]:
+    return [mark for mark in landmarks.points.values() if mark.by_hand]
+
+
+def check(
+    mesh: Mesh, trunk: Survey, poles: tuple[Pole, Pole], missing: Sequence[str], landmarks: Landmarks
+) -> tuple[str, ...]:
+    """Return warnings, one sentence each; on sides ``missing`` there is no breast.
+
+    Raises LandmarkError where this cannot be a bust.
+    """
+    check_placed(landmarks)
     left, right = (landmarks.position(f"bust_point_{side}") for side in SIDES)
     under, bust = stable_level(mesh, landmarks.underbust_level), trunk_levels(mesh, landmarks.bust_level)[0]
     if under.tape == 0.0 or bust.tape == 0.0:
-        raise refusal("the trunk is missing there")
+        raise refusal("the trunk is missing there", _placed(landmarks))
     across, middle = left - right, 0.5 * (left + right)
     wide, deep, _ = np.ptp(under.points, axis=0)
-    missing = missing_sides(poles)
-    nipples = [landmarks.points[f"bust_point_{side}"].rule == NIPPLE for side in SIDES if side not in missing]
+    busts = [landmarks.points[f"bust_point_{side}"] for side in SIDES if side not in missing]
+    clear = all(mark.rule == NIPPLE or mark.by_hand for mark in busts)
     rules = [landmarks.points[f"fold_{side}"].rule for side in SIDES]
     for wrong, why in (
         (
-            under.longest_straight > 0.25 * under.tape,
+            under.longest_straight > OPEN * under.tape,
             "the trunk is open, as if only a part of it was scanned",
         ),
-        (not 550.0 < under.tape < 1600.0, f"the girth under it would be {under.tape:.0f} mm"),
-        (len(missing) > 0 and not all(nipples), "only one side stands out of the chest"),
-        (not 5.0 < bust.tape - under.tape < 500.0, "it would not be wider than the trunk under it"),
-        (not 1.0 < wide / deep < 2.3, "the trunk is not as deep as a body"),
-        (not 90.0 < across[0] < 400.0, f"its points would lie {across[0]:.0f} mm apart"),
-        (abs(across[2]) > 60.0 and not missing, "its points would lie at very different heights"),
-        (abs(middle[0] - trunk.middle) > 40.0 and not missing, "it would lie beside the middle of the body"),
+        (not SLIMMEST < under.tape < WIDEST, f"the girth under it would be {under.tape:.0f} mm"),
+        (len(missing) > 0 and not clear, "only one side stands out of the chest"),
+        (not 5.0 < bust.tape - under.tape < FULLEST, "it would not be wider than the trunk under it"),
+        (not ROUNDEST < wide / deep < FLATTEST, "the trunk is not as deep as a body"),
+        (not APART[0] < across[0] < APART[1], f"its points would lie {across[0]:.0f} mm apart"),
+        (abs(across[2]) > UNEVEN and not missing, "its points would lie at very different heights"),
+        (abs(middle[0] - trunk.middle) > ASIDE and not missing, "it would lie beside the middle of the body"),
         (max(pole.prominence for pole in poles) < FLAT, "nothing stands out of the chest"),
-        (not any(pole.inside for pole in poles), "the chest comes to no point"),
+        (not any(pole.inside for pole in poles), "no highest place of a breast shows"),
         (
-            not 0.0 < landmarks.bust_level - landmarks.underbust_level < 220.0,
+            not 0.0 < landmarks.bust_level - landmarks.underbust_level < DEEPEST,
             "no fold lies at a likely depth under it",
         ),
         (rules == [NO_CREASE, NO_CREASE], "there is no crease under it"),
     ):
         if wrong:
-            raise refusal(why)
+            raise refusal(why, _placed(landmarks))
     return tuple(
         warning
         for side, rule in zip(SIDES, rules, strict=True)
@@ -71,6 +125,18 @@ def check(mesh: Mesh, trunk: Survey, poles: tuple[Pole, Pole], landmarks: Landma
 def _warnings(side: str, rule: str, missing: bool) -> list[str]:
     if missing:
         return [f"On the {side} side no breast stands out of the chest: its points are uncertain."]
-    if rule not in (CREASE, NO_CREASE):
+    if rule in HIDDEN:
         return [f"The scan has a hole where the fold of the {side} breast lies: its height is estimated."]
+    if rule == UNSEEN:
+        return [f"No fold shows under the {side} breast: its height is estimated."]
     return []
+
+
+def placed_warnings(landmarks: Landmarks) -> tuple[str, ...]:
+    """Return one sentence for each side on which the fold lies above the bust point by hand."""
+    pairs = {side: [landmarks.points[f"{name}_{side}"] for name in ("bust_point", "fold")] for side in SIDES}
+    return tuple(
+        f"The fold of the {side} breast lies above its bust point, as placed by hand: please check both."
+        for side, (bust, fold) in pairs.items()
+        if (bust.by_hand or fold.by_hand) and fold.position[2] > bust.position[2]
+    )

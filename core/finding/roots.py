@@ -7,6 +7,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from core.landmark import SIDES, Landmark, Landmarks
 from core.mesh import Flags, Floats, Mesh, Points
+from core.sections import curvature
 from core.slicing.outline import reach
 from core.trunk import trunk_levels
 
@@ -90,9 +91,8 @@ def _hollow(far: Floats, at: Floats) -> Floats:
     x, y = radius * np.sin(at), -radius * np.cos(at)
     s = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
     even = np.linspace(0.0, s[-1], max(int(s[-1]), 20))
-    dx, dy = (np.gradient(gaussian_filter1d(np.interp(even, s, a), 7.0, mode="nearest")) for a in (x, y))
-    bend = dy * np.gradient(dx) - dx * np.gradient(dy)
-    return np.asarray(np.interp(s, even, bend / np.maximum(dx**2 + dy**2, 1e-9) ** 1.5))
+    x, y = (gaussian_filter1d(np.interp(even, s, a), 7.0, mode="nearest") for a in (x, y))
+    return np.asarray(np.interp(s, even, curvature(y, x)))
 
 
 def _end(bend: Floats, allowed: Flags, usual: int) -> tuple[int, float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,9 +23,25 @@ NO_CREASE = "The most hollow place below the breast: the upright profile shows n
 ESTIMATED = "Estimated, as the scan has a hole there: from the crease beside the hole."
 MIRRORED = "Estimated, as the scan has a hole there: from the fold of the other breast."
 GUESSED = "Estimated, as the scan shows no fold there: from the height of the hole."
+UNSEEN = "Estimated, as no fold shows there: a little above where the body comes forward."
+HIDDEN = (ESTIMATED, MIRRORED, GUESSED)
+"""The rules of folds that a hole of the scan hides."""
+
 LOWEST = "The lowest point of the breast between the bust point and the fold."
 
 MIRROR = np.array([-1.0, 1.0, 1.0])
+
+ASTRAY = 17.0
+"""A bust point without any certainty may lie so far to the side [mm], and the profile through it with it."""
+
+CLIMB, CLIMBS = 3.0, 10.0
+"""Over that way the crease may climb by ``CLIMB`` [mm]; each ``CLIMBS`` more divide the confidence by e."""
+
+OVERHANG = 40.0
+"""Behind a breast that hangs over its fold the hollow is wide: so much [mm] divides the confidence by e."""
+
+UNLIKE = 6.0, 8.0
+"""Sides may differ by the first [mm], as bodies do; each second [mm] more divides the confidence by e."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,13 +61,27 @@ def folds_and_lowest(
     ``level`` is where the body comes forward under both [mm]; folds in ``placed`` stay where they are.
     """
     sides = [_under(mesh, bust, level, side, placed) for side, bust in zip(SIDES, busts, strict=True)]
-    marks = []
+    places, folds = [bust.position for bust in busts], []
     for k, side in enumerate(SIDES):
-        own, other, shift = sides[k], sides[1 - k], (busts[k].position, busts[1 - k].position)
+        own, other, shift = sides[k], sides[1 - k], (places[k], places[1 - k])
         fold = own.fold if own.fold and not _doubtful(own, other, shift) else None
-        fold = fold or _estimated(own, other, side, shift, level)
-        marks += [fold, _lowest(own, other, fold, side, shift)]
-    return marks
+        folds.append(fold or _estimated(own, other, side, shift, level))
+    apart = _apart(folds, places)
+    folds = [_less_sure(fold, other, apart) for fold, other in zip(folds, folds[::-1], strict=True)]
+    lowest = [_lowest(sides[k], sides[1 - k], folds[k], SIDES[k], (places[k], places[1 - k])) for k in (0, 1)]
+    return [mark for pair in zip(folds, lowest, strict=True) for mark in pair]
+
+
+def _apart(folds: Sequence[Landmark], busts: Sequence[Points]) -> float:
+    """Return how far apart the folds lie [mm]: in height, or in depth under the bust points if less."""
+    apart = float(folds[0].position[2] - folds[1].position[2])
+    return min(abs(apart), abs(apart - float(busts[0][2] - busts[1][2])))
+
+
+def _less_sure(fold: Landmark, other: Landmark, apart: float) -> Landmark:
+    """Return ``fold`` with less confidence where the ``other`` is sure and lies ``apart`` from it [mm]."""
+    doubt = min(2.0 * other.confidence, 1.0) * max(apart - UNLIKE[0], 0.0) / UNLIKE[1]
+    return fold if fold.by_hand else replace(fold, confidence=fold.confidence * float(np.exp(-doubt)))
 
 
 def _under(mesh: Mesh, bust: Landmark, level: float, side: str, placed: Mapping[str, Landmark]) -> Under:
@@ -66,14 +96,22 @@ def _under(mesh: Mesh, bust: Landmark, level: float, side: str, placed: Mapping[
         return Under(bundle, crease, None)
     rule = CREASE if crease.depth > HOLLOW else NO_CREASE
     place = crease.curve[crease.own]
-    confidence = _confidence(crease) * (0.5 if torn else 1.0)
+    confidence = _confidence(crease, bust) * (0.5 if torn else 1.0)
     return Under(bundle, crease, Landmark(name, place, confidence, rule, crease.curve))
 
 
-def _confidence(crease: Trace) -> float:
-    """Return how sure (0..1) the fold is: a deep crease without a rival, and smooth."""
+def _confidence(crease: Trace, bust: Landmark) -> float:
+    """Return how sure (0..1) the fold is: a deep crease without a rival, smooth, and level to the sides.
+
+    The less sure the bust point, the further to the side the crease must keep its height.
+    """
     confidence = min(crease.depth / 0.035, 1.0) * (0.3 + 0.7 * np.clip(crease.lead / 0.012, 0.0, 1.0))
-    return float(confidence * np.exp(-crease.rough / 5.0))
+    x, z = crease.curve[:, 0], crease.curve[:, 2]
+    own, astray = crease.curve[crease.own], ASTRAY * (1.0 - bust.confidence)
+    climb = np.abs(np.interp(own[0] + astray * np.linspace(-1.0, 1.0, 9), x, z) - own[2]).max()
+    over = max(float(own[2] - bust.position[2]), 0.0)
+    doubt = crease.rough / 5.0 + max(climb - CLIMB, 0.0) / CLIMBS + over / OVERHANG
+    return float(confidence * np.exp(-doubt))
 
 
 def _estimated(own: Under, other: Under, side: str, busts: tuple[Points, Points], level: float) -> Landmark:
@@ -91,7 +129,7 @@ def _estimated(own: Under, other: Under, side: str, busts: tuple[Points, Points]
     z = level + ABOVE
     y = float(np.interp(z, points[::-1, 2], points[::-1, 1]))
     place = np.array([busts[0][0], y, z])
-    return Landmark(name, place, 0.05, GUESSED, place[None])
+    return Landmark(name, place, 0.05, UNSEEN, place[None])
 
 
 def _doubtful(own: Under, other: Under, busts: tuple[Points, Points]) -> bool:
@@ -131,4 +169,6 @@ def _lowest(own: Under, other: Under, fold: Landmark, side: str, busts: tuple[Po
         last = int(np.argmin(((points - other.fold.position) ** 2).sum(axis=1)))
         lowest = points[np.argmin(points[: last + 1, 2])]
         curve = np.concatenate([curve, [busts[0] + MIRROR * (lowest - busts[1])]])
-    return Landmark(f"lowest_{side}", curve[np.argmin(curve[:, 2])], fold.confidence, LOWEST, curve)
+    over = fold.position[2] > busts[0][2]  # which is right only where the breast hangs over its fold
+    sure = min(fold.confidence, 0.3) if over else fold.confidence
+    return Landmark(f"lowest_{side}", curve[np.argmin(curve[:, 2])], sure, LOWEST, curve)
