@@ -6,8 +6,6 @@ import csv
 import os
 from pathlib import Path
 
-import trimesh
-
 from core.control_mesh import ControlMesh
 from core.errors import UserError
 from core.live import Frame
@@ -27,6 +25,8 @@ def write_mesh(path: str | os.PathLike[str], mesh: Mesh) -> None:
     kind = target.suffix.lower().lstrip(".")
     if kind not in FORMATS:
         raise UserError(f"Busk does not write .{kind} files.", f"Choose one of: {', '.join(FORMATS)}.")
+    import trimesh  # noqa: PLC0415 (it takes long to load, and is needed here alone)
+
     data = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).export(file_type=kind)
     with whole_file(target) as partial:
         partial.write_bytes(data.encode() if isinstance(data, str) else data)

@@ -7,7 +7,7 @@ import pytest
 import trimesh
 
 from core.mesh import Mesh
-from core.proximity import Frames, centroids, neighbourhoods
+from core.proximity import Frames, centroids, nearest_on, neighbourhoods
 
 RANDOM = np.random.default_rng(12)
 CENTRES = np.repeat(RANDOM.normal(scale=60.0, size=(30, 3)), 3, axis=0)
@@ -79,3 +79,13 @@ def test_triangles_without_a_plane_are_never_given():
         assert {t for _, given in neighbourhoods(POINTS, needle, **asked) for t in given.tolist()} == {2}
     assert list(neighbourhoods(POINTS, Mesh(needle.vertices, needle.faces[:2]))) == []
     assert list(neighbourhoods(POINTS[:0], needle)) == []
+
+
+def test_nearest_places_row_by_row_agree_with_trimesh():
+    corners, points = np.repeat(SOUP.vertices[SOUP.faces], 200, axis=0), np.tile(POINTS[:200], (30, 1))
+    expected = trimesh.triangles.closest_point(corners, points)
+    np.testing.assert_allclose(nearest_on(corners, points), expected, atol=1e-9)
+    # A triangle without extent is a line or a spot, and points on it are their own nearest places.
+    flat = np.array([[(0.0, 0.0, 0.0), (4.0, 0.0, 0.0), (2.0, 0.0, 0.0)], [(1.0, 2.0, 3.0)] * 3])
+    asked = np.array([(3.0, 4.0, 0.0), (9.0, 9.0, 9.0)])
+    np.testing.assert_allclose(nearest_on(flat, asked), [(3.0, 0.0, 0.0), (1.0, 2.0, 3.0)])

@@ -7,9 +7,9 @@ from functools import cached_property
 
 import numpy as np
 from scipy.spatial import cKDTree
-from trimesh.triangles import closest_point
 
 from core.mesh import Floats, Mesh, Points, incidence
+from core.proximity import nearest_on
 
 CANDIDATES = 24
 """The nearest place is looked for on so many triangles whose centres are near."""
@@ -44,6 +44,6 @@ class NearSkin:
         count = min(CANDIDATES, len(self.mesh.faces))
         near = self._centres.query(places, np.arange(1, count + 1))[1]
         asked = np.repeat(places, count, axis=0)
-        found = closest_point(self.mesh.vertices[self.mesh.faces[near.ravel()]], asked)
+        found = nearest_on(self.mesh.vertices[self.mesh.faces[near.ravel()]], asked)
         away = np.linalg.norm(found - asked, axis=1).reshape(-1, count)
         return np.asarray(found.reshape(-1, count, 3)[np.arange(len(places)), away.argmin(axis=1)])

@@ -76,12 +76,13 @@ def outlines(mesh: Mesh, z: Floats) -> Outlines:
 
 def _cut_levels(mesh: Mesh, z: Floats) -> tuple[Points, Indices, Indices]:
     """Return the segments of all levels, the edges that their ends lie on, shape (s, 2), and their levels."""
-    height = mesh.vertices[:, 2][mesh.faces.T]
-    first = np.searchsorted(z, height.min(axis=0), side="right")
-    count = np.searchsorted(z, height.max(axis=0), side="right") - first
+    # how many levels each corner lies over
+    over = np.searchsorted(z, mesh.vertices[:, 2], side="right")[mesh.faces.T]
+    first = over.min(axis=0)
+    count = over.max(axis=0) - first
     face = np.repeat(np.arange(len(mesh.faces)), count)
     level = np.arange(len(face)) - np.repeat(np.cumsum(count) - count - first, count)
-    above = height[:, face] >= z[level]
+    above = over[:, face] > level
     lone = np.argmax(above == (above.sum(axis=0) == 1), axis=0)
     corners = mesh.faces[face]
     rows = np.arange(len(face))
