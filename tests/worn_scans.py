@@ -60,6 +60,31 @@ def floor_plate(scan: Scan, rng: np.random.Generator) -> Scan:
     return np.concatenate([v, plate]), np.concatenate([f, sheet + len(v)])
 
 
+def with_legs(scan: Scan, into: float = -1.0, length: float = 800.0) -> Scan:
+    """Stand the body on two legs with feet, as whole figures are; they reach ``into`` the trunk [mm]."""
+    v, f = scan
+    low, rows, count = v[:, 2].min(), 161, 48
+    middle = v[v[:, 2] < low + 30.0].mean(axis=0)
+    turn, height = np.arange(count) * (2.0 * np.pi / count), np.linspace(into, -length, rows)
+    down = -height / length
+    thick = np.interp(down, (-0.2, 0.0, 0.5, 0.65, 0.93, 1.0), (30.0, 78.0, 55.0, 58.0, 38.0, 42.0))[:, None]
+    foot = np.where(np.sin(turn) < 0.0, np.interp(down, (0.93, 0.98), (1.0, 3.2))[:, None], 1.0)
+    at = (np.arange(rows - 1)[:, None] * count + np.arange(count)).ravel()
+    beside = at - at % count + (at + 1) % count
+    last = (rows - 1) * count
+    sole = np.array([[last + k, last, last + k + 1] for k in range(1, count - 1)])
+    tube = np.concatenate(
+        [np.stack([at, at + count, beside], 1), np.stack([beside, at + count, beside + count], 1), sole]
+    )
+    for side in (1.0, -1.0):
+        x = middle[0] + side * np.maximum(85.0 + 20.0 * down, 85.0)[:, None] + thick * np.cos(turn)
+        y = middle[1] + thick * foot * np.sin(turn)
+        z = np.broadcast_to(low + height[:, None], x.shape)
+        f = np.concatenate([f, tube + len(v)])
+        v = np.concatenate([v, np.stack([x, y, z], axis=2).reshape(-1, 3)])
+    return v, f
+
+
 def soup(scan: Scan) -> Scan:
     """Give each triangle corners of its own."""
     v, f = scan

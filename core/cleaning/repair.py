@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from core.cleaning.inner import drop_hidden
 from core.cleaning.pieces import drop_furniture, drop_inner, drop_specks, size_of
 from core.cleaning.skin import Skin, components, first_equal
 from core.mesh import Faces, Flags, Indices, Points
@@ -56,6 +57,7 @@ def repair(
         (_drop_spikes, "Dropped {} sticking out of the skin like a spike.", "vertex"),
         (_wind_outward, "Turned {} to look outward.", "face"),
         (drop_inner, "Dropped {} inside the body or doubling its skin.", "piece"),
+        (drop_hidden, "Dropped {} of parts that reach into the body.", "face"),
     )
     skin, sentences = Skin(vertices, faces), []
     for done, (step, words, noun) in enumerate(steps):
