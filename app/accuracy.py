@@ -5,7 +5,7 @@ from __future__ import annotations
 import json as json_text
 import sys
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -52,18 +52,26 @@ def run_accuracy(folder: Path, out: Path | None, json: bool) -> int:
 def accuracy_text(cases: Sequence[Case], strange: Sequence[str] = ()) -> Iterator[str]:
     """Yield the lines of the report, in Markdown."""
     bodies = [case for case in cases if not case.truth.refuse]
+    groups = grouped(bodies)
     yield from ("# How well the bodies are understood", "", *_counts(cases, bodies))
     if strange:
-        yield f"Not judged, for their names are unknown here: {', '.join(strange)}."
-    yield from ("", "## How far off", "", "Of the files that were read the right way round.", "")
+        yield f"Not judged, for these names are unknown here: {', '.join(strange)}."
+    yield from (
+        "",
+        "## At a glance",
+        "",
+        "Mean / 95 % / worst of the files that were read the right way round.",
+        "",
+    )
+    yield from _glance(groups)
     heads = ("what", "count", "mean", "95 %", "worst", "signed mean", "worst in")
-    yield from _table(heads, [_spread_row(spread) for spread in spreads(bodies)])
+    for name, group in groups.items():
+        yield from ("", f"## How far off: {name}", "")
+        yield from _table(heads, [_spread_row(spread) for spread in spreads(group)])
     lacking = Counter(name.replace("_", " ") for case in bodies if case.right for name in case.lacking)
     if lacking:
-        yield from (
-            "",
-            f"Known but not found: {', '.join(f'{n} ({k})' for n, k in sorted(lacking.items()))}.",
-        )
+        known = ", ".join(f"{name} ({count})" for name, count in sorted(lacking.items()))
+        yield from ("", f"Known but not found: {known}.")
     yield from ("", "## Confidence", "", *_confidence(bodies))
     kinds = sorted({kind for case in bodies for kind in case.truth.kinds})
     if kinds:
@@ -76,6 +84,15 @@ def accuracy_text(cases: Sequence[Case], strange: Sequence[str] = ()) -> Iterato
         yield "None."
     yield from ("", "## Landmarks that are far off", "")
     yield from _far(bodies)
+
+
+def grouped(bodies: Sequence[Case]) -> dict[str, list[Case]]:
+    """Return clean bodies and degraded scans apart, without a group of none."""
+    groups = {
+        "clean bodies": [case for case in bodies if not case.truth.degraded],
+        "degraded scans": [case for case in bodies if case.truth.degraded],
+    }
+    return {name: group for name, group in groups.items() if group}
 
 
 def accuracy_values(cases: Sequence[Case]) -> dict[str, Any]:
@@ -91,6 +108,7 @@ def _case_values(case: Case) -> dict[str, Any]:
         "name": case.truth.name,
         "file": case.truth.file,
         "kinds": list(case.truth.kinds),
+        "degraded": case.truth.degraded,
         "right": case.right,
         "sure": case.sure,
         "failed": case.failed,
@@ -102,7 +120,7 @@ def _case_values(case: Case) -> dict[str, Any]:
         "errors": {name: float(error) for name, error in case.errors.items()},
         "landmarks": {m.name: {"off_mm": m.off, "confidence": m.confidence} for m in case.marks},
         "lacking": list(case.lacking),
-        "invented": {m.name: m.confidence for m in case.invented},
+        "invented": dict(case.invented),
     }
 
 
@@ -131,23 +149,62 @@ def _counts(cases: Sequence[Case], bodies: Sequence[Case]) -> Iterator[str]:
     yield f"Processor time a file: {median(seconds):.1f} s in the middle, {max(seconds):.1f} s at most."
 
 
+def _glance(groups: Mapping[str, Sequence[Case]]) -> Iterator[str]:
+    """Yield one table with a column for each group of files: what a page on accuracy needs."""
+    columns = [dict(_figures(group)) for group in groups.values()]
+    whats = dict.fromkeys(what for column in columns for what in column)
+    rows = [(what, *(column.get(what, "-") for column in columns)) for what in whats]
+    yield from _table(("", *(f"{name} ({len(group)})" for name, group in groups.items())), rows)
+
+
+def _figures(cases: Sequence[Case]) -> Iterator[tuple[str, str]]:
+    """Yield what is told of a group of files, in words and numbers."""
+    right = [case for case in cases if case.right]
+    asked = sum(not case.sure for case in right)
+    yield "read the right way round", f"{len(right)}{f'; {asked} of these asked about' if asked else ''}"
+    yield "read the wrong way round", str(sum(not case.right and not case.failed for case in cases))
+    yield "refused or crashed", str(sum(bool(case.failed) for case in cases))
+    for spread in spreads(cases):
+        yield _with_unit(spread.what), f"{spread.mean:.1f} / {spread.most:.1f} / {spread.worst:.1f}"
+    for name, marks in _by_landmark(cases).items():
+        _, count, off, unsure, sure, wrong = _confidence_row(name, marks)
+        yield f"{name} off by more than {OFF:g} mm, of these below {TRUSTED:g}", f"{off} of {count}, {unsure}"
+        yield f"{name} from {TRUSTED:g} up, of these off", f"{sure}, {wrong}"
+    seconds = [case.seconds for case in cases]
+    yield "processor time a file [s], middle / worst", f"{median(seconds):.1f} / {max(seconds):.1f}"
+
+
 def _spread_row(spread: Spread) -> tuple[str, ...]:
     numbers = (spread.mean, spread.most, spread.worst)
     signed = f"{spread.bias:+.1f}" if any(word in spread.what for word in SIGNED) else ""
-    what = spread.what if "[" in spread.what else f"{spread.what} [mm]"
-    return (what, str(spread.count), *(f"{number:.1f}" for number in numbers), signed, spread.where)
+    return (
+        _with_unit(spread.what),
+        str(spread.count),
+        *(f"{number:.1f}" for number in numbers),
+        signed,
+        spread.where,
+    )
+
+
+def _with_unit(what: str) -> str:
+    return what if "[" in what else f"{what} [mm]"
+
+
+def _by_landmark(bodies: Sequence[Case]) -> dict[str, list[Mark]]:
+    """Return the judged landmarks of all files by their kind, and all together."""
+    groups = {"bust points": "bust_point", "folds": "fold", "lowest points": "lowest"}
+    marks = [mark for case in bodies if case.right for mark in case.marks]
+    named = {name: [m for m in marks if m.name.startswith(start)] for name, start in groups.items()}
+    named["others"] = [m for m in marks if not m.name.startswith(tuple(groups.values()))]
+    return {name: group for name, group in named.items() if group} | {"all": marks}
 
 
 def _confidence(bodies: Sequence[Case]) -> Iterator[str]:
     """Say how many landmarks that are off are unsure, and how many that are sure are off."""
-    groups = {"bust points": "bust_point", "folds": "fold", "lowest points": "lowest"}
-    marks = [mark for case in bodies if case.right for mark in case.marks]
-    others = [m for m in marks if not m.name.startswith(tuple(groups.values()))]
-    named = {**{k: [m for m in marks if m.name.startswith(v)] for k, v in groups.items()}, "others": others}
-    rows = [_confidence_row(name, group) for name, group in named.items() if group]
+    rows = [_confidence_row(name, marks) for name, marks in _by_landmark(bodies).items()]
     heads = ("landmarks", "count", f"off > {OFF:g} mm", f"of these < {TRUSTED:g}")
     yield from _table((*heads, f"all >= {TRUSTED:g}", f"of these off > {OFF:g} mm"), rows)
-    invented = [mark.confidence for case in bodies if case.right for mark in case.invented]
+    invented = [sure for case in bodies if case.right for sure in case.invented.values()]
     if invented:
         yield ""
         yield (
@@ -156,11 +213,12 @@ def _confidence(bodies: Sequence[Case]) -> Iterator[str]:
         )
 
 
-def _confidence_row(name: str, marks: Sequence[Mark]) -> tuple[str, ...]:
+def _confidence_row(name: str, marks: Sequence[Mark]) -> tuple[str, str, str, str, str, str]:
     off = [mark for mark in marks if mark.off > OFF]
     sure = [mark for mark in marks if mark.confidence >= TRUSTED]
     unsure = sum(mark.confidence < TRUSTED for mark in off)
-    return (name, *map(str, (len(marks), len(off), unsure, len(sure), sum(mark.off > OFF for mark in sure))))
+    wrong = sum(mark.off > OFF for mark in sure)
+    return name, str(len(marks)), str(len(off)), str(unsure), str(len(sure)), str(wrong)
 
 
 def _kind_row(kind: str, bodies: Sequence[Case]) -> tuple[str, ...]:

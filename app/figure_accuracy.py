@@ -158,7 +158,7 @@ def _picture(samples: Points, middle: Points, size: float, view: str, spot: int)
 
 
 def _landmarks(axes: Axes, case: Case, view: str, middle: Points, size: float, shift: int) -> None:
-    confidence: Mapping[str, float] = {mark.name: mark.confidence for mark in (*case.marks, *case.invented)}
+    confidence = {mark.name: mark.confidence for mark in case.marks} | dict(case.invented)
     for name, at in _seen(case.true, view):
         x, y = _pixels(at[None], middle, size, view)[0]
         axes.plot(shift + x, y, "o", ms=6.5, mfc="none", mec=LIGHT.text, mew=0.9)

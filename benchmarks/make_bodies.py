@@ -206,7 +206,13 @@ def a_body(
     far = "far" if np.linalg.norm(stand.shift) > FAR else ""
     kinds = [word for word in (form, damage, "tilt" if tilted else "", far) if word]
     label = "_".join(word for word in (name, form, damage, tilt, stand.unit) if word)
-    about = {"label": label, "body": name, "note": " + ".join(kinds), "kinds": kinds}
+    about = {
+        "label": label,
+        "body": name,
+        "note": " + ".join(kinds),
+        "kinds": kinds,
+        "degraded": bool(damage),
+    }
     return _placed(scan, stand), entry(body, stand, scan, about)
 
 

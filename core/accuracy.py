@@ -49,6 +49,7 @@ class Case:
     ``failed`` is why nothing was found, empty if something was; ``crashed`` that this was no sentence for a
     user. ``errors`` by what is judged, signed where a sign makes sense [mm, degrees, %]. ``found`` and
     ``true`` are points in the true canonical frame, (3,) [mm], to which ``to_mm``, (4, 4), takes the file.
+    ``invented`` are bust points where no breast is, and how sure they claim to be.
     """
 
     truth: Truth
@@ -61,7 +62,7 @@ class Case:
     seconds: float = 0.0
     errors: Mapping[str, float] = field(default_factory=dict)
     marks: tuple[Mark, ...] = ()
-    invented: tuple[Mark, ...] = ()
+    invented: Mapping[str, float] = field(default_factory=dict)
     found: Mapping[str, Points] = field(default_factory=dict)
     true: Mapping[str, Points] = field(default_factory=dict)
     to_mm: Floats = field(default_factory=lambda: np.eye(4))
@@ -112,11 +113,15 @@ def judged(folder: Path, truths: Sequence[Truth]) -> Iterator[Case]:
 def compared(truth: Truth, found: Mapping[str, Any], seconds: float = 0.0) -> Case:
     """Hold what ``detection`` found in a file against what is known of it."""
     ours = np.asarray(found["file_to_mm"], dtype=np.float64)
-    to_mm = truth.to_mm if truth.stands else _scaled_like(truth.to_mm, ours)
+    to_mm = truth.to_mm
+    if not truth.sized:
+        to_mm = to_mm * np.append(np.full(3, _size(ours) / _size(to_mm)), 1.0)[:, None]
+    if not truth.stands:
+        to_mm = _sized_like(ours, to_mm)
     points = {name: _moved(to_mm, mark["file"]) for name, mark in found["landmarks"].items()}
     known = {name: _moved(to_mm, point) for name, point in truth.points.items()}
     confidence = {name: float(mark["confidence"]) for name, mark in found["landmarks"].items()}
-    scale = np.cbrt(np.linalg.det(ours[:3, :3]) / np.linalg.det(to_mm[:3, :3]))
+    scale = _size(ours) / _size(to_mm)
     errors = {
         **_point_errors(points, known),
         **_level_errors(truth, found, points, to_mm @ np.linalg.inv(ours)),
@@ -129,11 +134,8 @@ def compared(truth: Truth, found: Mapping[str, Any], seconds: float = 0.0) -> Ca
         for name in points
         if name in known
     )
-    invented = tuple(
-        Mark(f"bust_point_{side}", np.nan, confidence[f"bust_point_{side}"])
-        for side in truth.gone
-        if f"bust_point_{side}" in points
-    )
+    gone = [f"bust_point_{side}" for side in truth.gone]
+    invented = {name: confidence[name] for name in gone if name in points}
     return Case(
         truth,
         sure=bool(found["sure"]),
@@ -171,8 +173,7 @@ ORDER = ("turned", "bust point", "fold", "lowest", "bust level", "underbust leve
 
 
 def _rank(what: str) -> tuple[int, str]:
-    place = next((k for k, start in enumerate(ORDER) if what.startswith(start)), 3)
-    return (place if place != 3 or what.startswith("lowest") else len(ORDER), what)
+    return next((k for k, start in enumerate(ORDER) if what.startswith(start)), len(ORDER)), what
 
 
 def _point_errors(points: Mapping[str, Points], known: Mapping[str, Points]) -> dict[str, float]:
@@ -223,11 +224,14 @@ def _moved(matrix: Floats, point: Any) -> Points:
     return np.asarray(matrix[:3, :3] @ np.asarray(point, dtype=np.float64) + matrix[:3, 3])
 
 
-def _scaled_like(to_mm: Floats, ours: Floats) -> Floats:
-    """Return the true scale with our turn, for a truth that does not know how the body stands."""
-    matrix = ours.copy()
-    matrix[:3, :3] *= np.cbrt(np.linalg.det(to_mm[:3, :3]) / np.linalg.det(ours[:3, :3]))
-    matrix[:3, 3] = 0.0
+def _size(matrix: Floats) -> float:
+    return float(np.cbrt(np.linalg.det(matrix[:3, :3])))
+
+
+def _sized_like(ours: Floats, to_mm: Floats) -> Floats:
+    """Return our turn with the true scale, for a truth that does not know how the body stands."""
+    matrix = np.eye(4)
+    matrix[:3, :3] = ours[:3, :3] * (_size(to_mm) / _size(ours))
     return matrix
 
 

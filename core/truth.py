@@ -17,6 +17,10 @@ from core.standing.upright import MILLIMETRES
 
 FILE = "truth.json"
 MOST_BYTES = 100_000_000
+FORM = "Its form is told in docs/accuracy.md."
+TINY = 1e-9
+
+Table = dict[str, Any]
 
 OTHER_NAMES = {
     **{f"nipple_{side}": f"bust_point_{side}" for side in SIDES},
@@ -25,6 +29,12 @@ OTHER_NAMES = {
     "front_mid_underbust": "front_centre_underbust",
 }
 """Names of landmarks in other sets of bodies, and ours."""
+
+GIRTHS = ("bust", "underbust", "underbust_stable")
+"""The girths that are judged."""
+
+SIZED = ("unit", "canonical_to_file", "landmarks", "landmarks_canonical_mm")
+"""An entry with one of these tells the size of its body."""
 
 APEXES = tuple(f"bust_apex_{side}" for side in SIDES)
 """The foremost points of the breasts: they are not looked for, but the bust point may lie near them."""
@@ -56,8 +66,9 @@ class Truth:
     """What is known of one file.
 
     ``points`` by our names, each (3,) [file units]. ``to_mm``, shape (4, 4), takes the file to the canonical
-    frame; without ``stands`` only its scale is known. ``gone`` are the sides without a breast; ``refuse``
-    tells that the file holds no body that could be measured.
+    frame; without ``stands`` it knows no turn, without ``sized`` no scale. ``gone`` are the sides without a
+    breast; ``refuse`` tells that the file holds no body that could be measured, ``degraded`` that it is no
+    clean body.
     """
 
     name: str
@@ -67,8 +78,10 @@ class Truth:
     girths: Mapping[str, KnownGirth]
     to_mm: Floats
     stands: bool
+    sized: bool
     gone: tuple[str, ...]
     refuse: bool
+    degraded: bool
 
 
 def read_truths(folder: Path) -> tuple[list[Truth], list[str]]:
@@ -77,31 +90,26 @@ def read_truths(folder: Path) -> tuple[list[Truth], list[str]]:
     Raises TruthError.
     """
     content = _read_json(folder)
-    truths, strange = [], set()
+    truths, strange = [], set[str]()
     for section in ("bodies", "scans"):
         entries = content.get(section) or {}
         if not isinstance(entries, dict):
-            raise TruthError(f"'{section}' in {FILE} is no table of files by name.", "See docs/accuracy.md.")
+            raise TruthError(f"'{section}' in {FILE} is no table of files by name.", FORM)
         for name, entry in entries.items():
             try:
-                truth, unknown = _truth(name, entry)
-            except (KeyError, TypeError, ValueError, AttributeError, np.linalg.LinAlgError) as problem:
+                truth, unknown = _truth(name, _as_table("what it tells", entry), section == "scans")
+            except ValueError as problem:
                 raise TruthError(
-                    f"What {FILE} tells about '{name}' cannot be understood: {problem}.",
-                    "Its form is told in docs/accuracy.md.",
+                    f"What {FILE} tells about '{name}' cannot be used: {problem}.", FORM
                 ) from problem
             truths.append(truth)
             strange |= unknown
     if not truths:
         raise TruthError(f"{FILE} names no file.", "It needs 'bodies' or 'scans': see docs/accuracy.md.")
-    if not any(truth.points or truth.girths or truth.refuse for truth in truths):
-        raise TruthError(
-            f"{FILE} holds no landmark and no girth that is known here.", f"Landmarks: {', '.join(NAMES)}."
-        )
     return truths, sorted(strange)
 
 
-def _read_json(folder: Path) -> dict[str, Any]:
+def _read_json(folder: Path) -> Table:
     path = folder / FILE
     try:
         if path.stat().st_size > MOST_BYTES:
@@ -114,66 +122,100 @@ def _read_json(folder: Path) -> dict[str, Any]:
     except OSError as problem:
         raise TruthError(f"{path} cannot be read: {problem.strerror}.", "Choose another folder.") from problem
     except (ValueError, RecursionError) as problem:
-        raise TruthError(f"{path} is not JSON: {problem}.", "Write it again.") from problem
+        where = f" from line {problem.lineno} on" if isinstance(problem, json.JSONDecodeError) else ""
+        raise TruthError(
+            f"{path} is not written as JSON{where}.", "Correct it: see docs/accuracy.md."
+        ) from problem
     if not isinstance(content, dict):
         raise TruthError(f"{FILE} holds no table of bodies or scans.", "See docs/accuracy.md.")
     return content
 
 
-def _truth(name: str, entry: dict[str, Any]) -> tuple[Truth, set[str]]:
-    """Return what an entry of truth.json tells, and which names of landmarks in it mean nothing here."""
-    file = str(entry["file"])
-    if Path(file).name != file:
-        raise ValueError(f"{file} is not the plain name of a file in the folder")
+def _truth(name: str, entry: Table, degraded: bool) -> tuple[Truth, set[str]]:
+    """Return what an entry of truth.json tells, and the names in it that mean nothing. Raises ValueError."""
+    file = entry.get("file")
+    if not isinstance(file, str) or file != Path(file).name:
+        raise ValueError("'file' must be the plain name of a file in the folder")
     to_mm, stands = _to_mm(entry)
-    told, matrix = entry.get("landmarks_file") or {}, np.eye(4)
+    where, matrix = "landmarks_file", np.asarray(np.eye(4))
+    told = _table(entry, where)
     if not told:
-        told = entry.get("landmarks_canonical_mm") or entry.get("landmarks") or {}
-        matrix = _inverse(to_mm)
+        where = "landmarks_canonical_mm" if entry.get("landmarks_canonical_mm") else "landmarks"
+        told, matrix = _table(entry, where), np.asarray(np.linalg.inv(to_mm))
     points, strange = {}, set()
     for key, point in told.items():
         ours = OTHER_NAMES.get(key, key)
         if ours not in (*NAMES, *APEXES):
             strange.add(key)
         elif point is not None:
-            points[ours] = matrix[:3, :3] @ _numbers(point, 3) + matrix[:3, 3]
-    flags = entry.get("flags") or {}
-    gone = tuple(side for side in SIDES if flags.get("missing") == side)
-    kinds = tuple(map(str, entry.get("kinds") or ()))
-    refuse = bool(entry.get("refuse", False))
-    girths = {str(k): _girth(v) for k, v in (entry.get("girths") or {}).items() if v is not None}
-    return Truth(str(name), file, kinds, points, girths, to_mm, stands, gone, refuse), strange
+            points[ours] = matrix[:3, :3] @ _numbers(f"{where}: {key}", point, 3) + matrix[:3, 3]
+    girths = {key: value for key, value in _table(entry, "girths").items() if value is not None}
+    strange |= {f"girth {key}" for key in girths if key not in GIRTHS}
+    kinds = entry.get("kinds") or ()
+    missing = _table(entry, "flags").get("missing")
+    truth = Truth(
+        name,
+        file,
+        tuple(map(str, kinds)) if isinstance(kinds, list) else (str(kinds),) if kinds else (),
+        points,
+        {key: _girth(f"girths: {key}", girths[key]) for key in GIRTHS if key in girths},
+        to_mm,
+        stands,
+        any(key in entry for key in SIZED),
+        tuple(side for side in SIDES if missing == side),
+        bool(entry.get("refuse", False)),
+        bool(entry.get("degraded", degraded)),
+    )
+    return truth, strange
 
 
-def _to_mm(entry: dict[str, Any]) -> tuple[Floats, bool]:
+def _to_mm(entry: Table) -> tuple[Floats, bool]:
     """Return the matrix from the file to the canonical frame, and whether its turn is known."""
     if "canonical_to_file" in entry:
-        return _inverse(_numbers(entry["canonical_to_file"], 16).reshape(4, 4)), True
+        matrix = _numbers("canonical_to_file", entry["canonical_to_file"], 16).reshape(4, 4)
+        if abs(np.linalg.det(matrix[:3, :3])) < TINY or not np.array_equal(matrix[3], [0, 0, 0, 1]):
+            raise ValueError("'canonical_to_file' is no matrix that turns, scales and shifts")
+        return np.asarray(np.linalg.inv(matrix)), True
     unit = entry.get("unit", "mm")
-    if unit not in MILLIMETRES:
-        raise ValueError(f"its unit is none of {', '.join(MILLIMETRES)}")
+    if not isinstance(unit, str) or unit not in MILLIMETRES:
+        raise ValueError(f"'unit' must be one of {', '.join(MILLIMETRES)}")
     matrix, stands = np.eye(4), "landmarks" in entry
     if "up_direction_file" in entry and "front_direction_file" in entry:
-        up, front = (_numbers(entry[f"{which}_direction_file"], 3) for which in ("up", "front"))
+        keys = ("up_direction_file", "front_direction_file")
+        up, front = (_numbers(key, entry[key], 3) for key in keys)
         left = np.cross(up, front)  # facing -y with z up, the left is +x: z x (-y) = x
+        if np.linalg.norm(left) < TINY * np.linalg.norm(up) * np.linalg.norm(front) or not left.any():
+            raise ValueError("'up_direction_file' and 'front_direction_file' must be two directions")
         up, left = up / np.linalg.norm(up), left / np.linalg.norm(left)
         matrix[:3, :3], stands = np.stack([left, np.cross(up, left), up]), True
     matrix[:3, :3] *= MILLIMETRES[unit]
     return matrix, stands
 
 
-def _inverse(matrix: Floats) -> Floats:
-    return np.asarray(np.linalg.inv(matrix))
+def _table(entry: Table, key: str) -> Table:
+    return _as_table(f"'{key}'", entry.get(key) or {})
 
 
-def _numbers(values: Any, count: int) -> Floats:
-    numbers = np.asarray(values, dtype=np.float64).ravel()
+def _as_table(what: str, value: Any) -> Table:
+    if not isinstance(value, dict):
+        raise ValueError(f"{what} must be a table of names and values")
+    return value
+
+
+def _numbers(key: str, values: Any, count: int) -> Floats:
+    try:
+        numbers = np.asarray(values, dtype=np.float64).ravel()
+    except (TypeError, ValueError):
+        numbers = np.empty(0)
     if numbers.shape != (count,) or not np.isfinite(numbers).all():
-        raise ValueError(f"{count} finite numbers are needed where {values!r:.60} stands")
+        raise ValueError(f"'{key}' must be {f'{count} numbers' if count > 1 else 'a number'}")
     return numbers
 
 
-def _girth(entry: dict[str, Any]) -> KnownGirth:
-    level, tape = (float(_numbers(entry[key], 1)[0]) for key in ("level_z", "tape"))
-    steps = sorted((float(at), float(value)) for at, value in (entry.get("tape_by_offset_mm") or {}).items())
-    return KnownGirth(level, tape, tuple(at for at, _ in steps), tuple(value for _, value in steps))
+def _girth(key: str, value: Any) -> KnownGirth:
+    entry = _as_table(f"'{key}'", value)
+    level, tape = (float(_numbers(f"{key}: {part}", entry.get(part), 1)[0]) for part in ("level_z", "tape"))
+    rows = list(_table(entry, "tape_by_offset_mm").items())
+    steps = _numbers(f"{key}: tape_by_offset_mm", rows, 2 * len(rows)).reshape(-1, 2)
+    steps = steps[np.argsort(steps[:, 0])]
+    return KnownGirth(level, tape, tuple(steps[:, 0].tolist()), tuple(steps[:, 1].tolist()))

@@ -40,6 +40,7 @@ def folder(tmp_path: Path, mannequin: Path) -> Path:
     (tmp_path / "broken.ply").write_bytes(b"ply\nformat")
     (tmp_path / "cube.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n")
     body = {**TRUTH["mannequin"], "file": "mannequin.ply", "kinds": ["smooth"]}
+    body["girths"] = {**body["girths"], "waist": {"level_z": 100.0, "tape": 700.0}}
     scans = {
         "broken": {"file": "broken.ply", "landmarks_file": {"nipple_left": [0, 0, 0]}},
         "away": {"file": "away.ply"},
@@ -126,7 +127,7 @@ def test_a_missing_breast_that_is_found_is_counted(tmp_path: Path, found: dict[s
     entry = {"landmarks": {"nipple_left": left["mm"], "nipple_right": None}, "flags": {"missing": "right"}}
     case = compared(one_truth(tmp_path, entry, "bodies"), found)
     assert [mark.name for mark in case.marks] == ["bust_point_left"]
-    assert [mark.name for mark in case.invented] == ["bust_point_right"]
+    assert case.invented == {"bust_point_right": found["landmarks"]["bust_point_right"]["confidence"]}
 
 
 def test_spreads_are_mean_percentile_and_worst(tmp_path: Path, found: dict[str, Any]) -> None:
@@ -147,6 +148,8 @@ def test_the_run_lists_failures_and_draws_every_body(
     assert run_accuracy(folder, tmp_path / "out", json=False) == 3
     text = capsys.readouterr().out
     assert "3 bodies: 1 read the right way round" in text
+    assert "clean bodies (1) | degraded scans (2) |" in text
+    assert "girth waist" in text
     assert "2 refused; 0 crashed" in text
     assert "1 file without a body: 1 refused" in text
     assert "* broken: broken.ply is not a PLY file" in text
@@ -176,12 +179,7 @@ def test_the_command_prints_json(folder: Path, capsys: pytest.CaptureFixture[str
         ([1, 2], "no table"),
         ({"bodies": [1]}, "no table of files"),
         ({}, "names no file"),
-        ({"scans": {"a": {"landmarks_file": {}}}}, "'a' cannot be understood"),
-        ({"scans": {"a": {"file": "../a.ply"}}}, "plain name"),
-        ({"scans": {"a": {"file": "a.ply", "unit": "feet"}}}, "unit"),
-        ({"scans": {"a": {"file": "a.ply", "landmarks_file": {"fold_left": [1, 2]}}}}, "3 finite numbers"),
-        ({"scans": {"a": {"file": "a.ply", "canonical_to_file": np.zeros((4, 4)).tolist()}}}, "understood"),
-        ({"scans": {"a": {"file": "a.ply", "landmarks_file": {"knee": [1, 2, 3]}}}}, "no landmark"),
+        ({"scans": {"a": 3}}, "'a' cannot be used: what it tells must be a table"),
     ],
 )
 def test_a_broken_truth_is_told_in_a_sentence(tmp_path: Path, content: object, said: str) -> None:
@@ -190,11 +188,51 @@ def test_a_broken_truth_is_told_in_a_sentence(tmp_path: Path, content: object, s
         read_truths(tmp_path)
 
 
+@pytest.mark.parametrize(
+    ("entry", "said"),
+    [
+        ({"file": None}, "'file' must be the plain name"),
+        ({"file": "../a.ply"}, "'file' must be the plain name"),
+        ({"unit": "feet"}, "'unit' must be one of mm, cm, m, inch"),
+        ({"unit": ["mm"]}, "'unit' must be one of"),
+        ({"landmarks_file": {"fold_left": [1, 2]}}, "'landmarks_file: fold_left' must be 3 numbers"),
+        ({"landmarks_file": {"fold_left": "x"}}, "'landmarks_file: fold_left' must be 3 numbers"),
+        ({"landmarks_file": [1]}, "'landmarks_file' must be a table"),
+        ({"canonical_to_file": np.zeros((4, 4)).tolist()}, "'canonical_to_file' is no matrix"),
+        ({"canonical_to_file": [1, 2]}, "'canonical_to_file' must be 16 numbers"),
+        ({"up_direction_file": [0, 0, 1], "front_direction_file": [0, 0, 2]}, "must be two directions"),
+        ({"girths": {"bust": {"tape": 800.0}}}, "'girths: bust: level_z' must be a number"),
+        ({"girths": {"bust": 800.0}}, "'girths: bust' must be a table"),
+        ({"girths": {"bust": {"level_z": 1, "tape": 2, "tape_by_offset_mm": {"x": 1}}}}, "must be 2 numbers"),
+        ({"flags": "left"}, "'flags' must be a table"),
+    ],
+)
+def test_a_broken_entry_is_told_by_its_name_and_key(tmp_path: Path, entry: object, said: str) -> None:
+    with pytest.raises(TruthError, match=f"about 'it' cannot be used: .*{said}"):
+        one_truth(tmp_path, entry)
+
+
+def test_the_name_of_a_file_is_enough(tmp_path: Path, found: dict[str, Any]) -> None:
+    in_inches = {**found, "file_to_mm": (np.diag([25.4, 25.4, 25.4, 1.0]) @ found["file_to_mm"]).tolist()}
+    for entry in ({}, {"up_direction_file": [0, 0, 1], "front_direction_file": [0, -1, 0]}):
+        case = compared(one_truth(tmp_path, entry), in_inches)
+        assert case.right
+        assert case.errors.get("turned [deg]", 0.0) < 0.5
+    case = compared(one_truth(tmp_path, {"unit": "mm"}), in_inches)
+    assert not case.unit_right
+    at = {"nipple_left": [1.0, 2.0, 3.0]}
+    case = compared(one_truth(tmp_path, {"landmarks_file": at}), in_inches)
+    here = found["landmarks"]["bust_point_left"]["file"]
+    assert case.errors["bust_point_left"] == pytest.approx(
+        25.4 * np.linalg.norm(np.subtract(here, [1, 2, 3]))
+    )
+
+
 def test_no_truth_or_no_json_is_told_in_a_sentence(tmp_path: Path) -> None:
     with pytest.raises(TruthError, match=r"There is no truth\.json"):
         read_truths(tmp_path)
     (tmp_path / "truth.json").write_bytes(b"\xff{")
-    with pytest.raises(TruthError, match="not JSON"):
+    with pytest.raises(TruthError, match="not written as JSON"):
         read_truths(tmp_path)
 
 
