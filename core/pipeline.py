@@ -243,7 +243,7 @@ def with_own_lines(control: ControlMesh, own: tuple[OwnLine, ...]) -> ControlMes
 
 
 def _back_lengths(body: Body, control: ControlMesh) -> dict[str, float]:
-    return {name: back_length(body.mesh, control, name) for name in control.paths}
+    return {name: back_length(body.calm, control, name) for name in control.paths}
 
 
 def _model(

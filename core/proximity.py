@@ -91,7 +91,7 @@ def nearest_on(corners: Points, points: Points) -> Points:
     normal = np.cross(sides[:, 0], sides[:, 1])
     within = (np.einsum("ksj,ksj->ks", np.cross(sides, ways), normal[:, None]) > 0.0).all(axis=1)
     height = np.einsum("kj,kj->k", ways[:, 0], normal) / np.maximum((normal**2).sum(axis=1), 1e-300)
-    return np.where(within[:, None], points - height[:, None] * normal, nearest)
+    return np.asarray(np.where(within[:, None], points - height[:, None] * normal, nearest))
 
 
 @dataclass(frozen=True, eq=False)

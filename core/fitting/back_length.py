@@ -4,29 +4,23 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.cleaning.calm import calmed
 from core.control_mesh import ControlMesh
 from core.errors import FitError
-from core.fitting.torso import cropped
 from core.mesh import Floats, Mesh, Points
 from core.trunk import trunk_levels
 
-AROUND = 40.0
-"""The skin within this of a level is calmed before it is measured there [mm]."""
 
-
-def back_length(body_mesh: Mesh, control: ControlMesh, path_name: str) -> float:
+def back_length(calm: Mesh, control: ControlMesh, path_name: str) -> float:
     """Return the way round the back from one end of a line to the other, along the skin [mm].
 
-    It lies level at the mean height of both ends, without the arms; a hole of the scan is bridged straight.
-    With the front part it makes the whole band. Raises FitError if there is no torso at that height.
+    It lies level on the ``calm`` body at the mean height of both ends, without the arms; a hole of the scan
+    is bridged straight. With the front part it makes the whole band. Raises FitError if there is no torso at
+    that height.
     """
     path = control.paths[path_name]
     right, left = control.mesh.vertices[path[0]], control.mesh.vertices[path[-1]]
-    z = 0.5 * (right[2] + left[2])
-    band = cropped(body_mesh, np.abs(body_mesh.vertices[:, 2] - z) < AROUND)
-    level = trunk_levels(calmed(band), [z])[0] if len(band.faces) else None
-    if level is None or len(level.segments) == 0:
+    level = trunk_levels(calm, [0.5 * (right[2] + left[2])])[0]
+    if len(level.segments) == 0:
         raise FitError(
             f"The scan has no back at the height of the {path_name} line.",
             "Open a scan of a whole upper body.",

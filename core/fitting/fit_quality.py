@@ -19,7 +19,7 @@ from core.fitting.near_skin import NearSkin
 from core.mesh import Flags, Floats, Mesh
 from core.proximity import Frames, neighbourhoods
 
-SAMPLES = 2500
+SAMPLES = 1500
 """The deviation is taken at about so many vertices of the skin."""
 
 FARTHEST = 40.0

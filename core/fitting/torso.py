@@ -100,13 +100,18 @@ def _armpit(mesh: Mesh, landmarks: Landmarks, half_width: float) -> tuple[float,
     """Return height and half width of the last level, going up, that is not yet as wide as shoulders [mm]."""
     scale = half_width / REFERENCE
     z = np.arange(landmarks.bust_level - 12.0, landmarks.bust_level + 150.0 * scale, 3.0)
-    levels = [level.points for level in trunk_levels(mesh, z, arms=True)]
-    widths = np.array([0.5 * np.ptp(points[:, 0]) if len(points) else np.inf for points in levels])
-    over = np.flatnonzero(widths > SHOULDER * half_width)
-    last = (int(over[0]) if len(over) else len(z)) - 1
-    if last < 0:
-        return float(z[0]), half_width
-    return float(z[last]), float(widths[last])
+    low, high, width = 0, len(z), half_width
+    for step in (4, 1):  # coarse first: a level costs time
+        tried = np.arange(low, high, step)
+        levels = [level.points for level in trunk_levels(mesh, z[tried], arms=True)]
+        widths = np.array([0.5 * np.ptp(points[:, 0]) if len(points) else np.inf for points in levels])
+        over = np.flatnonzero(widths > SHOULDER * half_width)
+        first = int(over[0]) if len(over) else len(tried)
+        if first == 0:
+            break
+        low, width = int(tried[first - 1]), float(widths[first - 1])
+        high = min(low + step, high)
+    return float(z[low]), width
 
 
 def _breast(landmarks: Landmarks, side: str, axis: Points) -> Breast:
