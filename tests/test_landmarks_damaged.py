@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 from test_landmarks import NAMES, SIDES, found, part, sample, truth
+from worn_scans import decimated
 
 from core.body import Body
 from core.errors import LandmarkError
+from core.finding.breast_profile import OFFSETS, OWN
 from core.finding.chest import find_anchor
-from core.finding.under_breast import CREASE, MIRRORED
-from core.landmark import Landmarks
+from core.finding.fold import Trace
+from core.finding.under_breast import CREASE, MIRRORED, _apart, _confidence, _less_sure
+from core.landmark import Landmark, Landmarks
 from core.landmarks import find_landmarks
 from core.mesh import Mesh
 from core.standing.upright import Pose
@@ -58,18 +62,18 @@ def test_a_narrow_gap_all_round_under_the_fold_loses_nothing() -> None:
 
 
 @cache
-def one_sided() -> Landmarks:
+def one_sided() -> Body:
     mesh = sample("person")
     x, y, z = mesh.vertices.T
     centre = truth("person", "nipple", "left") + np.array([0.0, 45.0, 5.0])
     inside = np.clip(1.6 - ((x - centre[0]) / 75.0) ** 2 - ((z - centre[2]) / 75.0) ** 2, 0.0, 1.0)
     chest = truth("person", "fold", "left")[1] + 5.0
     flat = np.where((x > 0.0) & (y < chest), y + inside * (chest - y), y)
-    return find_landmarks(body(mesh.moved(np.stack([x, flat, z], axis=1))))
+    return body(mesh.moved(np.stack([x, flat, z], axis=1)))
 
 
 def test_a_body_with_one_breast_is_taken_with_a_warning() -> None:
-    landmarks = one_sided()
+    landmarks = find_landmarks(one_sided())
     assert len(landmarks.warnings) == 1
     assert "left" in landmarks.warnings[0]
     assert all(landmarks.points[f"{what}_left"].confidence < 0.3 for what in ("bust_point", "fold"))
@@ -112,6 +116,69 @@ def test_what_depends_on_a_placed_bust_point_follows_it() -> None:
     assert np.allclose(landmarks.position("fold_right"), found("person").position("fold_right"))
     heights = [landmarks.position(f"bust_point_{side}")[2] for side in SIDES]
     assert landmarks.bust_level == pytest.approx(np.mean(heights))
+
+
+def test_a_bust_point_placed_where_no_breast_is_counts() -> None:
+    place = truth("person", "nipple", "left") + np.array([0.0, 0.0, 20.0])
+    away = np.hypot(*(one_sided().mesh.vertices - place)[:, [0, 2]].T)
+    front = one_sided().mesh.vertices[away < 10.0]
+    place = front[np.argmin(front[:, 1])]
+    landmarks = find_landmarks(one_sided(), {"bust_point_left": place})
+    heights = [landmarks.position(f"bust_point_{side}")[2] for side in SIDES]
+    assert landmarks.bust_level == pytest.approx(np.mean(heights))
+    assert not any("no breast" in warning for warning in landmarks.warnings)
+
+
+def test_placed_folds_are_no_hole() -> None:
+    places = {f"fold_{side}": found("person").position(f"fold_{side}") for side in SIDES}
+    assert find_landmarks(body(sample("person")), places).warnings == ()
+
+
+def test_a_fold_placed_above_its_bust_point_is_doubted() -> None:
+    above = found("person").position("bust_point_left") + np.array([0.0, 0.0, 15.0])
+    landmarks = find_landmarks(body(sample("person")), {"fold_left": above})
+    assert ["left" in warning and "above" in warning for warning in landmarks.warnings] == [True]
+    assert landmarks.points["lowest_left"].confidence < 0.5
+
+
+@pytest.mark.parametrize("more", [(), ("fold",)])
+def test_swapped_sides_are_called_swapped(more: tuple[str, ...]) -> None:
+    names = [f"{what}_{side}" for what in ("bust_point", *more) for side in SIDES]
+    others = [name.replace("left", "R").replace("right", "left").replace("R", "right") for name in names]
+    places = {name: found("person").position(other) for name, other in zip(names, others, strict=True)}
+    with pytest.raises(LandmarkError, match="swapped") as refusal:
+        find_landmarks(body(sample("person")), places)
+    assert "Open" not in refusal.value.hint, "the scan is not what is wrong"
+
+
+def test_a_fold_is_no_surer_than_the_place_of_its_profile() -> None:
+    x = OFFSETS.astype(float)
+    bust = Landmark("bust_point_left", np.array([0.0, -20.0, 50.0]), 1.0, "")
+    for slope, lost in ((0.0, 1.0), (1.5, 0.35)):
+        crease = Trace(np.stack([x, 0.0 * x, slope * x], axis=1), x > -99.0, 0.1, 0.1, 0.0, OWN)
+        sure, unsure = (_confidence(crease, replace(bust, confidence=c)) for c in (1.0, 0.3))
+        assert sure == 1.0
+        assert unsure <= lost
+
+
+def test_one_of_two_folds_that_contradict_each_other_is_wrong() -> None:
+    folds = [
+        Landmark(f"fold_{side}", np.array([0.0, 0.0, z]), 0.9, "")
+        for side, z in zip(SIDES, (0.0, 14.0), strict=True)
+    ]
+    level, hanging = [np.zeros(3)] * 2, [np.zeros(3), np.array([0.0, 0.0, 14.0])]
+    assert _apart(folds, hanging) == 0.0, "one breast hangs lower, fold and all"
+    apart = _apart(folds, level)
+    assert all(_less_sure(fold, other, apart).confidence < 0.5 for fold, other in (folds, folds[::-1]))
+    assert _less_sure(replace(folds[0], by_hand=True), folds[1], apart).confidence == 0.9
+
+
+def test_a_coarse_scan_is_called_coarse() -> None:
+    fine = find_landmarks(body(sample("person")))
+    vertices, faces = decimated((sample("person").vertices, sample("person").faces), 1500)
+    coarse = find_landmarks(body(Mesh(vertices, faces)))
+    assert any("coarse" in warning for warning in coarse.warnings)
+    assert all(coarse.points[name].confidence < 0.5 * fine.points[name].confidence for name in NAMES)
 
 
 def test_placed_points_let_a_body_in_whose_bust_is_not_found() -> None:

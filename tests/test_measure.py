@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +12,8 @@ import trimesh
 
 from core.body import Body
 from core.cleaning.calm import calmed
-from core.landmark import Landmarks
-from core.measure import girth_at, girths
+from core.landmark import Landmark, Landmarks
+from core.measure import Girth, girth_at, girth_doubts, girths
 from core.mesh import Mesh
 from core.standing.upright import Pose
 from core.trunk import stable_level, trunk_levels
@@ -110,6 +111,16 @@ def test_underbust_is_read_where_the_breast_is_no_longer_in_the_way(name):
     assert set(found) == {"bust", "underbust"}
     assert found["underbust"].level_mm == pytest.approx(truth["underbust_stable"]["level_z"], abs=0.01)
     assert found["underbust"].tape_mm == pytest.approx(truth["underbust_stable"]["tape"], abs=1.0)
+
+
+def test_the_under_bust_girth_is_no_surer_than_the_folds():
+    girth = Girth(0.0, 800.0, 800.0)
+    assert girth_doubts({"underbust": girth}) == []
+    assert "folds" in girth_doubts({"underbust": replace(girth, confidence=0.3)})[0]
+    marks = [Landmark(name, np.zeros(3), 0.3, "") for name in ("fold_left", "fold_right")]
+    body = Body(cylinder(130.0), Pose("mm", "+z", "-y", np.eye(4), True, "", 1.0), (), "a tube")
+    found = girths(body, Landmarks({mark.name: mark for mark in marks}, 20.0, 0.0))
+    assert found["underbust"].confidence == 0.3
 
 
 def test_a_clean_body_is_left_alone_and_the_noise_of_a_scan_is_not_measured():

@@ -18,7 +18,10 @@ BACK_UNDER = "In the hollow of the spine at the under-bust level."
 FLAT_BACK = "In the middle of the back, half way between its sides: no hollow of the spine shows."
 SIDE = "The place of the trunk farthest to the side, where the under-bust girth is measured."
 ARMPIT = "The highest level on which the arm does not yet join the trunk, at its side."
-WAIST = "On the centre line of the front, where the trunk is slimmest below the bust."
+WAIST = (
+    "On the centre line of the front, where the trunk is slimmest below the bust; "
+    "the waist between lowest rib and hip bone does not show and may lie some cm lower."
+)
 HIP = "On the centre line of the front, where the trunk is widest round below the waist."
 NECK_FRONT = "The most hollow place of the centre line of the front between chest and neck."
 NECK_BACK = "The most prominent place of the centre line of the back at the foot of the neck."

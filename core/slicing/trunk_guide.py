@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from scipy.ndimage import median_filter
 
 from core.mesh import Flags, Floats, Indices, Mesh, Points
 from core.slicing.arms import necks, shoulder_clip
-from core.slicing.gaps import bearing_bin, bridged_levels, eroded
+from core.slicing.gaps import bearing_bin, bridged_levels, eroded, over_strips
 from core.slicing.outline import BEARINGS, BINS, Outlines, outlines, reach, ring
 from core.slicing.trunk_pieces import kept_pieces, limbs, main_pieces, middle_of, split_pieces
 
@@ -28,7 +29,8 @@ SIDES = (1.0, -1.0)
 class Guide:
     """The trunk every 5 mm of height ``z``, shape (k,) [mm], about ``centre``, shape (k, 2) [mm].
 
-    ``reach``, shape (k, BINS) [mm], is how far it reaches all round, bridged where it is not ``skin``;
+    ``reach``, shape (k, BINS) [mm], is how far it reaches all round, bridged where it is not ``skin``, even
+    all round;
     ``clip``, shape (k, 2) [mm], how wide it may be left and right; ``necks``, shape (k, 2), where an arm is
     joined by a neck; ``shown``, shape (k,), which levels show a trunk; ``limb_boxes``, shape (l, 2, 2) [mm],
     are the boxes of outlines of arms on levels ``limb_level``; ``sides``, shape (k, 2) [mm], are the least
@@ -79,9 +81,18 @@ class Guide:
         return low, min(low + 1, len(self.z) - 1), at - low
 
 
-@lru_cache(maxsize=4)
+_GUIDES: WeakKeyDictionary[Mesh, Guide] = WeakKeyDictionary()
+"""The guides of the meshes that are still in use: none keeps its mesh alive."""
+
+
 def guide_of(mesh: Mesh) -> Guide:
-    """Look at the whole height of ``mesh`` [mm]. Source: ours."""
+    """Look at the whole height of ``mesh`` [mm], once. Source: ours."""
+    if mesh not in _GUIDES:
+        _GUIDES[mesh] = _looked_at(mesh)
+    return _GUIDES[mesh]
+
+
+def _looked_at(mesh: Mesh) -> Guide:
     low, high = mesh.vertices[:, 2].min(), mesh.vertices[:, 2].max()
     count = min(int(np.ceil((high - low) / STEP - 0.5)), MOST) if high > low else 0
     cuts = outlines(mesh, low + STEP * (np.arange(count) + 0.5))
@@ -115,6 +126,7 @@ def guide_of(mesh: Mesh) -> Guide:
     keep &= skin[cuts.level, bearing_bin(cuts.segments, centre[cuts.level])]
     boxes = np.stack([cuts.pieces.low[limb], cuts.pieces.high[limb]], axis=1)
     whole = bridged_levels(far, skin, np.asarray(cut.any(axis=1)), cuts.z)
+    whole, shown = over_strips(whole, shown, cuts.z)
     limb_level = cuts.pieces.level[limb]
     return Guide(
         cuts.z, middle, centre, whole, skin, clip, joints, shown, boxes, limb_level, sides, cuts, keep
