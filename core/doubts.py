@@ -34,5 +34,5 @@ def _doubt(kind: str, sides: list[str]) -> list[str]:
             return ["The folds under both breasts could not be seen clearly: please check them."]
         return [f"The fold under the {sides[0]} breast could not be seen clearly: please check it."]
     if both:
-        return ["No nipple stands out clearly: the bust points are where the breasts reach furthest."]
+        return ["No nipple stands out clearly: the bust points follow the shape of the breasts."]
     return [f"No nipple stands out clearly on the {sides[0]} breast: please check its bust point."]

@@ -17,8 +17,8 @@ from core.trunk import Survey, stable_level, trunk_levels
 SLIMMEST, WIDEST = 550.0, 1600.0
 """Under-bust girths of adults [mm]: the sizes of bands that are sold, some 600 to 1500, and a little more."""
 
-FULLEST = 500.0
-"""A bust is by less than this wider than the trunk under it [mm]: twice the largest cup that is sold."""
+FLATTEST_BUST, FULLEST_BUST = 5.0, 500.0
+"""A bust is by so much wider round than the trunk under it [mm]: to twice the largest cup that is sold."""
 
 ROUNDEST, FLATTEST = 1.0, 2.3
 """A trunk is so many times as wide as deep; chairs, bottles and things on a table are not."""
@@ -100,7 +100,10 @@ def check(
         ),
         (not SLIMMEST < under.tape < WIDEST, f"the girth under it would be {under.tape:.0f} mm"),
         (len(missing) > 0 and not clear, "only one side stands out of the chest"),
-        (not 5.0 < bust.tape - under.tape < FULLEST, "it would not be wider than the trunk under it"),
+        (
+            not FLATTEST_BUST < bust.tape - under.tape < FULLEST_BUST,
+            "it would not be wider than the trunk under it",
+        ),
         (not ROUNDEST < wide / deep < FLATTEST, "the trunk is not as deep as a body"),
         (not APART[0] < across[0] < APART[1], f"its points would lie {across[0]:.0f} mm apart"),
         (abs(across[2]) > UNEVEN and not missing, "its points would lie at very different heights"),
