@@ -122,9 +122,9 @@ def _read_json(folder: Path) -> Table:
     except OSError as problem:
         raise TruthError(f"{path} cannot be read: {problem.strerror}.", "Choose another folder.") from problem
     except (ValueError, RecursionError) as problem:
-        where = f" from line {problem.lineno} on" if isinstance(problem, json.JSONDecodeError) else ""
+        where = f"line {problem.lineno}" if isinstance(problem, json.JSONDecodeError) else "its first line"
         raise TruthError(
-            f"{path} is not written as JSON{where}.", "Correct it: see docs/accuracy.md."
+            f"{path} is not written as JSON: look at {where}.", "Correct it: see docs/accuracy.md."
         ) from problem
     if not isinstance(content, dict):
         raise TruthError(f"{FILE} holds no table of bodies or scans.", "See docs/accuracy.md.")

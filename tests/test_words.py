@@ -85,7 +85,7 @@ def test_every_sentence_of_the_core_is_translated(code: str) -> None:
 
 def test_a_message_is_translated_with_what_is_filled_in() -> None:
     use_language("ja")
-    assert say("scan.ply has no triangles.") == "scan.ply に三角形がありません。"
+    assert say("scan.ply has no sound triangles.") == "scan.ply に正しい三角形がありません。"
     assert say("mid-bust cannot be held at 80.0 % of its rest length.").startswith("バストライン を")
     assert say("Dropped 1,204 vertices outside any face.") == "面に属さない頂点 1,204 個を除きました。"
     assert say("It is odd. Choose another scan.") == "It is odd.別のスキャンを選んでください。"
@@ -94,7 +94,7 @@ def test_a_message_is_translated_with_what_is_filled_in() -> None:
     assert say(f"The trunk measures 889.2 round, {unit} {axes}") == translated
     assert say("a cloud of {curly} words") == "a cloud of {curly} words"
     use_language("en")
-    assert say("scan.ply has no triangles.") == "scan.ply has no triangles."
+    assert say("scan.ply has no sound triangles.") == "scan.ply has no sound triangles."
 
 
 @pytest.mark.parametrize("code", TRANSLATIONS)
