@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from posed_bodies import apart
 
+from core.finding.trunk_marks import trunk_marks
+from core.landmark import SIDES, Landmark, Landmarks
 from core.mesh import Mesh
 from core.sections import resample
 from core.slicing.arms import necks
@@ -16,19 +18,21 @@ from core.trunk import trunk_levels
 TRUNK = 280.0, 140.0
 """Width and depth of the trunk [mm]."""
 
+BUSTS = tuple(zip(SIDES, (60.0, -60.0), strict=True))
+
 
 def outline(neck: float, lobe: tuple[float, float]) -> np.ndarray:
     """A box of a trunk with a box (width, depth) joined to its left by a neck 6 mm long, from above."""
     (x, y), (wide, deep) = (TRUNK[0] / 2, TRUNK[1] / 2), (lobe[0], lobe[1] / 2)
     half = [(0, -y), (x, -y), (x, -neck / 2), (x + 6, -neck / 2), (x + 6, -deep), (x + 6 + wide, -deep)]
     corners = np.array([*half, *[(a, -b) for a, b in half[::-1]], (-x, y), (-x, -y), (0, -y)], dtype=float)
-    return resample(corners, 2.0)
+    return resample(corners, 3.0)
 
 
-def column(ring: np.ndarray) -> Mesh:
-    """An upright column over a closed ring, 360 mm high."""
+def column(ring: np.ndarray, low: float = -160.0, high: float = 160.0) -> Mesh:
+    """An upright column over a closed ring."""
     at, count = ring[:-1], len(ring) - 1
-    z = np.arange(-180.0, 181.0, 20.0)
+    z = np.arange(low, high + 1.0, 20.0)
     points = np.column_stack([np.tile(at, (len(z), 1)), np.repeat(z, count)])
     corner = np.arange((len(z) - 1) * count).reshape(-1, count)
     after = np.roll(corner, -1, axis=1)
@@ -80,3 +84,35 @@ def test_the_side_that_an_arm_hid_bulges_a_little(half):
     assert share[half] > 0.6
     assert (share > 0.0).all()
     assert whole.max() < 76.0
+
+
+def joined(*meshes: Mesh) -> Mesh:
+    """Several meshes as one."""
+    starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
+    faces = [mesh.faces + start for mesh, start in zip(meshes, starts, strict=False)]
+    return Mesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(faces))
+
+
+def armpit(body: Mesh, bust: float) -> Landmark:
+    """The left armpit of a body whose bust points and folds are told."""
+    points = [Landmark(f"bust_point_{side}", np.array([x, -70.0, bust]), 1.0, "") for side, x in BUSTS]
+    return next(
+        mark
+        for mark in trunk_marks(body, Landmarks({mark.name: mark for mark in points}, bust, bust - 30.0))
+        if mark.name == "armpit_left"
+    )
+
+
+def test_an_armpit_is_surest_under_an_arm_that_hangs_free_and_least_sure_below_the_bust():
+    """An arm is joined from 60 mm up; below that level it hangs beside the trunk, or there is none."""
+    shoulders = column(outline(60.0, (80.0, 90.0)), 60.0, 160.0)
+    trunk = column(outline(60.0, (0.0, 60.0)), -80.0, 60.0)
+    square = np.array([(160, -45), (240, -45), (240, 45), (160, 45), (160, -45)], dtype=float)
+    arm = column(resample(square, 3.0), -80.0, 60.0)
+    stump = armpit(joined(shoulders, trunk), 0.0)
+    free = armpit(joined(shoulders, trunk, arm), 0.0)
+    below = armpit(joined(shoulders, trunk), 80.0)
+    for mark in (stump, free, below):
+        assert mark.position[2] == pytest.approx(57.5, abs=6.0)
+        assert mark.position[0] == pytest.approx(140.0, abs=8.0)
+    assert free.confidence > 1.5 * stump.confidence > 2.0 * below.confidence > 0.0

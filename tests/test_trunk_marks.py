@@ -181,6 +181,7 @@ def test_waist_hip_and_neck_of_a_whole_figure():
     assert marks["waist_front"].position == pytest.approx([0.0, -85.0, -130.0], abs=4.0)
     assert marks["hip_front"].position == pytest.approx([0.0, -115.0, -330.0], abs=4.0)
     assert marks["neck_front"].position[2] == pytest.approx(220.0, abs=8.0)
+    assert marks["neck_back"].position == pytest.approx([0.0, 99.0, 155.0], abs=5.0)
     assert not {"armpit_left", "armpit_right"} & set(marks)
     levels = girth_levels(Landmarks(MappingProxyType(marks), 20.0, -10.0))
     assert set(levels) == {"waist", "hip"}
