@@ -95,6 +95,25 @@ def area_vectors(vertices: Points, faces: Faces) -> Points:
     return np.asarray(0.5 * np.cross(b - a, c - a))
 
 
+def strewn(vertices: Points, faces: Faces, areas: Floats, count: int) -> tuple[Points, Indices]:
+    """Return places strewn evenly over faces of known ``areas``, shape (count, 3), and the face of each.
+
+    The same each time, and as even whatever the order and the size of the faces. Source: ours.
+    """
+    low, high = vertices[faces[:, 0]].min(axis=0), vertices[faces[:, 0]].max(axis=0)
+    cell = max(np.sqrt(areas.sum() / count), float((high - low).max()) / 1000.0, 1e-300)
+    column, row, level = np.floor((vertices[faces[:, 0]] - low) / cell).astype(np.int64).T
+    order = np.argsort((column * 1024 + row) * 1024 + level, kind="stable")  # a step stays in one place
+    total = np.cumsum(areas[order])
+    number = np.arange(count)
+    face = order[np.searchsorted(total, (number + 0.5) / count * total[-1])]
+    u, v = (0.7549 * number) % 1.0, (0.5698 * number) % 1.0  # an even sequence in the unit square
+    over = u + v > 1.0
+    u, v = np.where(over, 1.0 - u, u), np.where(over, 1.0 - v, v)
+    a, b, c = (vertices[faces[face, k]] for k in range(3))
+    return np.asarray(a + u[:, None] * (b - a) + v[:, None] * (c - a)), face
+
+
 def incidence(faces: Faces, vertex_count: int) -> sparse.csr_array:
     """Return the 0/1 matrix that sums face values at vertices, shape (vertex_count, m)."""
     columns = np.repeat(np.arange(len(faces)), 3)

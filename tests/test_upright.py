@@ -198,3 +198,18 @@ def test_even_points_do_not_follow_the_triangles():
     assert on_skin.all()
     assert (one.partner(one.points) == np.arange(len(one.points))).all()
     assert (one.partner(one.points + 1e6) == -1).all()
+
+
+def test_even_points_do_not_follow_the_order_of_the_triangles(mannequin):
+    vertices, faces = mannequin
+    halves = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1) @ [len(vertices), 1]
+    edges, at = np.unique(halves, return_inverse=True)
+    ab, bc, ca = len(vertices) + at.reshape(-1, 3).T
+    a, b, c = faces.T
+    blocks = ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))  # each in the order of the whole
+    middles = 0.5 * (vertices[edges // len(vertices)] + vertices[edges % len(vertices)])
+    split = np.concatenate([np.stack(block, axis=1) for block in blocks])
+    coarse, fine = even_cloud(vertices, faces), even_cloud(np.concatenate([vertices, middles]), split)
+    assert len(fine.points) == pytest.approx(len(coarse.points), rel=0.02)
+    gaps = np.linalg.norm(fine.points[fine.partner(coarse.points)] - coarse.points, axis=1)
+    assert gaps.max() < 2.0 * fine.grain

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from core.cleaning.skin import Skin, grouped
-from core.mesh import Floats, Indices, Points, unit
+from core.mesh import Floats, Indices, Points, strewn, unit
 
 SPECK = 0.005
 """A loose piece with less than this share of the largest piece's area [1] is a speck."""
@@ -129,14 +129,7 @@ def _largest(areas: Floats, share: float) -> Indices:
 
 def _strewn(skin: Skin, faces: Indices, count: int = SAMPLES) -> Points:
     """Return places strewn evenly over triangles, shape (count, 3)."""
-    total = np.cumsum(skin.areas[faces])
-    number = np.arange(count)
-    face = faces[np.searchsorted(total, (number + 0.5) / count * total[-1])]
-    u, v = (0.7549 * number) % 1.0, (0.5698 * number) % 1.0  # an even sequence in the unit square
-    over = u + v > 1.0
-    u, v = np.where(over, 1.0 - u, u), np.where(over, 1.0 - v, v)
-    a, b, c = (skin.vertices[skin.faces[face, k]] for k in range(3))
-    return np.asarray(a + u[:, None] * (b - a) + v[:, None] * (c - a))
+    return strewn(skin.vertices, skin.faces[faces], skin.areas[faces], count)[0]
 
 
 def _is_built(skin: Skin, faces: Indices) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,6 +19,9 @@ TURN = 15.0
 FILE_AXIS = 0.5
 """What a file adds to a stance that is upright in it [1]: most scanners know what is up."""
 
+CUT = 0.5
+"""What a plane cut below adds to a stance that is square to it [1]: cuts are made level."""
+
 LEVEL = 3.0
 """A cut that is level in the file to this angle [degrees] was level when it was made."""
 
@@ -34,7 +37,7 @@ class Stance:
     """One way to stand: unit vectors ``left``, ``back``, ``up`` in the file, shape (3,).
 
     ``evidence`` is what speaks for an upper body that stands so [1], ``said`` what each cue adds to it;
-    ``residual`` and ``offset`` are those of the mirror plane.
+    ``residual`` and ``offset`` are those of the mirror plane. ``cut``: it ends in a plane cut below.
     """
 
     left: Floats
@@ -45,12 +48,13 @@ class Stance:
     seen: Look
     evidence: float
     said: dict[str, float]
+    cut: bool = False
 
     @property
     def score(self) -> float:
         """How likely this is how the body stands [1]."""
         upright = np.abs(self.up).max() > np.cos(np.radians(LEAN))
-        return self.evidence + FILE_AXIS * float(upright) - 6.0 * self.residual
+        return self.evidence + FILE_AXIS * float(upright) + CUT * float(self.cut) - 6.0 * self.residual
 
     def differs(self, other: Stance, degrees: float = 40.0) -> bool:
         """Tell whether up or front point elsewhere."""
@@ -97,19 +101,25 @@ def _ways_to_stand(cloud: Cloud, plane: MirrorPlane, up: Floats, ways: tuple[int
 
 def settled(cloud: Cloud, stance: Stance) -> Stance:
     """Return ``stance`` with its up set by a plane cut below, by the trunk and by the axis of the file."""
-    up = _true_up(cloud, stance)
+    cut = _cut_below(cloud, stance)
+    up = _true_up(cloud, stance, cut)
     side = unit(stance.left - (stance.left @ up) * up)
     middle = cloud.points.mean(axis=0)
     offset = stance.offset + float(middle @ (side - stance.left))
     again = _ways_to_stand(cloud, MirrorPlane(side, offset, stance.residual), up, (1,))
-    return max(again, key=lambda other: other.back @ stance.back, default=stance)
+    found = max(again, key=lambda other: other.back @ stance.back, default=stance)
+    return replace(found, cut=cut is not None)
 
 
-def _true_up(cloud: Cloud, stance: Stance) -> Floats:
+def _cut_below(cloud: Cloud, stance: Stance) -> Floats | None:
+    """Return the up that a plane cut through the trunk tells, if it ends in one below."""
     own = cloud.points[stance.seen.trunk.own]
     least = 0.3 * stance.seen.trunk.main_girth**2 / (4.0 * np.pi)
     cuts = [end for end in flat_ends(own, cloud.grain, -stance.up) if end.area > least]
-    cut = -cuts[0].normal if cuts else None
+    return -cuts[0].normal if cuts else None
+
+
+def _true_up(cloud: Cloud, stance: Stance, cut: Floats | None) -> Floats:
     axis = AXES[nearest_axis(stance.up)]
     aside = np.degrees(np.arcsin(min(1.0, abs(float(axis @ stance.left)))))
     if cut is not None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import distance_transform_edt
 
-from core.mesh import Faces, Flags, Floats, Indices, Points, area_vectors, unit
+from core.mesh import Faces, Flags, Floats, Indices, Points, area_vectors, strewn, unit
 
 CELLS = 11_000
 """Grain-sized squares that the skin is divided into: the grain is the spacing of everything here."""
@@ -75,7 +75,10 @@ class MirrorPlane:
 
 def even_cloud(vertices: Points, faces: Faces) -> Cloud:
     """Lay even points on a skin, whatever its triangles are like. Any unit. Source: ours."""
-    points, normals, area = _sample(vertices, faces)
+    vectors = area_vectors(vertices, faces)
+    areas = np.linalg.norm(vectors, axis=1)
+    points, face = strewn(vertices, faces, areas, SAMPLES)
+    normals, area = unit(vectors[face]), float(areas.sum())
     low, high = np.percentile(points, (1, 99), axis=0)
     grain = max(np.sqrt(area / CELLS), float(np.linalg.norm(high - low)) / FINEST)
     margin = 0.35 * (high - low) + FAR * grain  # a speck far away must not blow the box up
@@ -96,22 +99,6 @@ def even_cloud(vertices: Points, faces: Faces) -> Cloud:
     distance, where = distance_transform_edt(empty, return_indices=True)
     nearest = np.where(distance <= FAR, number[tuple(where)], -1)
     return Cloud(centre, normal, float(grain), corner, nearest, np.minimum(distance / FAR, 1.0))
-
-
-def _sample(vertices: Points, faces: Faces) -> tuple[Points, Points, float]:
-    """Return points spread evenly over the faces, shape (k, 3), their normals and the whole area.
-
-    The same each time.
-    """
-    areas = area_vectors(vertices, faces)
-    total = np.cumsum(np.linalg.norm(areas, axis=1))
-    number = np.arange(SAMPLES)
-    face = np.searchsorted(total, (number + 0.5) / SAMPLES * total[-1])
-    u, v = (0.7549 * number) % 1.0, (0.5698 * number) % 1.0  # an even sequence in the unit square
-    over = u + v > 1.0
-    u, v = np.where(over, 1.0 - u, u), np.where(over, 1.0 - v, v)
-    a, b, c = (vertices[faces[face, k]] for k in range(3))
-    return a + u[:, None] * (b - a) + v[:, None] * (c - a), unit(areas[face]), float(total[-1])
 
 
 def mirror_planes(cloud: Cloud, across: Floats | None = None, slant: float = 0.0) -> list[MirrorPlane]:
