@@ -13,7 +13,8 @@ from worn_scans import decimated
 from core.body import Body
 from core.errors import LandmarkError
 from core.finding.breast_profile import OFFSETS, OWN
-from core.finding.chest import find_anchor
+from core.finding.bust_check import check
+from core.finding.chest import find_anchor, find_poles
 from core.finding.fold import Trace
 from core.finding.under_breast import CREASE, MIRRORED, _apart, _confidence, _less_sure
 from core.landmark import Landmark, Landmarks
@@ -149,6 +150,29 @@ def test_swapped_sides_are_called_swapped(more: tuple[str, ...]) -> None:
     with pytest.raises(LandmarkError, match="swapped") as refusal:
         find_landmarks(body(sample("person")), places)
     assert "Open" not in refusal.value.hint, "the scan is not what is wrong"
+
+
+@pytest.mark.parametrize(
+    ("shift", "why"),
+    [
+        ((60.0, 60.0, 0.0, 0.0), "beside the middle"),
+        ((0.0, 0.0, 0.0, 70.0), "very different heights"),
+        ((-90.0, 90.0, 0.0, 0.0), "mm apart"),
+        ((0.0, 0.0, 200.0, 200.0), "likely depth"),
+    ],
+)
+def test_what_cannot_be_a_bust_is_refused_for_its_reason(shift: tuple[float, ...], why: str) -> None:
+    mesh, before = sample("person"), found("person")
+    trunk = survey(mesh)
+    points = dict(before.points)
+    for k, side in enumerate(SIDES):
+        mark = points[f"bust_point_{side}"]
+        points[mark.name] = replace(mark, position=mark.position + np.array([shift[k], 0.0, shift[k + 2]]))
+    moved = replace(before, points=points, bust_level=before.bust_level + 0.5 * (shift[2] + shift[3]))
+    poles = find_poles(trunk, find_anchor(trunk))
+    assert check(mesh, trunk, poles, (), before) == ()
+    with pytest.raises(LandmarkError, match=why):
+        check(mesh, trunk, poles, (), moved)
 
 
 def test_a_fold_is_no_surer_than_the_place_of_its_profile() -> None:
