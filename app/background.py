@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import threading
 from collections.abc import Callable
 
@@ -9,9 +10,13 @@ from PySide6.QtCore import QObject, Signal
 
 
 class Background(QObject):
-    """Runs plain functions in threads; ``finished`` carries (key, result) of those that came to an end."""
+    """Runs plain functions in threads; ``finished`` carries (key, result) of those that came to an end.
+
+    ``failed`` carries the key of one that did not: the log tells why.
+    """
 
     finished = Signal(object, object)
+    failed = Signal(object)
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -22,7 +27,13 @@ class Background(QObject):
         """Begin ``work``; ``key`` tells the receiver what the result belongs to."""
 
         def at_work() -> None:
-            result = work()
+            try:
+                result = work()
+            except Exception:
+                logging.exception("background work failed")
+                if self._open:
+                    self.failed.emit(key)
+                return
             if self._open:
                 self.finished.emit(key, result)
 

@@ -12,12 +12,12 @@ from app.panels.line_row import LineView
 from app.panels.result import MeasureView
 from app.scene_bands import Band
 from app.verdict_chip import state_title
-from app.words import number, tr
+from app.words import number, say, tr
 from core.design import Design
 from core.lines import Line
 from core.live import Frame
 from core.mesh import Points
-from core.report import blamed_line
+from core.report import blamed_line, warnings
 from core.solver import Marks
 
 LINE_COLOURS = {"full-bust": "#0A5F73", "mid-bust": "#E5536B", "under-bust": "#5A3F94"}
@@ -205,6 +205,8 @@ def _hint(frame: Frame) -> str:
     }.get(frame.verdict.state, "")
     if frame.verdict.state == "diverging":
         return tr("The turns run away: the body is shown as it was before. Lengthen or soften the lines.")
+    if frame.verdict.state == "settled":
+        return " ".join(map(say, warnings(frame.stages)))
     line = blamed_line(frame.stages)
     if not what or line is None:
         return what

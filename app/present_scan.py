@@ -6,7 +6,6 @@ from app.panels.landmarks import LandmarkView
 from app.panels.scan import ScanView
 from app.words import number, tr
 from core.body import Body
-from core.doubts import doubts
 from core.landmark import Landmarks
 from core.pipeline import Stages
 
@@ -70,12 +69,6 @@ def landmark_views(landmarks: Landmarks) -> list[LandmarkView]:
         )
         for mark in marks
     ]
-
-
-def landmark_doubts(stages: Stages) -> list[str]:
-    """Return the sentences on landmarks that should be looked at."""
-    pose_doubts = 0 if stages.body.pose.sure else 1
-    return doubts(stages.body, stages.landmarks)[pose_doubts:]
 
 
 def scan_view(stages: Stages) -> ScanView:

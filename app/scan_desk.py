@@ -14,7 +14,6 @@ from app.panels.question import PICTURE, Answer
 from app.portrait import Picture
 from app.present_scan import (
     kind_of,
-    landmark_doubts,
     landmark_title,
     landmark_views,
     scan_view,
@@ -26,7 +25,7 @@ from app.ways import Way, pictures
 from app.words import say, tr
 from core.body import Body
 from core.design import Design
-from core.doubts import ESSENTIAL, weak_sides
+from core.doubts import ESSENTIAL, landmark_doubts, weak_sides
 from core.pipeline import Stages, UnsureError
 
 if TYPE_CHECKING:
@@ -44,18 +43,20 @@ class ScanDesk(QObject):
         self._asked_body: Body | None = None
         self._painter = Background(self)
         self._painter.finished.connect(self._show_question)
+        self._painter.failed.connect(self._show_no_question)
 
     # -- the session speaks
 
     def show_found(self, stages: Stages) -> None:
         """Show what was understood of the scan, and found on it."""
         window, landmarks = self._window, stages.landmarks
-        window.landmarks.set_landmarks(landmark_views(landmarks), landmark_doubts(stages))
+        said = landmark_doubts(landmarks)
+        window.landmarks.set_landmarks(landmark_views(landmarks), said)
         window.scan.set_scan(scan_view(stages))
         window.view.drop_back()
         weak = sum(len(weak_sides(landmarks, kind)) for kind in ESSENTIAL)
         window.rail.set_state("scan", "done" if stages.body.pose.sure else "look", 1)
-        window.rail.set_state("landmarks", "look" if weak else "done", weak)
+        window.rail.set_state("landmarks", "look" if weak or said else "done", weak or len(said))
 
     def show_opened(self, stages: Stages) -> None:
         """Say what is unclear on a scan that has just been opened, and ask how it stands if need be."""
@@ -75,7 +76,7 @@ class ScanDesk(QObject):
         marks = [mark for mark in stages.landmarks.points.values() if kind_of(mark.name) in ESSENTIAL]
         worst = min(marks, key=lambda mark: mark.confidence)
         if tone_of(worst.confidence) == "bad" or stages.landmarks.warnings:
-            said, *more = landmark_doubts(stages)
+            said, *more = landmark_doubts(stages.landmarks)
             look = (tr("Look at it"), lambda: self._look_at(worst.name))
             self._window.notices.show_notice("warn", said, " ".join(map(say, more)), [look], lasting=True)
 
@@ -185,6 +186,16 @@ class ScanDesk(QObject):
         self._window.view.question.ask(
             [Answer(way.up, way.front, _image(picture), _words(way)) for way, picture in painted]
         )
+
+    def _show_no_question(self, body: object) -> None:
+        """Without pictures nothing can be chosen below: the Scan step asks the same."""
+        if body is self._asked_body:
+            self._window.notices.withdraw("warn")
+            unsure, ask = (
+                tr("Busk is not sure how this scan stands."),
+                tr("Please check it at the Scan step."),
+            )
+            self._window.notices.show_notice("warn", unsure, ask, lasting=True)
 
 
 def _words(way: Way) -> str:

@@ -19,7 +19,7 @@ from core.mesh import Flags, Floats, Indices, Mesh, Points
 PARTS = ("body", "bands", "control", "floor", "ghost")
 """What ``Scene.set_visible`` knows; the ghost is the fringe of the body at rest behind the moved one."""
 
-_ABOVE_BUST, _BELOW_BUST = 320.0, 240.0  # what a framed bust shows: from the neck to the waist [mm]
+_ABOVE_BUST, _BELOW_BUST = 270.0, 350.0  # what a framed bust shows: from the neck to below the waist [mm]
 
 _BUST_HEIGHT = 0.56  # of a torso cut at the hips, used until the landmarks are known
 
@@ -190,7 +190,7 @@ class Scene:
         return self._view.framing(self._box(), aspect)
 
     def framing_bust(self, aspect: float) -> View:
-        """Return the view from the same side that shows the bust, from the shoulders to the waist."""
+        """Return the view from the same side that shows bust and trunk, from the shoulders to the waist."""
         box = self._box()
         level = box[4] + _BUST_HEIGHT * (box[5] - box[4])
         if self._control_points is not None:

@@ -9,7 +9,8 @@ import numpy as np
 from app.portrait import Picture, portrait
 from core.body import Body
 from core.mesh import Floats, unit
-from core.standing.upright import AXES, Pose
+from core.standing.told import AXES, nearest_axis
+from core.standing.upright import Pose
 
 MOST = 4
 """Ways that are offered."""
@@ -54,20 +55,16 @@ def pictures(body: Body, size: tuple[int, int], clay: tuple[int, int, int]) -> l
 def _alike(turn: Floats, old: Floats) -> bool:
     """Whether two ways look the same, or would be told by the same axes."""
     near = bool(turn[2] @ old[2] > SAME and turn[1] @ old[1] > SAME)
-    return near or all(_nearest(turn[k]) == _nearest(old[k]) for k in (1, 2))
+    return near or all(nearest_axis(turn[k]) == nearest_axis(old[k]) for k in (1, 2))
 
 
 def _way(file_to_body: Floats, turn: Floats) -> Way:
     up, front = file_to_body[2], -file_to_body[1]
-    return Way(_told(up), _told(front), (_nearest(up), _nearest(front)), turn)
+    return Way(_told(up), _told(front), (nearest_axis(up), nearest_axis(front)), turn)
 
 
 def _told(direction: Floats) -> str:
-    name = _nearest(direction)
+    name = nearest_axis(direction)
     if AXES[name] @ direction > ON_AXIS:
         return name
     return ",".join(f"{value:.5f}" for value in direction)
-
-
-def _nearest(direction: Floats) -> str:
-    return max(AXES, key=lambda name: float(AXES[name] @ direction))

@@ -15,8 +15,13 @@ ESSENTIAL = ("bust_point", "fold")
 def doubts(body: Body, landmarks: Landmarks) -> list[str]:
     """Return one sentence for each thing that should be looked at. Source: ours."""
     unsure = "It is not certain how this scan is to be understood: please check unit, up and front."
+    return [unsure] * (not body.pose.sure) + landmark_doubts(landmarks)
+
+
+def landmark_doubts(landmarks: Landmarks) -> list[str]:
+    """Return what should be looked at on the landmarks alone."""
     marks = [sentence for kind in ESSENTIAL for sentence in _doubt(kind, weak_sides(landmarks, kind))]
-    return [unsure] * (not body.pose.sure) + marks + list(landmarks.warnings)
+    return marks + list(landmarks.warnings)
 
 
 def weak_sides(landmarks: Landmarks, kind: str) -> list[str]:
