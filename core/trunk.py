@@ -77,19 +77,20 @@ def trunk_levels(mesh: Mesh, heights: npt.ArrayLike, *, arms: bool = False) -> l
     """
     z = np.atleast_1d(np.asarray(heights, dtype=np.float64))
     cuts, guide = outlines(mesh, z), guide_of(mesh)
-    if len(cuts.segments) == 0 or len(guide.z) == 0:
+    if len(guide.z) == 0:
         return [Level(float(height), np.empty((0, 2, 3))) for height in z]
     near = np.array([guide.between(float(height))[:2] for height in z])
     main = np.where(guide.shown[near].any(axis=1), main_pieces(cuts, guide.middle), -1)
     main = split_pieces(cuts, main, guide.sides[near[:, 0]])
     kept, loose = kept_pieces(cuts, main, _limbs(cuts, main, guide, near), guide.sides[near[:, 0]])
+    inside = (guide.z[0] <= z) & (z <= guide.z[-1]) & guide.shown[near].all(axis=1)
     levels = []
     for k, rows in enumerate(cuts.rows()):
         own = rows[kept[cuts.piece[rows]]]
         cut = not arms and len(own) > 0 and bool(guide.cut[near[k]].any())
         if cut:
             own = _armless(cuts, guide, own, near[k])
-        if cut or loose[k]:
+        if cut or loose[k] or (inside[k] and not len(own)):
             levels.append(_closed(cuts.segments[own], guide, float(z[k]), cut))
         else:
             levels.append(Level(float(z[k]), cuts.segments[own]))
@@ -129,20 +130,23 @@ def _closed(segments: Points, guide: Guide, z: float, cut: bool) -> Level:
     centre = guide.centre_at(z)
     far = reach(segments, np.zeros(len(segments), dtype=np.int64), centre[None])[0]
     skin = np.isfinite(far)
+    if skin.sum() <= BINS // 3:  # the guide shows no such level either
+        segments, skin[:] = segments[:0], False
     if cut:
         skin = eroded(skin)
         segments = segments[skin[bearing_bin(segments, centre)]]
     low, high, share = guide.between(z)
     below, above = guide.reach[[low, high]]
     shape = np.where(np.isnan(above), below, below + share * (above - below))
-    whole = bridge(far, skin, np.where(np.isnan(below), above, shape), cut)
+    shape = np.where(np.isnan(below), above, shape)
+    whole = bridge(far, skin, shape, cut) if skin.any() else shape
     return Level(z, segments, _bridges(whole, skin, centre, z))
 
 
 def _bridges(far: Floats, skin: Flags, centre: Points, z: float) -> Points:
-    """Return the segments over the gaps between ``skin``, shape (b, 2, 3) [mm]."""
+    """Return the segments over the gaps between ``skin``, (b, 2, 3) [mm]; all round if there is none."""
     bridges = [np.empty((0, 2, 3))]
-    for run in gaps(skin):
+    for run in gaps(skin) if skin.any() else [np.arange(1, BINS)]:
         line = np.concatenate([[(run[0] - 1) % BINS], run, [(run[-1] + 1) % BINS]])
         line = line[np.isfinite(far[line])]
         points = places(far[line], line, centre, z)
@@ -223,6 +227,9 @@ def survey(mesh: Mesh) -> Survey:
         )
     guide = guide_of(mesh)
     segments, row = guide.cuts.segments[guide.keep], guide.cuts.level[guide.keep]
+    for k in np.flatnonzero(guide.shown & ~guide.skin.any(axis=1)):
+        strip = _bridges(guide.reach[k], guide.skin[k], guide.centre[k], float(guide.z[k]))
+        segments, row = np.concatenate([segments, strip]), np.append(row, np.full(len(strip), k))
     order = np.argsort(row, kind="stable")
     segments, row = segments[order], row[order]
     length = np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1)

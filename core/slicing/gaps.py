@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from core.mesh import Flags, Floats, Indices, Points, unit
@@ -12,6 +14,9 @@ BRIDGE = 150.0
 
 SIDE = 75.0
 """The side of a trunk is not rounder than a circle of this radius [mm]."""
+
+ALL_ROUND = 45.0
+"""A strip that is missing all round the trunk is bridged if it is no higher than this [mm]."""
 
 WIDEST = 2.8
 """A gap that no level near by shows is closed straight if it is no wider than this [rad]."""
@@ -71,6 +76,26 @@ def bridged_levels(far: Floats, skin: Flags, cut: Flags, z: Floats) -> Floats:
             shape[wide] = _between(far[:, wide], z, int(k), whole[whole < k], whole[whole > k])
         result[k] = bridge(far[k], skin[k], shape, bool(cut[k]))
     return result
+
+
+def over_strips(far: Floats, shown: Flags, z: Floats) -> tuple[Floats, Flags]:
+    """Fill levels that show no trunk, shape (k, BINS), where only a strip all round is missing.
+
+    They go on from the levels below to those above, as these change. Also tells which levels are
+    ``shown`` then. Source: ours.
+    """
+    rows = np.flatnonzero(shown)
+    result, filled = far.copy(), shown.copy()
+    for low, high in pairwise(rows.tolist()):
+        strip, most = np.arange(low + 1, high), z[high] - z[low]
+        if len(strip) and most <= ALL_ROUND:
+            t, rise = ((z[strip] - z[low]) / (z[high] - z[low]))[:, None], far[high] - far[low]
+            out = (far[low] - far[max(low - 2, 0)]) * (high - low) / 2.0 - rise
+            back = rise - (far[min(high + 2, len(z) - 1)] - far[high]) * (high - low) / 2.0
+            out, back = (np.clip(np.nan_to_num(bend), -most, most) for bend in (out, back))
+            result[strip] = far[low] + t * rise + t * (1.0 - t) * ((1.0 - t) * out + t * back)
+            filled[strip] = True
+    return result, filled
 
 
 def _between(far: Floats, z: Floats, k: int, below: Indices, above: Indices) -> Floats:

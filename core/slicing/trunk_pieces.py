@@ -9,7 +9,7 @@ from scipy.sparse.csgraph import connected_components
 from core.mesh import Flags, Floats, Indices
 from core.slicing.outline import Outlines, Pieces
 
-GAP = 12.0
+GAP = 25.0
 """An open piece of outline nearer than this to the trunk, along x [mm], belongs to it."""
 
 LIP = 110.0

@@ -1,0 +1,57 @@
+"""Strips that a scanner missed, all round the body or down its front and back, are bridged and said."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import SAMPLES
+
+from core.body import Body, read_scan
+from core.landmark import Landmarks
+from core.landmarks import find_landmarks
+from core.measure import girth_doubts, girths
+from core.mesh import Mesh
+
+
+def without(body: Body, axis: int, at: float, wide: float) -> Body:
+    mesh = body.mesh
+    apart = np.abs(mesh.vertices[mesh.faces].mean(axis=1)[:, axis] - at) > 0.5 * wide
+    return Body(Mesh(mesh.vertices, mesh.faces[apart]), body.pose, (), body.name)
+
+
+@pytest.fixture(scope="module", params=["mannequin", "person"])
+def whole(request: pytest.FixtureRequest) -> tuple[Body, Landmarks]:
+    body = read_scan(Path(SAMPLES / f"{request.param}.ply"))
+    return body, find_landmarks(body)
+
+
+@pytest.mark.parametrize("wide", [3.0, 20.0])
+@pytest.mark.parametrize("name", ["bust", "underbust"])
+def test_a_strip_all_round_on_a_girth_is_bridged_and_said(
+    whole: tuple[Body, Landmarks], name: str, wide: float
+) -> None:
+    body, landmarks = whole
+    known = girths(body, landmarks)
+    split = without(body, 2, known[name].level_mm, wide)
+    again = find_landmarks(split)
+    found = girths(split, again)
+    for side in ("left", "right"):
+        away = again.position(f"bust_point_{side}") - landmarks.position(f"bust_point_{side}")
+        assert np.linalg.norm(away) < 4.0
+    assert found[name].tape_mm == pytest.approx(known[name].tape_mm, rel=0.01)
+    assert found[name].bridged_mm > 500.0
+    assert any("estimate" in doubt for doubt in girth_doubts(found))
+
+
+def test_a_body_that_strips_in_front_and_behind_cut_in_two_is_one(whole: tuple[Body, Landmarks]) -> None:
+    body, landmarks = whole
+    middle = landmarks.position("front_centre")[0]
+    split = without(body, 0, middle + 30.0, 16.0)
+    again = find_landmarks(split)
+    for name in ("bust_point_left", "bust_point_right", "fold_left", "fold_right"):
+        assert np.linalg.norm(again.position(name) - landmarks.position(name)) < 2.0
+    known, found = girths(body, landmarks), girths(split, again)
+    for name in ("bust", "underbust"):
+        assert found[name].tape_mm == pytest.approx(known[name].tape_mm, abs=4.0)
