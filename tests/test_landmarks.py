@@ -117,19 +117,41 @@ def test_noise_of_a_scanner_moves_the_points_little():
         assert noisy.position(f"fold_{side}")[2] == pytest.approx(truth("person", "fold", side)[2], abs=6.0)
 
 
-def test_one_plain_nipple_helps_the_other_breast():
+@cache
+def without_left_nipple() -> Mesh:
+    """The person with a quadric through the ring round the left nipple in place of it."""
     mesh = sample("person")
     from_left = np.linalg.norm(mesh.vertices - truth("person", "nipple", "left"), axis=1)
     vertices = mesh.vertices.copy()
     flat = from_left < 14.0
     ring = mesh.vertices[(from_left > 14.0) & (from_left < 24.0)]
-    # A quadric through the ring round the left nipple, seen from the front, takes its place.
     vertices[flat, 1] = _basis(vertices[flat]) @ np.linalg.lstsq(_basis(ring), ring[:, 1], rcond=None)[0]
-    landmarks = landmarks_of(mesh.moved(vertices))
+    return mesh.moved(vertices)
+
+
+def test_one_plain_nipple_helps_the_other_breast():
+    landmarks = landmarks_of(without_left_nipple())
     assert landmarks.points["bust_point_right"].rule == NIPPLE
     assert landmarks.points["bust_point_left"].rule == MIRRORED
     left = landmarks.position("bust_point_left")
     assert np.linalg.norm(left - truth("person", "nipple", "left")) < 8.0
+
+
+def test_a_bump_that_the_other_breast_does_not_bear_out_is_doubted():
+    mesh = without_left_nipple()
+    marker = mesh.vertices[
+        np.argmin(
+            np.linalg.norm(mesh.vertices - truth("person", "nipple", "left") - [9.0, 0.0, 12.0], axis=1)
+        )
+    ]
+    off = np.linalg.norm(mesh.vertices - marker, axis=1)
+    bump = np.sqrt(np.maximum(6.0**2 - off**2, 0.0))[:, None]  # half a ball, taped on
+    marked = landmarks_of(mesh.moved(mesh.vertices + bump * mesh.vertex_normals))
+    left, right = (marked.points[f"bust_point_{side}"] for side in SIDES)
+    assert np.linalg.norm(left.position - marker) < 7.0
+    assert left.confidence < 0.3
+    assert right.confidence > 0.5
+    assert marked.points["front_centre"].confidence == left.confidence
 
 
 def _basis(points: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from core.finding.chest import Pole, smoothed
-from core.finding.relief import GRID, Nipple, Patch, breast_patch, find_nipples
+from core.finding.relief import GRID, MIRROR, Nipple, Patch, breast_patch, find_nipples
 from core.landmark import SIDES, Landmark
 from core.mesh import Floats, Mesh, Points
 
@@ -30,6 +30,9 @@ WIDE = 52.0
 ALIKE = 4.0
 """Two smooth breasts point alike if one point lies so near to the other's mirror image [mm]."""
 
+SAME = 4.0
+"""Nipples lie so near to the same place of both breasts [mm]; so much further off, a third of it is left."""
+
 FLAT, FAR_FLATTER = 4.0, 0.3
 """A side that stands out less than this [mm], or than this part of the other, shows no breast."""
 
@@ -40,16 +43,13 @@ def bust_points(mesh: Mesh, poles: Sequence[Pole], middle: float) -> list[Landma
     ``middle`` is x of the middle of the body [mm].
     """
     left, right = patches = [breast_patch(mesh, pole.position) for pole in poles]
-    nipples = find_nipples(left, right)
+    nipples, missing = find_nipples(left, right), missing_sides(poles)
     marks = [
-        _bust_point(f"bust_point_{side}", patch, own, other, home)
-        for side, patch, own, other, home in zip(
-            SIDES, patches, nipples, nipples[::-1], patches[::-1], strict=True
-        )
+        _bust_point(f"bust_point_{side}", patch, own, other, bool(missing))
+        for side, patch, own, other in zip(SIDES, patches, nipples, nipples[::-1], strict=True)
     ]
     if all(mark.rule == PROMINENT for mark in marks):
         marks = _evened(marks, patches, middle)
-    missing = missing_sides(poles)
     if len(missing) != 1:
         return marks
     there = marks[1 - SIDES.index(missing[0])]
@@ -86,22 +86,29 @@ def missing_sides(poles: Sequence[Pole]) -> list[str]:
     return [side for side, pole in zip(SIDES, poles, strict=True) if pole.prominence < least]
 
 
-def _bust_point(name: str, patch: Patch, own: Nipple | None, other: Nipple | None, home: Patch) -> Landmark:
+def _bust_point(name: str, patch: Patch, own: Nipple | None, other: Nipple | None, only: bool) -> Landmark:
+    """Return the bust point of one breast; ``only`` one: the other side cannot bear its nipple out."""
     if own is not None and own.sure:
-        place, confidence, rule = own.position, nipple_confidence(own), NIPPLE
+        place, rule = own.position, NIPPLE
+        confidence = own.clear if only else borne_out(own, other)
     elif other is not None and other.sure:
-        shift = 0.5 * (other.position - home.centre) * (-1.0, 1.0, 1.0)
-        place, confidence, rule = patch.nearest(patch.centre + shift), 0.3, MIRRORED
+        place = patch.nearest(patch.centre + 0.5 * MIRROR * other.way)
+        confidence, rule = 0.3, MIRRORED
     else:
         place, confidence = smooth_point(patch)
         rule = PROMINENT
     return Landmark(name, place, confidence, rule, patch.ring(place, 12.0))
 
 
-def nipple_confidence(nipple: Nipple) -> float:
-    """Return how sure it is (0..1) that the spot is the nipple."""
-    clear = 0.6 * min(nipple.clarity / 6.0, 1.0) + 0.4 * float(np.clip((nipple.ratio - 0.9) / 1.2, 0.0, 1.0))
-    return clear * float(np.exp(-max(nipple.offset - 8.0, 0.0) / 15.0))
+def borne_out(own: Nipple, other: Nipple | None) -> float:
+    """Return how sure it is (0..1) that the spot is the nipple, by that of the other breast. Source: ours.
+
+    Two spots at the same place of both breasts bear each other out, however the breasts differ. Of two that
+    do not, one at most is a nipple: rather the clearer one, near the pole.
+    """
+    rival = 0.0 if other is None else other.alone
+    alike = 0.0 if other is None else float(np.exp(-max(own.apart(other) - SAME, 0.0) / SAME))
+    return alike * own.clear + (1.0 - alike) * own.alone**3 / max(own.alone**2 + rival**2, 1e-9)
 
 
 def smooth_point(patch: Patch) -> tuple[Points, float]:

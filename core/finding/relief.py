@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import LinearNDInterpolator
 from scipy.ndimage import correlate, maximum_filter
+from scipy.spatial import Delaunay
 
 from core.mesh import Floats, Mesh, Points, unit
 
@@ -18,6 +18,10 @@ GRID = 2.0
 
 RING = (9.0, 22.0)
 """Inner and outer radius of the ring that a relief is measured against [mm]."""
+
+
+MIRROR = np.array([-1.0, 1.0, 1.0])
+"""Takes a way on one side of the body to that on the other side."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,8 +89,19 @@ def breast_patch(mesh: Mesh, pole: Points) -> Patch:
     local = local[(np.abs(local[:, :2]) < reach + 10.0).all(axis=1)]
     t = np.arange(-np.ceil(reach / GRID), np.ceil(reach / GRID) + 1) * GRID
     u, v = np.meshgrid(t, t)
-    height = LinearNDInterpolator(local[:, :2], local[:, 2])(u, v)
+    height = _height(local, np.stack([u, v], axis=-1))
     return Patch(pole + np.stack([u, v, height], axis=-1) @ frame, np.hypot(u, v), _relief(height))
+
+
+def _height(surface: Points, places: Points) -> Floats:
+    """Return the third coordinate of ``surface``, shape (n, 3), over ``places``, (..., 2); NaN beside it."""
+    flat = Delaunay(surface[:, :2])
+    at = flat.find_simplex(places)
+    form, start = flat.transform[at, :2], flat.transform[at, 2]
+    share = np.einsum("...ij,...j->...i", form, places - start)
+    share = np.concatenate([share, 1.0 - share.sum(axis=-1, keepdims=True)], axis=-1)
+    height = (share * surface[flat.simplices[at], 2]).sum(axis=-1)
+    return np.asarray(np.where(at >= 0, height, np.nan))
 
 
 def _relief(height: Floats) -> Floats:
@@ -122,11 +137,13 @@ def relief_kernels(cell: float, core: float = 3.0, ring: tuple[float, float] = R
 class Nipple:
     """A spot that stands out of the breast: its centre, shape (3,) [mm], and how clearly.
 
-    ``relief`` is how far it stands out [mm]; ``ratio`` is that over the next best spot of the same breast;
-    ``clarity`` is that over the roughness of the breast; ``offset`` is its distance from the pole [mm].
+    ``way`` leads to it from the pole, shape (3,) [mm], and ``offset`` is its length seen along the normal
+    there [mm]; ``relief`` is how far it stands out [mm]; ``ratio`` is that over the next best spot of the
+    same breast; ``clarity`` is that over the roughness of the breast.
     """
 
     position: Points
+    way: Points
     relief: float
     ratio: float
     clarity: float
@@ -138,6 +155,22 @@ class Nipple:
         far = max(self.offset - 4.0, 0.0)
         return self.relief > 0.9 + 0.06 * far and self.ratio > (1.35 if far > 6.0 else 1.0)
 
+    @property
+    def clear(self) -> float:
+        """How sure (0..1) it is by its looks alone: clear of the roughness and of others, near the pole."""
+        single = float(np.clip((self.ratio - 0.9) / 1.2, 0.0, 1.0)) * min(self.clarity / 2.0, 1.0)
+        clear = 0.6 * min(self.clarity / 6.0, 1.0) + 0.4 * single
+        return clear * float(np.exp(-max(self.offset - 8.0, 0.0) / 15.0))
+
+    @property
+    def alone(self) -> float:
+        """How sure (0..1) it is without a partner: all else that stands out may lie anywhere."""
+        return self.clear * float(np.exp(-max(self.offset - 4.0, 0.0) / 8.0))
+
+    def apart(self, other: Nipple) -> float:
+        """Return how far it lies from the mirror image of that of the other breast, pole over pole [mm]."""
+        return float(np.linalg.norm(self.way - MIRROR * other.way))
+
 
 def find_nipples(left: Patch, right: Patch) -> tuple[Nipple | None, Nipple | None]:
     """Return the spots that stand out most as a pair, near the poles and alike on both sides.
@@ -147,11 +180,9 @@ def find_nipples(left: Patch, right: Patch) -> tuple[Nipple | None, Nipple | Non
     spots = [_spots(patch) for patch in (left, right)]
     if not (spots[0] and spots[1]):
         return (spots[0][0] if spots[0] else None, spots[1][0] if spots[1] else None)
-    mirror = np.array([-1.0, 1.0, 1.0])
 
     def worth(a: Nipple, b: Nipple) -> float:
-        apart = float(np.linalg.norm((a.position - left.centre) - mirror * (b.position - right.centre)))
-        return _worth(a) + _worth(b) - 0.5 * (max(apart - 6.0, 0.0) / 9.0) ** 2
+        return _worth(a) + _worth(b) - 0.5 * (max(a.apart(b) - 6.0, 0.0) / 9.0) ** 2
 
     return max(((a, b) for a in spots[0] for b in spots[1]), key=lambda pair: worth(*pair))
 
@@ -173,9 +204,9 @@ def _spots(patch: Patch) -> list[Nipple]:
         others[row, column] = False
         top = r[row, column]
         ratio = top / max(r[others].max(initial=0.0), 0.1)
-        spots.append(
-            Nipple(_centre(patch, row, column), top, ratio, top / rough, patch.distance[row, column])
-        )
+        place = _centre(patch, row, column)
+        way, offset = place - patch.centre, patch.distance[row, column]
+        spots.append(Nipple(place, way, top, ratio, top / rough, offset))
     return sorted(spots, key=_worth, reverse=True)
 
 

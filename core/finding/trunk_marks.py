@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
+from core.finding.bust_point import ACROSS
 from core.landmark import SIDES, Landmark, Landmarks
 from core.mesh import Flags, Floats, Mesh, Points
 from core.sections import arc_length, chains, curvature, cut, resample
@@ -26,6 +27,9 @@ HIP = "On the centre line of the front, where the trunk is widest round below th
 NECK_FRONT = "The most hollow place of the centre line of the front between chest and neck."
 NECK_BACK = "The most prominent place of the centre line of the back at the foot of the neck."
 
+EVEN = 4.0
+"""The bust points lie so evenly about the middle of the trunk [mm]; twice that more, and a third is left."""
+
 
 def trunk_marks(mesh: Mesh, found: Landmarks) -> list[Landmark]:
     """Return the landmarks of the trunk round the bust landmarks ``found``. Source: ours."""
@@ -36,7 +40,8 @@ def trunk_marks(mesh: Mesh, found: Landmarks) -> list[Landmark]:
     heights = [found.underbust_level, found.bust_level]
     levels = dict(zip(("_underbust", ""), trunk_levels(mesh, heights), strict=True))
     stable = stable_level(mesh, found.underbust_level)
-    marks = _fronts(mesh, levels, middle, _level_confidence(found))
+    aside = abs(middle - float(guide.centre_at(stable.z)[0]))
+    marks = _fronts(mesh, levels, middle, _level_confidence(found, aside))
     marks += [_back(mesh, guide, level, name) for name, level in levels.items()]
     marks += [_side(guide, stable, name, sign) for name, sign in zip(SIDES, (1.0, -1.0), strict=True)]
     marks += [_armpit(mesh, guide, found, s) for s in (0, 1)]
@@ -86,12 +91,17 @@ def _split(level: Level) -> float:
     return 0.5 * float(level.points[:, 1].min() + level.points[:, 1].max()) if len(level.points) else 0.0
 
 
-def _level_confidence(found: Landmarks) -> dict[str, float]:
-    """Return how sure the two levels are: as the points that they were taken from."""
+def _level_confidence(found: Landmarks, aside: float) -> dict[str, float]:
+    """Return how sure the centres of the front are: as the points that they were taken from.
+
+    The middle of the bust points may lie ``aside`` of that of the trunk [mm].
+    """
     low = [mark for name, mark in found.points.items() if name.startswith(("fold", "lowest"))]
     deepest = min(low, key=lambda mark: float(mark.position[2]), default=None)
-    busts = [found.points[f"bust_point_{side}"].confidence for side in SIDES]
-    return {"": max(busts), "_underbust": deepest.confidence if deepest else 1.0}
+    busts = [found.points[f"bust_point_{side}"] for side in SIDES]
+    own = [mark.confidence for mark in busts if mark.rule != ACROSS]  # that one only mirrors the other
+    even = float(np.exp(-max(aside - EVEN, 0.0) / (2.0 * EVEN)))
+    return {"": even * min(own, default=0.0), "_underbust": even * (deepest.confidence if deepest else 1.0)}
 
 
 def _fronts(
