@@ -12,10 +12,10 @@ from worn_scans import decimated
 
 from core.body import Body
 from core.errors import LandmarkError
-from core.finding.breast_profile import OFFSETS, OWN
+from core.finding.breast_profile import OFFSETS, OWN, Profile
 from core.finding.bust_check import check
 from core.finding.chest import find_anchor, find_poles
-from core.finding.fold import Trace
+from core.finding.fold import Trace, _rival
 from core.finding.under_breast import CREASE, MIRRORED, _apart, _confidence, _less_sure
 from core.landmark import Landmark, Landmarks
 from core.landmarks import find_landmarks
@@ -183,6 +183,17 @@ def test_a_fold_is_no_surer_than_the_place_of_its_profile() -> None:
         sure, unsure = (_confidence(crease, replace(bust, confidence=c)) for c in (1.0, 0.3))
         assert sure == 1.0
         assert unsure <= lost
+        assert _confidence(replace(crease, rival=1.5), bust) < 0.5, "another place is far more hollow"
+
+
+def test_the_hollowest_other_place_of_the_profile_rivals_the_fold() -> None:
+    arc = np.arange(120.0)
+    points = np.stack([0.0 * arc, 0.0 * arc, 60.0 - arc], axis=1)
+    bend = 0.03 * np.exp(-0.5 * ((arc - 50.0) / 6.0) ** 2) + 0.06 * np.exp(-0.5 * ((arc - 80.0) / 6.0) ** 2)
+    profile = Profile(points, bend, arc > -1.0, True)
+    assert _rival(profile, points[50], 10.0) == pytest.approx(2.0, abs=0.05)
+    assert _rival(profile, points[80], 10.0) == pytest.approx(0.5, abs=0.05)
+    assert _rival(replace(profile, seen=arc < 70.0), points[50], 10.0) == 0.0, "what a hole does not show"
 
 
 def test_one_of_two_folds_that_contradict_each_other_is_wrong() -> None:

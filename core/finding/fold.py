@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
@@ -23,7 +23,7 @@ class Trace:
 
     ``depth`` is the mean hollowness near the bust point, ``lead`` that of the run over the next best one
     [1/mm], ``rough`` how far it strays from a smooth curve [mm]; ``own`` is the row of the bust point's
-    profile.
+    profile; ``rival`` is how many times as hollow as the crease another place of that profile is.
     """
 
     curve: Points
@@ -32,6 +32,7 @@ class Trace:
     lead: float
     rough: float
     own: int
+    rival: float = 0.0
 
 
 def trace(bundle: list[Profile], height: float) -> Trace | None:
@@ -47,10 +48,8 @@ def trace(bundle: list[Profile], height: float) -> Trace | None:
         n = len(profile.points)
         points[k, :n] = profile.points
         high = np.abs(profile.points[:, 2] - height)
-        arc = np.arange(n)
-        allowed = (arc > 22) & (arc < n - 12) & (high < 60.0)
         worth = gaussian_filter1d(profile.bend, 4.0) - 0.00035 * np.maximum(high - 22.0, 0.0)
-        value[k, :n] = np.where(allowed, np.where(profile.seen, worth, HIDDEN), -np.inf)
+        value[k, :n] = np.where(_allowed(profile, height), np.where(profile.seen, worth, HIDDEN), -np.inf)
     usable = np.isfinite(value).any(axis=1)
     if not usable[OWN]:
         return None
@@ -64,7 +63,26 @@ def trace(bundle: list[Profile], height: float) -> Trace | None:
     taken = value[rows].copy()
     taken[np.abs(np.arange(size)[None] - path[:, None]) <= 18] = -np.inf
     other = _best_run(points[rows], taken)[1] if np.isfinite(taken).any(axis=1).all() else 0.0
-    return _trace(bundle, rows, path, (best - max(other, 0.0)) / len(rows))
+    found = _trace(bundle, rows, path, (best - max(other, 0.0)) / len(rows))
+    return replace(found, rival=_rival(bundle[OWN], found.curve[found.own], height))
+
+
+def _allowed(profile: Profile, height: float) -> Flags:
+    """Tell which points of ``profile`` may be the fold: below the bust point and near ``height`` [mm]."""
+    arc, n = np.arange(len(profile.points)), len(profile.points)
+    return np.asarray((arc > 22) & (arc < n - 12) & (np.abs(profile.points[:, 2] - height) < 60.0))
+
+
+def _rival(profile: Profile, fold: Points, height: float) -> float:
+    """Return how many times as hollow as the ``fold`` the hollowest other place of the profile is."""
+    bend = gaussian_filter1d(profile.bend, 4.0)
+    at = int(np.argmin(((profile.points - fold) ** 2).sum(axis=1)))
+    crease = float(bend[max(at - 4, 0) : at + 5].max())
+    summit = np.zeros(len(bend), dtype=bool)
+    summit[1:-1] = (bend[1:-1] >= bend[:-2]) & (bend[1:-1] >= bend[2:])
+    other = summit & profile.seen & _allowed(profile, height)
+    other &= (np.abs(np.arange(len(bend)) - at) > 12) & (np.abs(profile.points[:, 2] - fold[2]) > 4.0)
+    return float(bend[other].max(initial=0.0)) / max(crease, 1e-3)
 
 
 def _best_run(points: Points, value: Floats) -> tuple[Indices, float]:

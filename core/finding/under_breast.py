@@ -37,6 +37,9 @@ ASTRAY = 17.0
 CLIMB, CLIMBS = 3.0, 10.0
 """Over that way the crease may climb by ``CLIMB`` [mm]; each ``CLIMBS`` more divide the confidence by e."""
 
+RIVAL = 1.1, 0.4
+"""Another place may be so many times as hollow as the fold; each second part more divides by e."""
+
 OVERHANG = 40.0
 """Behind a breast that hangs over its fold the hollow is wide: so much [mm] divides the confidence by e."""
 
@@ -101,7 +104,7 @@ def _under(mesh: Mesh, bust: Landmark, level: float, side: str, placed: Mapping[
 
 
 def _confidence(crease: Trace, bust: Landmark) -> float:
-    """Return how sure (0..1) the fold is: a deep crease without a rival, smooth, and level to the sides.
+    """Return how sure (0..1) the fold is: a deep, smooth and level crease without a rival.
 
     The less sure the bust point, the further to the side the crease must keep its height.
     """
@@ -111,6 +114,7 @@ def _confidence(crease: Trace, bust: Landmark) -> float:
     climb = np.abs(np.interp(own[0] + astray * np.linspace(-1.0, 1.0, 9), x, z) - own[2]).max()
     over = max(float(own[2] - bust.position[2]), 0.0)
     doubt = crease.rough / 5.0 + max(climb - CLIMB, 0.0) / CLIMBS + over / OVERHANG
+    doubt += max(crease.rival - RIVAL[0], 0.0) / RIVAL[1]
     return float(confidence * np.exp(-doubt))
 
 
