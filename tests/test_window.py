@@ -74,60 +74,59 @@ def test_escape_takes_a_drag_back() -> None:
     run_main([], script)
 
 
-def test_before_and_after_flip_on_the_space_bar() -> None:
+def test_the_view_shows_what_its_keys_and_tools_ask_for() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        window.activateWindow()
-        yield window.isActiveWindow
-        view = window.view
-        body = view.viewport.scene.body
-        assert body is not None
-        after = body.shown_points.copy()
-        QTest.keyClick(window, Qt.Key.Key_Space)
-        assert not view.after
-        assert np.abs(body.shown_points - body.rest.vertices).max() == 0.0
-        QTest.keyClick(window, Qt.Key.Key_Space)
-        assert view.after
-        assert np.array_equal(body.shown_points, after)
+        yield from before_and_after_flip_on_the_space_bar(window)
+        yield from the_tools_tell_where_the_body_is_seen_from(window)
+        control_mesh_and_lines_can_be_hidden(window)
 
     run_main([], script)
 
 
-def test_the_tools_tell_where_the_body_is_seen_from() -> None:
-    def script(window: MainWindow) -> Script:
-        yield settled(window)
-        view, tools = window.view.viewport, window.view.tools.actions_by_name
-        assert tools["three-quarter"].isChecked()
-        tools["left"].trigger()
-        yield lambda: view.scene.view.name == "left"
-        assert tools["left"].isChecked()
-        canvas = view.childAt(view.rect().center())
-        start = canvas.rect().center()
-        QTest.mousePress(canvas, Qt.MouseButton.LeftButton, pos=start)
-        QTest.mouseMove(canvas, start + QPoint(30, 0))
-        QTest.mouseMove(canvas, start + QPoint(60, 0))
-        QTest.mouseRelease(canvas, Qt.MouseButton.LeftButton, pos=start + QPoint(60, 0))
-        assert not any(tools[name].isChecked() for name in VIEWS)
-
-    run_main([], script)
+def before_and_after_flip_on_the_space_bar(window: MainWindow) -> Script:
+    window.activateWindow()
+    yield window.isActiveWindow
+    view = window.view
+    body = view.viewport.scene.body
+    assert body is not None
+    after = body.shown_points.copy()
+    QTest.keyClick(window, Qt.Key.Key_Space)
+    assert not view.after
+    assert np.abs(body.shown_points - body.rest.vertices).max() == 0.0
+    QTest.keyClick(window, Qt.Key.Key_Space)
+    assert view.after
+    assert np.array_equal(body.shown_points, after)
 
 
-def test_control_mesh_and_lines_can_be_hidden() -> None:
-    def script(window: MainWindow) -> Script:
-        yield settled(window)
-        scene = window.view.viewport.scene
-        tools = window.view.tools.actions_by_name
-        assert not scene.is_visible("control")
-        tools["control-mesh"].trigger()
-        assert scene.is_visible("control")
-        tools["bands"].trigger()
-        assert not scene.is_visible("bands")
-        tools["ghost"].trigger()
-        assert scene.is_visible("ghost")
-        window.lines.visibility_changed.emit("mid-bust", False)
-        assert "mid-bust" not in scene.bands.names
+def the_tools_tell_where_the_body_is_seen_from(window: MainWindow) -> Script:
+    window.view.viewport.motion = True
+    view, tools = window.view.viewport, window.view.tools.actions_by_name
+    assert tools["three-quarter"].isChecked()
+    tools["left"].trigger()
+    yield lambda: view.scene.view.name == "left"
+    assert tools["left"].isChecked()
+    canvas = view.childAt(view.rect().center())
+    start = canvas.rect().center()
+    QTest.mousePress(canvas, Qt.MouseButton.LeftButton, pos=start)
+    QTest.mouseMove(canvas, start + QPoint(30, 0))
+    QTest.mouseMove(canvas, start + QPoint(60, 0))
+    QTest.mouseRelease(canvas, Qt.MouseButton.LeftButton, pos=start + QPoint(60, 0))
+    assert not any(tools[name].isChecked() for name in VIEWS)
 
-    run_main([], script)
+
+def control_mesh_and_lines_can_be_hidden(window: MainWindow) -> None:
+    scene = window.view.viewport.scene
+    tools = window.view.tools.actions_by_name
+    assert not scene.is_visible("control")
+    tools["control-mesh"].trigger()
+    assert scene.is_visible("control")
+    tools["bands"].trigger()
+    assert not scene.is_visible("bands")
+    tools["ghost"].trigger()
+    assert scene.is_visible("ghost")
+    window.lines.visibility_changed.emit("mid-bust", False)
+    assert "mid-bust" not in scene.bands.names
 
 
 def test_an_edit_that_cannot_be_carried_out_is_taken_back() -> None:

@@ -88,22 +88,25 @@ def test_a_bad_scan_leaves_everything_as_it_was(tmp_path: Path) -> None:
     run_main([], script)
 
 
-@pytest.mark.parametrize("answer", ["discard", "stay", "save"])
-def test_closing_asks_about_changes(answer: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path = tmp_path / "kept.busk"
-    monkeypatch.setattr(app.desk, "ask_about_changes", lambda *_: answer)
+@pytest.mark.parametrize("last", ["discard", "save"])
+def test_closing_asks_about_changes(last: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path, answers = tmp_path / "kept.busk", ["stay", last]
+    monkeypatch.setattr(app.desk, "ask_about_changes", lambda *_: answers.pop(0))
     monkeypatch.setattr(app.desk, "ask_save", lambda *_: str(path))
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
         drag(window, "mid-bust", -20)
         yield settled(window)
-        closed = window.close()
-        assert closed == (answer != "stay")
-        assert path.exists() == (answer == "save")
+        assert not window.close()
+        assert window.isVisible()
+        assert not path.exists()
+        assert window.close()
+        assert path.exists() == (last == "save")
 
     run_main([], script)
-    if answer == "save":
+    assert not answers
+    if last == "save":
         assert open_project(path).ratio("mid-bust") < 0.95
 
 

@@ -19,7 +19,10 @@ Script = Generator[Callable[[], bool], None, None]
 
 
 def run_main(arguments: list[str], script: Callable[[MainWindow], Script]) -> int:
-    """Start ``busk`` and play ``script``, which yields what to wait for; at its end the window is closed."""
+    """Start ``busk`` and play ``script``, which yields what to wait for; at its end the window is closed.
+
+    The window is small, and the camera jumps where it would fly.
+    """
     player = _Player(script)
     QTimer.singleShot(0, player.begin)
     code = main(arguments)
@@ -84,6 +87,8 @@ class _Player:
             if not windows:
                 return self._check_patience()
             self._window = windows[0]
+            self._window.resize(self._window.minimumSize())  # half the pixels: there is no GPU
+            self._window.view.viewport.motion = False
             self._play = self._script(self._window)
         if not self._waiting():
             return self._check_patience()
