@@ -43,9 +43,9 @@ def bust_points(mesh: Mesh, poles: Sequence[Pole], middle: float) -> list[Landma
     ``middle`` is x of the middle of the body [mm].
     """
     left, right = patches = [breast_patch(mesh, pole.position) for pole in poles]
-    nipples, missing = find_nipples(left, right), missing_sides(poles)
+    nipples, missing = find_nipples(left, right, middle), missing_sides(poles)
     marks = [
-        _bust_point(f"bust_point_{side}", patch, own, other, bool(missing))
+        _bust_point(f"bust_point_{side}", patch, own, other, None if missing else middle)
         for side, patch, own, other in zip(SIDES, patches, nipples, nipples[::-1], strict=True)
     ]
     if all(mark.rule == PROMINENT for mark in marks):
@@ -86,11 +86,13 @@ def missing_sides(poles: Sequence[Pole]) -> list[str]:
     return [side for side, pole in zip(SIDES, poles, strict=True) if pole.prominence < least]
 
 
-def _bust_point(name: str, patch: Patch, own: Nipple | None, other: Nipple | None, only: bool) -> Landmark:
-    """Return the bust point of one breast; ``only`` one: the other side cannot bear its nipple out."""
+def _bust_point(
+    name: str, patch: Patch, own: Nipple | None, other: Nipple | None, middle: float | None
+) -> Landmark:
+    """Return the bust point of one breast; without a ``middle`` [mm] it is the only breast."""
     if own is not None and own.sure:
         place, rule = own.position, NIPPLE
-        confidence = own.clear if only else borne_out(own, other)
+        confidence = own.clear if middle is None else borne_out(own, other, middle)
     elif other is not None and other.sure:
         place = patch.nearest(patch.centre + 0.5 * MIRROR * other.way)
         confidence, rule = 0.3, MIRRORED
@@ -100,14 +102,14 @@ def _bust_point(name: str, patch: Patch, own: Nipple | None, other: Nipple | Non
     return Landmark(name, place, confidence, rule, patch.ring(place, 12.0))
 
 
-def borne_out(own: Nipple, other: Nipple | None) -> float:
+def borne_out(own: Nipple, other: Nipple | None, middle: float) -> float:
     """Return how sure it is (0..1) that the spot is the nipple, by that of the other breast. Source: ours.
 
     Two spots at the same place of both breasts bear each other out, however the breasts differ. Of two that
     do not, one at most is a nipple: rather the clearer one, near the pole.
     """
     rival = 0.0 if other is None else other.alone
-    alike = 0.0 if other is None else float(np.exp(-max(own.apart(other) - SAME, 0.0) / SAME))
+    alike = 0.0 if other is None else float(np.exp(-max(own.apart(other, middle) - SAME, 0.0) / SAME))
     return alike * own.clear + (1.0 - alike) * own.alone**3 / max(own.alone**2 + rival**2, 1e-9)
 
 

@@ -165,24 +165,28 @@ class Nipple:
     @property
     def alone(self) -> float:
         """How sure (0..1) it is without a partner: all else that stands out may lie anywhere."""
-        return self.clear * float(np.exp(-max(self.offset - 4.0, 0.0) / 8.0))
+        return 0.8 * self.clear * float(np.exp(-max(self.offset - 4.0, 0.0) / 8.0))
 
-    def apart(self, other: Nipple) -> float:
-        """Return how far it lies from the mirror image of that of the other breast, pole over pole [mm]."""
-        return float(np.linalg.norm(self.way - MIRROR * other.way))
+    def apart(self, other: Nipple, middle: float) -> float:
+        """Return how far it lies from the mirror image of that of the other breast [mm].
+
+        The less of two: pole laid over pole, as breasts differ, or at the ``middle`` of the body, x [mm].
+        """
+        across = self.position - MIRROR * other.position - (2.0 * middle, 0.0, 0.0)
+        return float(min(np.linalg.norm(self.way - MIRROR * other.way), np.linalg.norm(across)))
 
 
-def find_nipples(left: Patch, right: Patch) -> tuple[Nipple | None, Nipple | None]:
+def find_nipples(left: Patch, right: Patch, middle: float) -> tuple[Nipple | None, Nipple | None]:
     """Return the spots that stand out most as a pair, near the poles and alike on both sides.
 
-    None where nothing stands out. Source: ours.
+    ``middle`` is x of the middle of the body [mm]. None where nothing stands out. Source: ours.
     """
     spots = [_spots(patch) for patch in (left, right)]
     if not (spots[0] and spots[1]):
         return (spots[0][0] if spots[0] else None, spots[1][0] if spots[1] else None)
 
     def worth(a: Nipple, b: Nipple) -> float:
-        return _worth(a) + _worth(b) - 0.5 * (max(a.apart(b) - 6.0, 0.0) / 9.0) ** 2
+        return _worth(a) + _worth(b) - 0.5 * (max(a.apart(b, middle) - 6.0, 0.0) / 9.0) ** 2
 
     return max(((a, b) for a in spots[0] for b in spots[1]), key=lambda pair: worth(*pair))
 
