@@ -94,7 +94,7 @@ class MainWindow(QMainWindow):
         session.frame_ready.connect(desk.show_frame)
         session.design_changed.connect(desk.show_design)
         session.failed.connect(desk.show_failure)
-        session.asked.connect(scan_desk.show_question)
+        session.asked.connect(scan_desk.show_stuck)
         session.working.connect(scan_desk.show_work)
         session.saved.connect(desk.show_saved)
         session.undo_stack.cleanChanged.connect(desk.show_title)
@@ -117,6 +117,7 @@ class MainWindow(QMainWindow):
         self.scan.front_asked.connect(scan_desk.ask)
         self.landmarks.landmark_selected.connect(desk.select_landmark)
         self.landmarks.reset_asked.connect(scan_desk.reset_landmarks)
+        self.landmarks.place_asked.connect(scan_desk.put_pin)
 
         self._connect_view()
         self._connect_actions()

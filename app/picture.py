@@ -77,17 +77,22 @@ def draw_window(
     language: str = "en",
     size: tuple[int, int] = (1600, 1000),
 ) -> None:
-    """Write a PNG of the whole window on a settled design. Raises UserError."""
+    """Write a PNG of the whole window on a settled design. Raises UserError, that of a stuck scan too."""
     _check_name(out)
     with settled_window(design, dark=dark, language=language, size=size) as window:
         save_window(window, out)
+        if window.scan_desk.stuck is not None:
+            raise window.scan_desk.stuck
 
 
 @contextmanager
 def settled_window(
     design: Design, *, dark: bool = False, language: str = "en", size: tuple[int, int] = (1600, 1000)
 ) -> Iterator[MainWindow]:
-    """Give a window on a design that is solved to the end and fully drawn; it is closed afterwards."""
+    """Give a window on a design that is solved to the end and fully drawn; it is closed afterwards.
+
+    A scan that cannot go on is shown as far as it came, and stays in ``window.scan_desk.stuck``.
+    """
     off_screen()
     from app.application import application
     from app.window import open_window
@@ -101,7 +106,9 @@ def settled_window(
     window.show()
 
     def ready() -> bool:
-        return bool(failures) or (window.is_settled() and window.view.is_shaded)
+        view = window.view
+        stuck = window.scan_desk.stuck is not None and (view.is_shaded or view.question.isVisible())
+        return bool(failures) or stuck or (window.is_settled() and view.is_shaded)
 
     try:
         wait_until(ready, app.processEvents)

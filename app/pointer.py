@@ -136,10 +136,15 @@ class Pointer(QObject):
             self._hovered = name
             self.band_hovered.emit(name)
 
-    def _drag_pin(self, place: QPointF) -> None:
+    def skin_at(self, place: QPointF) -> Floats | None:
+        """Return the place of the body at rest, shape (3,) [mm], that is seen at a pixel, or None."""
         skin = self._skin_at(place)
+        return None if skin is None else self._scene.at_rest(skin[None])[0]
+
+    def _drag_pin(self, place: QPointF) -> None:
+        skin = self.skin_at(place)
         if skin is not None:
-            self.pin_moved.emit(self._pin, self._scene.at_rest(skin[None])[0])
+            self.pin_moved.emit(self._pin, skin)
 
     def _band_at(self, place: QPointF) -> str:
         return self._scene.band_at(place.x(), place.y(), self._canvas.width(), self._canvas.height())

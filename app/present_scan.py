@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from app.panels.landmarks import LandmarkView
 from app.panels.scan import ScanView
 from app.words import number, tr
 from core.body import Body
-from core.landmark import Landmarks
-from core.pipeline import Stages
+from core.design import ScanSource
+from core.landmark import NAMES, Landmark
 
 GROUPS = {
     "bust_point": "bust",
@@ -51,32 +53,27 @@ def landmark_title(name: str) -> str:
     return sides.get(name[len(kind) :], "{name}").format(name=titles.get(kind, kind.replace("_", " ")))
 
 
-def landmark_views(landmarks: Landmarks) -> list[LandmarkView]:
-    """Return the rows of the list of landmarks, those of the bust first."""
+def landmark_views(points: Mapping[str, Landmark]) -> list[LandmarkView]:
+    """Return the rows of the list of landmarks, those of the bust first; the absent ones are among them."""
     order = list(GROUPS)
-    marks = sorted(
-        landmarks.points.values(),
-        key=lambda mark: order.index(kind_of(mark.name)) if kind_of(mark.name) in order else len(order),
+    known = sorted(
+        NAMES, key=lambda name: order.index(kind_of(name)) if kind_of(name) in order else len(order)
     )
-    return [
-        LandmarkView(
-            mark.name,
-            landmark_title(mark.name),
-            mark.confidence,
-            mark.rule,
-            GROUPS.get(kind_of(mark.name), "further"),
-            mark.by_hand,
-        )
-        for mark in marks
-    ]
+    return [_landmark_view(name, points.get(name)) for name in known]
 
 
-def scan_view(stages: Stages) -> ScanView:
+def _landmark_view(name: str, mark: Landmark | None) -> LandmarkView:
+    title, group = landmark_title(name), GROUPS.get(kind_of(name), "further")
+    if mark is None:
+        return LandmarkView(name, title, 0.0, tr("The scan does not show it."), group, absent=True)
+    return LandmarkView(name, title, mark.confidence, mark.rule, group, mark.by_hand)
+
+
+def scan_view(source: ScanSource, body: Body) -> ScanView:
     """Return the facts of the scan."""
-    body, source = stages.body, stages.design.scan
     pose = body.pose
     return ScanView(
-        stages.scan.name,
+        source.name,
         pose.unit,
         pose.reason,
         pose.sure,

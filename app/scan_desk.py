@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import reduce
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
@@ -26,14 +27,18 @@ from app.words import say, tr
 from core.body import Body
 from core.design import Design
 from core.doubts import ESSENTIAL, landmark_doubts, weak_sides
-from core.pipeline import Stages, UnsureError
+from core.pipeline import Stages, StuckError
+from core.placing import in_file
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
 
 
 class ScanDesk(QObject):
-    """Brings what was understood of a scan to the window, and what the user knows better to the session."""
+    """Brings what was understood of a scan to the window, and what the user knows better to the session.
+
+    ``stuck`` is what keeps the scan that is shown from being a document, until the user knows better.
+    """
 
     def __init__(self, window: MainWindow) -> None:
         super().__init__(window)
@@ -41,6 +46,7 @@ class ScanDesk(QObject):
         self._session = window.session
         self._asked_for: Design | None = None
         self._asked_body: Body | None = None
+        self.stuck: StuckError | None = None
         self._painter = Background(self)
         self._painter.finished.connect(self._show_question)
         self._painter.failed.connect(self._show_no_question)
@@ -51,8 +57,8 @@ class ScanDesk(QObject):
         """Show what was understood of the scan, and found on it."""
         window, landmarks = self._window, stages.landmarks
         said = landmark_doubts(landmarks)
-        window.landmarks.set_landmarks(landmark_views(landmarks), said)
-        window.scan.set_scan(scan_view(stages))
+        window.landmarks.set_landmarks(landmark_views(landmarks.points), said)
+        window.scan.set_scan(scan_view(stages.design.scan, stages.body))
         window.view.drop_back()
         weak = sum(len(weak_sides(landmarks, kind)) for kind in ESSENTIAL)
         window.rail.set_state("scan", "done" if stages.body.pose.sure else "look", 1)
@@ -61,6 +67,7 @@ class ScanDesk(QObject):
     def show_opened(self, stages: Stages) -> None:
         """Say what is unclear on a scan that has just been opened, and ask how it stands if need be."""
         self._forget_question()
+        self.stuck = None
         self._show_unclear(stages)
         pose, source = stages.body.pose, stages.design.scan
         if pose.sure:
@@ -84,9 +91,20 @@ class ScanDesk(QObject):
         self._window.desk.go_to("landmarks")
         self._window.desk.select_landmark(landmark)
 
-    def show_question(self, unsure: UnsureError) -> None:
-        """Ask how a scan stands that could not be opened: no bust was found the way it was taken."""
-        self._ask(unsure.body, unsure.design)
+    def show_stuck(self, stuck: StuckError) -> None:
+        """Show a scan that cannot go on: ask how it stands if that is not sure, else for its landmarks."""
+        window, self.stuck = self._window, stuck
+        if not stuck.body.pose.sure:
+            self._ask(stuck.body, stuck.design)
+            return
+        window.landmarks.set_landmarks(landmark_views(stuck.landmarks), [stuck.message])
+        window.scan.set_scan(scan_view(stuck.design.scan, stuck.body))
+        window.view.show_stuck(stuck.body, stuck.landmarks)
+        window.desk.go_to("landmarks")
+        window.rail.set_state("scan", "done")
+        window.rail.set_state("landmarks", "look")
+        window.notices.withdraw("bad")
+        window.notices.show_notice("bad", stuck.message, stuck.hint, lasting=True)
 
     def show_work(self, what: str, share: float) -> None:
         """Name the work that takes its time, and how much of it is done."""
@@ -107,7 +125,7 @@ class ScanDesk(QObject):
 
     def tell(self, key: str, value: str) -> None:
         """Read the scan again with its unit, up or front as told; an empty key forgets what was told."""
-        design = self._session.design
+        design = self.stuck.design if self.stuck else self._session.design
         if design is None:
             return
         scan = design.scan
@@ -124,12 +142,17 @@ class ScanDesk(QObject):
         else:
             up = self._shown_up() if scan.up is None else scan.up
             text, scan = tr("{axis} is front").format(axis=value), replace(scan, up=up, front=value)
-        self._session.change({"scan": scan}, text)
+        if self.stuck:
+            self._session.open_design(replace(design, scan=scan))
+        else:
+            self._session.change({"scan": scan}, text)
 
     def ask(self) -> None:
         """Show the pictures for the present scan."""
         frame = self._session.frame
-        if frame is not None:
+        if self.stuck:
+            self._ask(self.stuck.body, self.stuck.design)
+        elif frame is not None:
             self._ask(frame.stages.body, None)
 
     def answer(self, up: str, front: str) -> None:
@@ -144,14 +167,27 @@ class ScanDesk(QObject):
                 {"scan": replace(design.scan, up=up, front=front)}, tr("Front chosen by its picture")
             )
 
+    def put_pin(self, name: str) -> None:
+        """Give a landmark that was not found a pin to drag."""
+        self._window.view.put_pin(name)
+
     def place_landmark(self, name: str) -> None:
-        """Keep where a landmark's pin was let go, as one undo step."""
+        """Keep where a landmark's pin was let go, as one undo step; a stuck scan is tried again with it."""
         dropped = self._window.view.dropped()
-        if dropped is not None and dropped[0] == name:
+        if dropped is None or dropped[0] != name:
+            return
+        if self.stuck:
+            place = in_file(dropped[1], self.stuck.body.pose.file_to_mm)
+            self._session.open_design(self.stuck.design.with_placed(name, place))
+        else:
             self._session.place_landmark(name, landmark_title(name), dropped[1])
 
     def reset_landmarks(self, names: Sequence[str]) -> None:
         """Let landmarks be found again."""
+        if self.stuck:
+            again = reduce(lambda design, name: design.with_placed(name, None), names, self.stuck.design)
+            self._session.open_design(again)
+            return
         text = tr("{name} found again").format(name=landmark_title(names[0]))
         self._session.reset_landmarks(names, text if len(names) == 1 else tr("Landmarks found again"))
 
@@ -163,7 +199,8 @@ class ScanDesk(QObject):
 
     def _shown_up(self) -> str:
         frame = self._session.frame
-        return frame.stages.body.pose.up if frame is not None else "+z"
+        body = self.stuck.body if self.stuck else frame.stages.body if frame is not None else None
+        return body.pose.up if body is not None else "+z"
 
     def _forget_question(self) -> None:
         self._asked_for = self._asked_body = None

@@ -21,7 +21,7 @@ from core.errors import UserError
 from core.export import write_frame
 from core.live import Failure, Frame, LiveSolver
 from core.mesh import Points
-from core.pipeline import UnsureError
+from core.pipeline import StuckError
 from core.placing import in_file
 from core.project import is_project, open_project, save_project
 
@@ -34,8 +34,8 @@ class Session(QObject):
 
     Verbs (open, preview, commit, save ...) are called by the window; what follows is told by signals.
     ``design`` is what is committed; while a slider is dragged the solver works on a preview that no one else
-    sees. ``working`` tells the work in hand and the share done; ``asked`` hands out the UnsureError of a scan
-    that was opened and cannot be understood before somebody says how it stands.
+    sees. ``working`` tells the work in hand and the share done; ``asked`` hands out the StuckError of a scan
+    that was opened and cannot go on before somebody says how it stands or places its landmarks.
     """
 
     design_changed = Signal(object)
@@ -266,8 +266,9 @@ class Session(QObject):
             self._opening = None
             if self.design is not None:
                 self._submit(self.design)
-            if isinstance(failure.error, UnsureError):
-                self.asked.emit(failure.error)
+            stuck = failure.error
+            if isinstance(stuck, StuckError) and (self.design is None or not stuck.body.pose.sure):
+                self.asked.emit(stuck)
                 return
         elif failure.revision > self._revision and self._preview is not None:
             # One notice for a drag is enough, however far it goes on.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from PySide6.QtCore import QEvent, QObject
 from PySide6.QtGui import QImage, QResizeEvent
@@ -19,7 +21,7 @@ from app.viewport import Viewport
 from core.body import Body
 from core.control_mesh import ControlMesh
 from core.design import Design
-from core.landmark import Landmarks
+from core.landmark import Landmark
 from core.lines import Line
 from core.live import Frame
 from core.mesh import Points
@@ -44,7 +46,7 @@ class ViewArea(QWidget):
         self.is_shaded = False
         self._body: Body | None = None
         self._control: ControlMesh | None = None
-        self._landmarks: Landmarks | None = None
+        self._landmarks: Mapping[str, Landmark] = {}
         self._lines: tuple[Line, ...] = ()
         self._landmark = ""
         self._dragged: tuple[str, Points] | None = None
@@ -70,8 +72,8 @@ class ViewArea(QWidget):
         fresh = stages.body is not self._body
         if fresh:
             self._show_body(stages.body)
-        if stages.landmarks is not self._landmarks:
-            self._landmarks, self._dragged = stages.landmarks, None
+        if stages.landmarks.points is not self._landmarks:
+            self._landmarks, self._dragged = stages.landmarks.points, None
             self._show_pins()
         if stages.control is not self._control:
             self._control = stages.control
@@ -87,6 +89,15 @@ class ViewArea(QWidget):
         self._labels = {name: band_label(design, frame, name) for name in frame.lengths}
         self._show_label()
         self.viewport.request_draw()
+
+    def show_stuck(self, body: Body, landmarks: Mapping[str, Landmark]) -> None:
+        """Show a body on which no control mesh lies, and what landmarks there are."""
+        first = self._body is None
+        self._show_body(body)
+        self._landmarks, self._dragged = landmarks, None
+        if first:
+            self.viewport.frame_bust()
+        self._show_pins()
 
     def show_bands(self) -> None:
         """Lay the lines that are not hidden on the body."""
@@ -111,6 +122,13 @@ class ViewArea(QWidget):
         """Let a pin follow the pointer to a place of the body at rest, shape (3,) [mm]."""
         self._dragged = name, place
         self._show_pins()
+
+    def put_pin(self, name: str) -> None:
+        """Put the pin of a landmark that was not found in the middle of the view, to be dragged away."""
+        place = self.viewport.skin_in_the_middle()
+        if place is not None:
+            self._landmark, self._dragged = name, (name, place)
+            self._show_pins()
 
     def dropped(self) -> tuple[str, Points] | None:
         """Return which pin was let go and where, if it was moved."""
@@ -213,18 +231,21 @@ class ViewArea(QWidget):
 
     def _show_pins(self) -> None:
         """Show the pins of the bust and of the selected landmark, with the curve that this was read from."""
-        shown = self.tools.actions_by_name["landmarks"].isChecked() and self._landmarks is not None
-        found = self._landmarks.points.values() if shown and self._landmarks is not None else ()
-        moved = dict([self._dragged] if self._dragged else [])
-        pins = [
-            Pin(mark.name, landmark_title(mark.name), moved.get(mark.name, mark.position), mark.confidence)
-            for mark in found
+        shown = self.tools.actions_by_name["landmarks"].isChecked()
+        found = self._landmarks if shown else {}
+        pins = {
+            mark.name: Pin(mark.name, landmark_title(mark.name), mark.position, mark.confidence)
+            for mark in found.values()
             if kind_of(mark.name) in PINNED or mark.by_hand or mark.name == self._landmark
-        ]
-        chosen = next((mark for mark in found if mark.name == self._landmark), None)
+        }
+        if shown and self._dragged is not None:
+            name, place = self._dragged
+            sure = found[name].confidence if name in found else 0.0
+            pins[name] = Pin(name, landmark_title(name), place, sure)
+        chosen = None if self._dragged else found.get(self._landmark)
         if self._body is not None:
-            self.viewport.scene.show_trace(chosen.evidence if chosen and not moved else np.empty((0, 3)))
-        self.viewport.set_pins(pins, self._landmark)
+            self.viewport.scene.show_trace(chosen.evidence if chosen else np.empty((0, 3)))
+        self.viewport.set_pins(pins.values(), self._landmark)
 
 
 def _paths(lines: tuple[Line, ...]) -> list[tuple[str, list[int]]]:

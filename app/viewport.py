@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 import numpy as np
-from PySide6.QtCore import QEasingCurve, QEvent, Qt, QTimer, QVariantAnimation, Signal
+from PySide6.QtCore import QEasingCurve, QEvent, QRectF, Qt, QTimer, QVariantAnimation, Signal
 from PySide6.QtGui import QImage, QResizeEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
@@ -16,6 +16,7 @@ from app.overlay import BandLabel, Overlay, Pin
 from app.pointer import Pointer
 from app.scene import Scene
 from app.theme import tokens_of
+from core.mesh import Floats
 
 GLIDE = 220
 """Duration of a move to another view [ms]."""
@@ -157,6 +158,10 @@ class Viewport(QWidget):
             pins = tuple(replace(pin, position=place) for pin, place in zip(pins, places, strict=True))
         self.overlay.set_pins(pins, self._selected_pin)
         self.overlay.follow(self.scene.view, [pin.name for pin in pins if self.scene.hidden(pin.position)])
+
+    def skin_in_the_middle(self) -> Floats | None:
+        """Return the place of the body at rest, shape (3,) [mm], in the middle of the picture, or None."""
+        return self._pointer.skin_at(QRectF(self._canvas.rect()).center())
 
     def set_dark(self, dark: bool) -> None:
         """Repaint for the light or the dark theme."""

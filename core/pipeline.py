@@ -16,14 +16,14 @@ from core.control_mesh import ControlMesh, fit_control_mesh
 from core.design import Design, OwnLine, ScanSource
 from core.errors import FitError, LandmarkError, LineError, UserError
 from core.fitting.back_length import back_length
-from core.landmark import Landmarks
+from core.landmark import Landmark, Landmarks
 from core.landmarks import find_landmarks
 from core.mechanics import Mechanics
 from core.mesh import Floats, Mesh, Points
 from core.model import ConstrainedModel, constrained_model
 from core.moving import MovingFaces, moving_faces
 from core.patch import Patch, patch_fade
-from core.placing import PlacedMark, in_mm
+from core.placing import PLACED, PlacedMark, in_mm
 from core.progress import Progress, quiet
 from core.project import ScanFile, read_scan_file
 from core.solver import Marks, Targets
@@ -97,13 +97,19 @@ READING = {
 """Where each part of the reading of a scan begins and ends, as shares of its time, roughly."""
 
 
-class UnsureError(UserError):
-    """No bust was found, or none that the template fits, on a ``body`` that may stand otherwise: ask how."""
+class StuckError(UserError):
+    """A ``body`` was read, and no bust found on it or no control mesh laid: it can be shown and corrected.
 
-    def __init__(self, problem: UserError, body: Body, design: Design) -> None:
+    ``landmarks`` by name are those that were found, or at least placed.
+    """
+
+    def __init__(
+        self, problem: UserError, body: Body, design: Design, landmarks: Mapping[str, Landmark]
+    ) -> None:
         super().__init__(problem.message, problem.hint)
         self.body = body
         self.design = design
+        self.landmarks = landmarks
 
 
 class _Stager:
@@ -130,6 +136,14 @@ class _Stager:
         self.memo[name] = (inputs, result)
         return result
 
+    def landmarks(self, body: Body, design: Design) -> Mapping[str, Landmark]:
+        """Return what was found before it went wrong; of landmarks those at least that were placed."""
+        if "find landmarks" in self.memo:
+            found: Landmarks = self.memo["find landmarks"][1]
+            return found.points
+        placed = in_mm(design.placed, body.pose.file_to_mm)
+        return {name: Landmark(name, place, 1.0, PLACED, by_hand=True) for name, place in placed.items()}
+
     def inside(self, what: str, share: float) -> None:
         """Hear how far the reading of the scan is, which comes first."""
         start, end = READING.get(what, (0.0, 1.0))
@@ -151,9 +165,7 @@ def build(design: Design, previous: Stages | None = None, progress: Progress = q
     try:
         return _stages(stage, design, scan, body)
     except (LandmarkError, FitError) as problem:
-        if body.pose.sure:
-            raise
-        raise UnsureError(problem, body, design) from problem
+        raise StuckError(problem, body, design, stage.landmarks(body, design)) from problem
 
 
 def _stages(stage: _Stager, design: Design, scan: ScanFile, body: Body) -> Stages:

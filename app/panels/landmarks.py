@@ -26,7 +26,10 @@ from app.words import say, tr
 
 @dataclass(frozen=True)
 class LandmarkView:
-    """What is shown of a landmark; ``confidence`` 0..1, ``group`` bust, under or further."""
+    """What is shown of a landmark; ``confidence`` 0..1, ``group`` bust, under or further.
+
+    ``absent``: it was not found, and can be placed.
+    """
 
     name: str
     title: str
@@ -34,15 +37,18 @@ class LandmarkView:
     rule: str
     group: str = "bust"
     by_hand: bool = False
+    absent: bool = False
 
 
 class LandmarksPanel(QWidget):
     """All landmarks, one row each; under them the rule of the selected one.
 
-    ``reset_asked`` names the landmarks, a tuple, that are to be found again.
+    ``reset_asked`` names the landmarks, a tuple, that are to be found again; ``place_asked`` one that was not
+    found and is to be placed.
     """
 
     landmark_selected = Signal(str)
+    place_asked = Signal(str)
     reset_asked = Signal(object)
 
     def __init__(self) -> None:
@@ -106,12 +112,14 @@ class LandmarksPanel(QWidget):
         rule.setContentsMargins(4, 8, 4, 0)
         rule.setSpacing(3)
         self._rule_title, self._rule = sentence("", "name"), sentence()
-        self._hint = sentence(tr("Drag its pin over the skin to correct it."), "caption")
+        self._hint = sentence(role="caption")
+        self.place = button(tr("Place it"))
         self.reset, self.reset_all = button(tr("Find it again")), button(tr("Find all again"), "quiet")
+        self.place.clicked.connect(lambda: self.place_asked.emit(self._selected))
         self.reset.clicked.connect(lambda: self.reset_asked.emit((self._selected,)))
         self.reset_all.clicked.connect(lambda: self.reset_asked.emit(self._placed()))
         buttons = QHBoxLayout()
-        for each in (self.reset, self.reset_all):
+        for each in (self.place, self.reset, self.reset_all):
             buttons.addWidget(each)
         buttons.addStretch(1)
         rule.addWidget(hairline())
@@ -128,9 +136,10 @@ class LandmarksPanel(QWidget):
             self._rebuild(landmarks)
         for view in landmarks:
             self.rows[view.name].show_view(view)
+        absent = any(view.absent for view in landmarks)
         self._summary.setText(" ".join(map(say, doubts)) or tr("All found."))
         set_tag(self._summary, "tone", "warn" if doubts else "")
-        self._summary.setVisible(bool(landmarks))
+        self._summary.setVisible(bool(doubts) or (bool(landmarks) and not absent))
         self._empty.setVisible(not landmarks)
         self._area.setVisible(bool(landmarks))
         for name, head in self._heads.items():
@@ -146,12 +155,16 @@ class LandmarksPanel(QWidget):
         self._rule_box.setVisible(name is not None or bool(placed))
         for part in (self._rule_title, self._rule, self._hint):
             part.setVisible(name is not None)
+        absent = name is not None and self.rows[name].view.absent
+        self.place.setVisible(absent)
         self.reset.setVisible(name in placed)
         self.reset_all.setVisible(bool(placed) and placed != (name,))
         if name is not None:
             view = self.rows[name].view
             self._rule_title.setText(view.title)
             self._rule.setText(say(view.rule))
+            drag = tr("Drag its pin over the skin to correct it.")
+            self._hint.setText(tr("Its pin will wait in the middle of the view.") if absent else drag)
             if view.group == "further":
                 self._open_further()
 
@@ -223,20 +236,20 @@ class LandmarkRow(QAbstractButton):
         paint_card(painter, self, "selected", 7)
         tone = tokens.accent if self.view.by_hand else getattr(tokens, tone_of(self.view.confidence))
         middle, right = self.height() / 2, self.width() - 10
-        painter.setPen(QPen(QColor(tokens.raised), 1.5))
-        painter.setBrush(QColor(tone))
+        painter.setPen(QPen(QColor(tokens.text_caption if self.view.absent else tokens.raised), 1.5))
+        painter.setBrush(Qt.BrushStyle.NoBrush if self.view.absent else QColor(tone))
         painter.drawEllipse(QPointF(14, middle), 5.5, 5.5)
         painter.setFont(font("name" if self.isChecked() else "body"))
-        painter.setPen(QColor(tokens.text))
+        painter.setPen(QColor(tokens.text_quiet if self.view.absent else tokens.text))
         left = Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft
-        room = self.width() - 28 - (70 if self.view.by_hand else 112)
+        room = self.width() - 28 - (70 if self.view.by_hand else 90 if self.view.absent else 112)
         title = painter.fontMetrics().elidedText(self.text(), Qt.TextElideMode.ElideRight, room)
         painter.drawText(QRectF(28, 0, room, self.height()), left, title)
         painter.setFont(font("secondary", tabular=True))
         painter.setPen(QColor(tokens.text if self.isChecked() else tokens.text_quiet))
         past = Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight
         painter.drawText(QRectF(right - 110, 0, 110, self.height()), past, self._words())
-        if self.view.by_hand:
+        if self.view.by_hand or self.view.absent:
             return
         painter.setPen(Qt.PenStyle.NoPen)
         bar = QRectF(right - 48 - 52, middle - 1.5, 52, 3)
@@ -247,4 +260,6 @@ class LandmarkRow(QAbstractButton):
         painter.drawRoundedRect(bar, 1.5, 1.5)
 
     def _words(self) -> str:
+        if self.view.absent:
+            return tr("not found")
         return tr("by hand") if self.view.by_hand else f"{self.view.confidence * 100:.0f} %"
