@@ -205,7 +205,9 @@ def test_one_of_two_folds_that_contradict_each_other_is_wrong() -> None:
     assert _apart(folds, hanging) == 0.0, "one breast hangs lower, fold and all"
     apart = _apart(folds, level)
     assert all(_less_sure(fold, other, apart).confidence < 0.5 for fold, other in (folds, folds[::-1]))
-    assert _less_sure(replace(folds[0], by_hand=True), folds[1], apart).confidence == 0.9
+    for fold, other in ((True, False), (False, True)):
+        pair = replace(folds[0], by_hand=fold), replace(folds[1], by_hand=other)
+        assert _less_sure(*pair, apart).confidence == 0.9, "what was placed by hand is no witness"
 
 
 def test_a_coarse_scan_is_called_coarse() -> None:

@@ -84,7 +84,9 @@ def _apart(folds: Sequence[Landmark], busts: Sequence[Points]) -> float:
 def _less_sure(fold: Landmark, other: Landmark, apart: float) -> Landmark:
     """Return ``fold`` with less confidence where the ``other`` is sure and lies ``apart`` from it [mm]."""
     doubt = min(2.0 * other.confidence, 1.0) * max(apart - UNLIKE[0], 0.0) / UNLIKE[1]
-    return fold if fold.by_hand else replace(fold, confidence=fold.confidence * float(np.exp(-doubt)))
+    if fold.by_hand or other.by_hand:
+        return fold
+    return replace(fold, confidence=fold.confidence * float(np.exp(-doubt)))
 
 
 def _under(mesh: Mesh, bust: Landmark, level: float, side: str, placed: Mapping[str, Landmark]) -> Under:
