@@ -13,8 +13,8 @@ from core.landmark import SIDES, Landmark
 from core.mesh import Floats, Mesh, Points
 
 NIPPLE = "The nipple: the spot that stands out of the smooth breast around it."
-PROMINENT = "The most prominent point of the breast: no nipple stands out of it."
-MIRRORED = "The most prominent point, shifted towards where the nipple of the other breast lies."
+SMOOTH = "Between the foremost place and the middle of the breast: no nipple stands out."
+MIRRORED = "The middle of the breast, shifted towards where the nipple of the other breast lies."
 
 ACROSS = "Estimated, as no breast stands out there: across from the bust point of the other breast."
 
@@ -48,7 +48,7 @@ def bust_points(mesh: Mesh, poles: Sequence[Pole], middle: float) -> list[Landma
         _bust_point(f"bust_point_{side}", patch, own, other, None if missing else middle)
         for side, patch, own, other in zip(SIDES, patches, nipples, nipples[::-1], strict=True)
     ]
-    if all(mark.rule == PROMINENT for mark in marks):
+    if all(mark.rule == SMOOTH for mark in marks):
         marks = _evened(marks, patches, middle)
     if len(missing) != 1:
         return marks
@@ -98,7 +98,7 @@ def _bust_point(
         confidence, rule = 0.3, MIRRORED
     else:
         place, confidence = smooth_point(patch)
-        rule = PROMINENT
+        rule = SMOOTH
     return Landmark(name, place, confidence, rule, patch.ring(place, 12.0))
 
 
