@@ -70,7 +70,8 @@ def fit_control_mesh(
         blamed = set(template.column[faulty].ravel().tolist()) & set(creases)
         if best.sound or not blamed:
             break
-        shallowest = min(blamed, key=lambda number: creases[number].depth)
+        # below the bust point a landmark tells of the fold: that column gives its fold up last
+        shallowest = min(blamed, key=lambda at: (abs(at) == template.bust_column, creases[at].depth))
         del creases[shallowest]
         lost = [*lost, shallowest]
     holes = holes | best.holes

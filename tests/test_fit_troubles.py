@@ -6,9 +6,13 @@ from fit_bodies import analytic_body, analytic_landmarks, body_of, hanging, land
 
 from core.control_mesh import fit_control_mesh
 from core.errors import FitError
-from core.fitting.fit_check import agreement, corner_angles
+from core.exact import solve_exact
+from core.fitting.fit_check import agreement, bends, corner_angles
 from core.mesh import Mesh
+from core.model import constrained_model
+from core.patch import patch_fade
 from core.template import TEMPLATES, read_template
+from core.tffd import bind, deform
 
 
 @pytest.fixture(scope="module", params=TEMPLATES)
@@ -112,6 +116,31 @@ def test_breast_that_hangs_too_low_is_never_folded_over(template, sag):
     bridged = agreement(control.mesh, body.mesh).min() <= 0.3
     assert bridged == any("bridges part of a fold" in warning for warning in control.warnings)
     assert control.warnings
+
+
+@pytest.mark.parametrize("sag", [1.5, 2.0])
+def test_body_reshapes_sanely_where_the_control_mesh_bridges_a_fold(template, sag):
+    body, landmarks = hanging(sag)
+    control = fit_control_mesh(template, body, landmarks)
+    assert agreement(control.mesh, body.mesh).min() < 0.0  # some triangles do face backward
+    fade = patch_fade(body.mesh, control)
+    assert fade.rule == "flood"
+    binding = bind(body.mesh, control.mesh, fade.fade, fixed=control.fixed)
+    model = constrained_model(control, worn=frozenset(["mid-bust"]))
+    ratios = tuple(0.97 if line.name == "mid-bust" else 1.0 for line in model.lines)
+    answer = solve_exact(model, ratios)
+    shaped = body.mesh.moved(deform(binding, model.tensegric.expand(answer.state.moved)))
+    assert answer.found
+    moved = np.linalg.norm(shaped.vertices - body.mesh.vertices, axis=1)
+    assert 1.0 < moved.max() < 4.0
+    assert moved[fade.fade == 0.0].max() == 0.0
+    assert (bends(shaped)[2] - bends(body.mesh)[2]).max() < 6.0  # no spike
+    assert (shaped.face_normals * body.mesh.face_normals).sum(axis=1).min() > 0.95
+    apex = body.mesh.vertices.mean(axis=0)
+    grown = shaped.enclosed_volume(apex) - body.mesh.enclosed_volume(apex)
+    assert abs(grown) < 0.005 * control.mesh.enclosed_volume(
+        control.mesh.vertices[control.border].mean(axis=0)
+    )
 
 
 def test_breast_that_cannot_be_followed_is_refused(template):

@@ -6,6 +6,8 @@ from fit_bodies import SAMPLES, body_of, landmarks_at, sample_of
 from scipy.spatial import cKDTree
 
 from core.control_mesh import fit_control_mesh
+from core.fitting.near_skin import NearSkin
+from core.fitting.torso import measure_torso
 from core.mesh import Mesh
 from core.template import TEMPLATES, read_template
 
@@ -99,6 +101,20 @@ def test_both_templates_lie_on_a_hard_body(sample, name):
             assert quality.smallest_angle > 15.0 or any("pointed" in told for told in control.warnings)
             assert quality.smallest_angle > 8.0
             assert quality.bust_off < (0.5 if "misplaced" not in name else 20.0)
+            # Control points are on the skin, but for those over holes: the deviation is that of the flats.
+            off_skin = np.linalg.norm(NearSkin(body.calm).nearest(points) - points, axis=1)
+            assert (off_skin.mean() if "hole" not in name else np.median(off_skin)) < 1e-6
+            # Rows: collar under the breasts, fold, line and bust row in this order; the collar is outside.
+            rows = points.reshape(len(template.rows), -1, 3)
+            breast = np.abs(template.column.reshape(rows.shape[:2])[0]) <= template.bust_column
+            for side, part in (("left", np.s_[template.half :]), ("right", np.s_[: template.half + 1])):
+                assert rows[0, part][breast[part], 2].max() < places[f"lowest_{side}"][2] - 5.0
+            ways = np.linalg.norm(np.diff(rows[1:4], axis=0), axis=2)
+            assert ways.min() > 7.0
+            axis = measure_torso(body.calm, landmarks).axis
+            bearing = np.degrees(np.arctan2(points[:, 0] - axis[0], axis[1] - points[:, 1]))
+            sides = np.abs(bearing[(np.abs(template.column) == template.half) & (template.row < 4)])
+            assert sides.min() > 80.0
             # Left and right can be told apart: the centre column runs straight down the middle.
             middle = points[control.column == 0]
             assert np.ptp(middle[:, 0]) < 8.0

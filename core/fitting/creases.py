@@ -14,6 +14,9 @@ from core.mesh import Points
 SHALLOW = 2.0
 """A hollow less deep than this is no fold [mm]."""
 
+SURE = 0.3
+"""The deeper a hollow, the higher over its landmark it may be taken for the fold [1]."""
+
 ALIKE = 3.0
 """The body counts as symmetric where landmarks of both sides mirror each other as well as this [mm]."""
 
@@ -68,7 +71,8 @@ def _crease(ground: Ground, place: int, down: Profile) -> Crease | None:
     highest = usual + 0.35 * max(bust - usual, 0.0)
     if fold is None or fold.depth < SHALLOW or fold.z < min(usual, lowest) - 25.0 * torso.scale - 5.0:
         return None
-    if fold.z > highest + 6.0 * torso.scale:
+    # a shallow hollow above the fold is another one, a deep one is the fold of a hanging breast
+    if fold.z > highest + max(6.0 * torso.scale, SURE * fold.depth):
         return None
     arc = fold.arc if fold.z <= highest else down.next_below(fold.arc, highest)
     return Crease(down, max(arc, column.room * (bust - ground.below[place])), fold.depth)

@@ -19,7 +19,7 @@ from core.fitting.near_skin import NearSkin
 from core.mesh import Flags, Floats, Mesh
 from core.proximity import Frames, neighbourhoods
 
-SAMPLES = 1500
+SAMPLES = 2500
 """The deviation is taken at about so many vertices of the skin."""
 
 FARTHEST = 40.0
@@ -37,7 +37,7 @@ class FitQuality:
     """The figures of a fit.
 
     ``deviation_mean``, ``deviation_95``, ``deviation_max`` [mm]: from the skin behind the control mesh to it,
-    by area. ``smallest_angle`` [deg] and ``shortest_edge`` [mm] of its triangles; ``largest_bend`` [deg]
+    by area; the control points themselves lie on the skin, so that this is what flat triangles cut off. ``smallest_angle`` [deg] and ``shortest_edge`` [mm] of its triangles; ``largest_bend`` [deg]
     between two of them, the fold row left out; ``crossings``: how many of them cut another one. ``bust_off``
     and ``fold_off`` [mm]: how far the bust points lie from their landmarks, and how much higher or lower than
     its landmark the fold row passes under them; NaN where the row is not laid in a fold.
