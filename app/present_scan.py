@@ -102,6 +102,7 @@ def work_words(what: str) -> str:
         "read scan": tr("Reading the scan"),
         "reading": tr("Reading the scan"),
         "repairing": tr("Repairing the scan"),
+        "closing holes": tr("Repairing the scan"),
         "rebuilding the surface": tr("Laying a skin through the points"),
         "finding up and front": tr("Finding up and front"),
         "find landmarks": tr("Finding the landmarks"),

@@ -10,6 +10,7 @@ from core.cleaning.calm import calmed, noise_of
 from core.cleaning.holes import Hole, find_holes
 from core.cleaning.mending import mended
 from core.cleaning.repair import repair
+from core.cleaning.skin import Skin
 from core.errors import ScanError
 from core.mesh import Faces, Mesh, Points
 from core.progress import Progress, quiet
@@ -88,8 +89,17 @@ def body_of(
     pose = find_pose(vertices, faces, unit=unit, up=up, front=front)
     progress("finding up and front", 1.0)
     turn = pose.file_to_mm[:3, :3]
-    mesh, mendings = mended(Mesh(vertices @ turn.T, faces))
-    return Body(mesh, pose, (*said, *repairs, *mendings), scan_name(name), rebuilt)
+    skin, cut = _off_the_stand(Skin(vertices @ turn.T, faces), pose.stand)
+    mesh, mendings = mended(Mesh(skin.vertices, skin.faces), progress)
+    return Body(mesh, pose, (*said, *repairs, *cut, *mendings), scan_name(name), rebuilt)
+
+
+def _off_the_stand(skin: Skin, level: float) -> tuple[Skin, tuple[str, ...]]:
+    """Cut away what lies under a level [mm], and say so."""
+    body = skin.vertices[:, 2] > level
+    if body.all():
+        return skin, ()
+    return skin.with_vertices(body).compact(), ("Cut away the stand that the body is mounted on.",)
 
 
 def scan_name(name: str) -> str:

@@ -92,7 +92,8 @@ READING = {
     "reading": (0.0, 0.3),
     "rebuilding the surface": (0.3, 0.6),
     "repairing": (0.6, 0.8),
-    "finding up and front": (0.8, 1.0),
+    "finding up and front": (0.8, 0.9),
+    "closing holes": (0.9, 1.0),
 }
 """Where each part of the reading of a scan begins and ends, as shares of its time, roughly."""
 

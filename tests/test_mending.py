@@ -15,6 +15,7 @@ from core.cleaning.polygon import triangulated
 from core.cleaning.repair import repair
 from core.cleaning.skin import Skin
 from core.mesh import Mesh
+from core.progress import Cancelled
 
 CENTRES = {"back": (0.0, 30.0, 260.0), "belly": (10.0, -170.0, 60.0), "side": (140.0, -80.0, 180.0)}
 
@@ -71,6 +72,25 @@ def test_hundreds_of_small_holes_in_a_body_are_closed_and_counted(person, noise)
     moved = cKDTree(closed.vertices).query(vertices)[0]
     assert moved.max() <= 1.0  # a crack is sewn half way
     assert (moved > 0.0).mean() < 0.002
+
+
+def test_a_skin_of_thousands_of_holes_is_closed_and_can_be_stopped(person):
+    keep = np.random.default_rng(0).random(len(person.faces)) > 0.1
+    vertices, faces, _ = repair(person.vertices, person.faces[keep])
+    torn, heard = Mesh(vertices, faces), []
+    closed, _, count = mend(torn, lambda what, share: heard.append((what, share)))
+    assert count > 3000
+    assert closed.face_areas.sum() == pytest.approx(person.face_areas.sum(), rel=0.01)
+    assert Skin(closed.vertices, closed.faces).sides.count.max() == 2
+    assert len(heard) > count - 10
+    assert heard == sorted(heard)
+
+    def stop(what, share):
+        if share > 0.5:
+            raise Cancelled
+
+    with pytest.raises(Cancelled):
+        mend(torn, stop)
 
 
 def test_a_clean_body_is_not_touched_and_its_cuts_are_no_holes(person):

@@ -12,6 +12,7 @@ from core.cleaning.polygon import triangulated
 from core.cleaning.repair import counted
 from core.cleaning.skin import Skin
 from core.mesh import Faces, Floats, Indices, Mesh, Points
+from core.progress import Progress, quiet
 
 CLOSED = 30.0
 """Holes up to this length are closed [mm]."""
@@ -23,9 +24,9 @@ CRACK = 30.0
 """The two sides of one border are sewn to each other only where the way between them is longer [mm]."""
 
 
-def mended(mesh: Mesh) -> tuple[Mesh, tuple[str, ...]]:
-    """Return an upright ``mesh`` [mm] mended, and one sentence a repair and an open hole."""
-    mesh, sewn, closed = mend(mesh)
+def mended(mesh: Mesh, progress: Progress = quiet) -> tuple[Mesh, tuple[str, ...]]:
+    """Return an upright ``mesh`` [mm] mended, and a sentence a repair and an open hole. Raises Cancelled."""
+    mesh, sewn, closed = mend(mesh, progress)
     sentences = []
     if sewn:
         sentences.append(f"Joined {counted(sewn, 'vertex')} along seams between parts of the scan.")
@@ -34,7 +35,7 @@ def mended(mesh: Mesh) -> tuple[Mesh, tuple[str, ...]]:
     return mesh, (*sentences, *hole_sentences(mesh, find_holes(mesh)))
 
 
-def mend(mesh: Mesh) -> tuple[Mesh, int, int]:
+def mend(mesh: Mesh, progress: Progress = quiet) -> tuple[Mesh, int, int]:
     """Return ``mesh`` with seams sewn and small holes closed, and how many vertices and holes that were.
 
     Old vertices keep their order, those sewn to another are gone; new ones come last. A closed hole follows
@@ -55,12 +56,14 @@ def mend(mesh: Mesh) -> tuple[Mesh, int, int]:
     faces, added, closed = [home[mesh.faces]], [vertices], 0
     count, tree = len(vertices), cKDTree(vertices)
     edges = _edges_at(np.concatenate([*small, start[:0]]), faces[0])
-    for loop in small:
-        near = tree.query_ball_point(vertices[loop].mean(axis=0), CLOSED)
-        patch, new = _filled(vertices[loop], vertices[near], mesh.vertex_normals[near])
+    for done, loop in enumerate(small):
+        progress("closing holes", done / len(small))
+        patch, new = _filled(vertices[loop], tree, mesh.vertex_normals)
         corners = np.concatenate([loop, count + np.arange(len(new))])[patch]
-        if _joins_anew(corners, loop, edges):
-            continue
+        inner = set(_keys(corners).tolist()) - set(_keys(loop[None]).tolist())
+        if not inner.isdisjoint(edges):
+            continue  # it would join what is joined already
+        edges |= inner
         faces.append(corners)
         added.append(new)
         count, closed = count + len(new), closed + 1
@@ -69,8 +72,10 @@ def mend(mesh: Mesh) -> tuple[Mesh, int, int]:
 
 
 def _is_small(loop: Indices, vertices: Points) -> bool:
-    simple = len(loop) >= 3 and len(np.unique(loop)) == len(loop)
-    return simple and bool(frame_of(vertices[loop])[1][:2].max() <= CLOSED)
+    if len(loop) < 3 or len(set(loop.tolist())) < len(loop):
+        return False
+    small = float(np.linalg.norm(np.ptp(vertices[loop], axis=0))) <= CLOSED
+    return small or bool(frame_of(vertices[loop])[1][:2].max() <= CLOSED)
 
 
 def _twins(mesh: Mesh, start: Indices, end: Indices) -> Indices:
@@ -118,32 +123,27 @@ def _without_tangles(mesh: Mesh, twin: Indices) -> Indices:
     return np.arange(len(twin))
 
 
-def _edges_at(loop: Indices, faces: Faces) -> Indices:
-    """Return the keys of all edges of the faces that touch ``loop``, ascending."""
+def _edges_at(loop: Indices, faces: Faces) -> set[int]:
+    """Return the keys of all edges of the faces that touch ``loop``."""
     touched = np.zeros(int(faces.max(initial=0)) + 1, dtype=bool)
     touched[loop] = True
-    near = faces[touched[faces].any(axis=1)]
-    return np.unique(_keys(near))
+    return set(_keys(faces[touched[faces].any(axis=1)]).tolist())
 
 
-def _keys(faces: Faces) -> Indices:
-    ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)]), axis=0)
+def _keys(polygons: Indices) -> Indices:
+    """Return a number for each side of ``polygons``, shape (m, k): equal for equal sides."""
+    ends = np.sort(np.stack([polygons, np.roll(polygons, -1, axis=1)]), axis=0)
     return np.asarray((ends[0] << 31 | ends[1]).ravel())
 
 
-def _joins_anew(corners: Faces, loop: Indices, edges: Indices) -> bool:
-    """Tell whether a patch holds an edge, other than those of its ``loop``, that the skin has already."""
-    around = np.sort(np.stack([loop, np.roll(loop, -1)]), axis=0)
-    inner = np.setdiff1d(_keys(corners), around[0] << 31 | around[1])
-    return bool(np.isin(inner, edges).any())
-
-
-def _filled(border: Points, near: Points, normals: Points) -> tuple[Faces, Points]:
+def _filled(border: Points, skin: cKDTree, normals: Points) -> tuple[Faces, Points]:
     """Return triangles over a hole, and the new places in it, shape (k, 3).
 
-    ``border``, shape (b, 3), in the order of the sides of the skin; ``near``, shape (c, 3), is the skin round
-    it. Corners below b are those of the border, others new.
+    ``border``, shape (b, 3), in the order of the sides of the skin, whose vertices have ``normals``. Corners
+    below b are those of the border, others new.
     """
+    if len(border) < 5:
+        return _fan(border), np.empty((0, 3))
     axes, extent = frame_of(border)
     middle = border.mean(axis=0)
     local = (border - middle) @ axes.T
@@ -151,13 +151,22 @@ def _filled(border: Points, near: Points, normals: Points) -> tuple[Faces, Point
     faces = np.where(faces < len(border), len(border) - 1 - faces, faces)
     if len(inside) == 0:
         return faces, np.empty((0, 3))
-    around = (near - middle) @ axes.T
-    around = around[(normals @ axes[2] > 0.3) & (np.abs(around[:, 2]) < extent[0])]
+    near = skin.query_ball_point(middle, CLOSED)
+    around = (skin.data[near] - middle) @ axes.T
+    around = around[(normals[near] @ axes[2] > 0.3) & (np.abs(around[:, 2]) < extent[0])]
     bend = _quadric(np.concatenate([around, local]), max(extent[0], 1e-9))
     rest = local[:, 2] - bend(local[:, :2])
     weight = 1.0 / np.maximum(((inside[:, None] - local[None, :, :2]) ** 2).sum(axis=2), 1e-12)
     height = bend(inside) + weight @ rest / weight.sum(axis=1)
     return faces, middle + np.column_stack([inside, height]) @ axes
+
+
+def _fan(border: Points) -> Faces:
+    """Return the triangles over a hole of three or four sides, shape (b - 2, 3): cut where it is shorter."""
+    if len(border) == 3:
+        return np.array([[2, 1, 0]])
+    across = np.linalg.norm(border[[0, 1]] - border[[2, 3]], axis=1)
+    return np.array([[2, 1, 0], [3, 2, 0]] if across[0] < across[1] else [[3, 2, 1], [3, 1, 0]])
 
 
 def _quadric(places: Points, scale: float) -> Callable[[Floats], Floats]:
