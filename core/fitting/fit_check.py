@@ -19,7 +19,10 @@ SAME_WAY = 0.3
 """Smallest cosine between a triangle's normal and the mean normal of the skin behind it."""
 
 BACKWARD = -0.5
-"""A triangle whose cosine is below this faces backward; deep in a fold it may face either way."""
+"""A triangle whose cosine is below this faces backward; deep in a fold it may face either way.
+
+Bodies reshape as sanely over such a few as elsewhere: no spike, no flipped triangle (tests/test_fit_troubles).
+"""
 
 SHARPEST = 130.0
 """Two triangles that meet more sharply than this lie back on each other [deg]."""

@@ -37,10 +37,11 @@ class FitQuality:
     """The figures of a fit.
 
     ``deviation_mean``, ``deviation_95``, ``deviation_max`` [mm]: from the skin behind the control mesh to it,
-    by area; the control points themselves lie on the skin, so that this is what flat triangles cut off. ``smallest_angle`` [deg] and ``shortest_edge`` [mm] of its triangles; ``largest_bend`` [deg]
-    between two of them, the fold row left out; ``crossings``: how many of them cut another one. ``bust_off``
-    and ``fold_off`` [mm]: how far the bust points lie from their landmarks, and how much higher or lower than
-    its landmark the fold row passes under them; NaN where the row is not laid in a fold.
+    by area; the control points lie on the skin, so that this is what flat triangles cut off.
+    ``smallest_angle`` [deg] and ``shortest_edge`` [mm] of its triangles; ``largest_bend`` [deg] between two
+    of them, the fold row left out; ``crossings``: how many of them cut another one; ``same_way``: the least
+    cosine between one of them and the skin. ``bust_off`` and ``fold_off`` [mm]: how far the bust points lie
+    from their landmarks, and how much higher or lower than its landmark the fold row passes under them.
     """
 
     deviation_mean: float
