@@ -173,7 +173,7 @@ def _to_mm(entry: Table) -> tuple[Floats, bool]:
     """Return the matrix from the file to the canonical frame, and whether its turn is known."""
     if "canonical_to_file" in entry:
         matrix = _numbers("canonical_to_file", entry["canonical_to_file"], 16).reshape(4, 4)
-        if abs(np.linalg.det(matrix[:3, :3])) < TINY or not np.array_equal(matrix[3], [0, 0, 0, 1]):
+        if abs(np.linalg.det(matrix[:3, :3])) < TINY**2 or not np.array_equal(matrix[3], [0, 0, 0, 1]):
             raise ValueError("'canonical_to_file' is no matrix that turns, scales and shifts")
         return np.asarray(np.linalg.inv(matrix)), True
     unit = entry.get("unit", "mm")
