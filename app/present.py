@@ -206,7 +206,7 @@ def _hint(frame: Frame) -> str:
     if frame.verdict.state == "diverging":
         return tr("The turns run away: the body is shown as it was before. Lengthen or soften the lines.")
     if frame.verdict.state == "settled":
-        return " ".join(map(say, warnings(frame.stages)))
+        return "".join(map(say, warnings(frame.stages)[:1]))  # the others stand in the notice
     line = blamed_line(frame.stages)
     if not what or line is None:
         return what

@@ -63,6 +63,7 @@ def claims() -> dict[str, bytes]:
         "points.vtp": vtp().replace(b'NumberOfPoints="10"', b'NumberOfPoints="4000000000"'),
         "block.vtp": vtp("appended").replace(b"_x\0\0\0", b"_\xff\xff\xff\xff"),
         "blocks.vtp": vtp("appended", packed=True).replace(b"_\2\0", b"_\xff\xff"),
+        "ends.vtp": vtp().replace(b"5 10 14 18 22 26", b"5 10 14 18 22 2000000026"),
         "counts.off": off().replace(b"10 8 0", b"4000000000 8 0"),
     }
 

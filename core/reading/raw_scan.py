@@ -67,20 +67,28 @@ def fans(corners: Indices, counts: Indices) -> Faces:
     """Cut polygons into triangles round their first corners, shape (m, 3).
 
     ``corners``, shape (sum of counts,), holds one polygon after the other, of ``counts`` corners each.
+    Raises ValueError if they are fewer.
     """
-    pieces = np.maximum(counts - 2, 0)
+    pieces = _pieces(corners, counts)
     first = np.repeat(np.cumsum(counts) - counts, pieces)
     step = np.arange(len(first)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
     return np.stack([corners[first], corners[first + step + 1], corners[first + step + 2]], axis=1)
 
 
 def strips(corners: Indices, counts: Indices) -> Faces:
-    """Cut strips of triangles into single ones, all running the same way round, shape (m, 3)."""
-    pieces = np.maximum(counts - 2, 0)
+    """Cut strips of triangles into single ones, all running the same way round, as ``fans`` does, (m, 3)."""
+    pieces = _pieces(corners, counts)
     step = np.arange(pieces.sum()) - np.repeat(np.cumsum(pieces) - pieces, pieces)
     at = np.repeat(np.cumsum(counts) - counts, pieces) + step
     odd = step % 2
     return np.stack([corners[at], corners[at + 1 + odd], corners[at + 2 - odd]], axis=1)
+
+
+def _pieces(corners: Indices, counts: Indices) -> Indices:
+    """Return how many triangles each polygon gives; a file may claim more corners than it holds."""
+    if counts.min(initial=0) < 0 or max(counts.max(initial=0), counts.sum()) > len(corners):
+        raise ValueError("a polygon beyond the end")
+    return np.maximum(counts - 2, 0)
 
 
 def vectors(values: npt.NDArray[np.generic]) -> Points:

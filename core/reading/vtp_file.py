@@ -116,10 +116,7 @@ def _scan(name: str, piece: _Piece, values: _Values) -> RawScan:
     for section, cut, wanted in zip(("Polys", "Strips"), (fans, strips), polygons, strict=True):
         if wanted:
             ends = values.whole(piece.arrays[section, "offsets"])
-            counts = np.diff(ends, prepend=0)
-            if (counts < 0).any():
-                raise ValueError("a polygon of less than nothing")
-            faces.append(cut(values.whole(piece.arrays[section, "connectivity"]), counts))
+            faces.append(cut(values.whole(piece.arrays[section, "connectivity"]), np.diff(ends, prepend=0)))
     given = piece.arrays.get(("PointData", piece.normals))
     return RawScan(vertices, np.concatenate(faces), vectors(values.of(given)) if given else None)
 
