@@ -210,7 +210,7 @@ def still_lines(stages: Stages) -> list[str]:
 def warnings(stages: Stages) -> list[str]:
     """Return in sentences what did not go as well as it should on the way to the model."""
     patch = stages.patch
-    faded = [] if patch.rule == "flood" else [f"The reshaped part fades by distance: {patch.reason}."]
+    faded = [] if patch.rule == "flood" else [f"The reshaped part fades by distance: {patch.reason}"]
     return [*stages.control.warnings, *faded]
 
 
