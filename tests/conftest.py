@@ -39,6 +39,13 @@ def own_folders() -> Iterator[None]:
         yield
 
 
+@pytest.fixture(scope="module", autouse=True)
+def old_things_are_no_garbage() -> None:
+    """What lives on between two files, mostly libraries, is not looked through after each test."""
+    gc.collect()
+    gc.freeze()
+
+
 @pytest.fixture(autouse=True)
 def garbage_in_this_thread(request: pytest.FixtureRequest) -> Iterator[None]:
     """Python looks for garbage in the tests' thread alone: in a solver's it would destroy Qt objects."""
