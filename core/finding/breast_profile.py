@@ -47,7 +47,8 @@ def profiles(mesh: Mesh, bust: Points, bottom: float) -> list[Profile]:
     """
     x = mesh.vertices[:, 0][mesh.faces.T] - bust[0]
     crossed = (x.min(axis=0) <= OFFSETS[-1]) & (x.max(axis=0) >= OFFSETS[0])
-    strip = Mesh(mesh.vertices, mesh.faces[crossed])
+    used, faces = np.unique(mesh.faces[crossed], return_inverse=True)
+    strip = Mesh(mesh.vertices[used], faces.reshape(-1, 3))
     return [_profile(strip, bust, offset, bottom) for offset in OFFSETS]
 
 

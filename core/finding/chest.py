@@ -117,7 +117,8 @@ def find_poles(survey: Survey, anchor: Anchor) -> tuple[Pole, Pole]:
     width = float(np.median(survey.half_width[under]))
     window = (depth > 0.0) & (np.abs(x) > 0.17 * width) & (np.abs(x) < max(1.25 * width, width + 35.0))
     azimuth = np.degrees(np.arctan2(np.abs(x), depth))
-    prominence = _prominence(survey, anchor, p, row)
+    prominence = np.full(len(p), -np.inf)
+    prominence[window] = _prominence(survey, anchor, p[window], row[window])
     left, right = (
         _pole(p[part], azimuth[part], prominence[part], anchor)
         for part in (window & (s * x > 0.0) for s in SIDES)
@@ -132,7 +133,7 @@ def _prominence(survey: Survey, anchor: Anchor, p: Points, row: Indices) -> Floa
     back = survey.back_width()
     shrink = np.clip(back[base] / back, 0.7, 1.0)[row]
     flat = np.column_stack([survey.middle + (p[:, 0] - survey.middle) * shrink, p[:, 1]])
-    return np.asarray((flat @ hull[:, :2].T + hull[:, 2]).max(axis=1))
+    return np.asarray((hull[:, :2] @ flat.T + hull[:, 2:]).max(axis=0))
 
 
 def _pole(p: Points, azimuth: Floats, prominence: Floats, anchor: Anchor) -> Pole:
