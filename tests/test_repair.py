@@ -114,10 +114,13 @@ def test_specks_go_and_a_part_near_the_body_stays():
     assert sentences == ("Dropped 8 specks beside the body.",)
 
 
-def test_a_skin_in_shreds_keeps_them():
-    vertices, faces = person()
-    shreds = vertices[faces[::2]].reshape(-1, 3) + 0.01 * RNG(0).normal(size=(3 * len(faces[::2]), 1))
-    mended = repair(*beside((vertices, faces[1::2]), (shreds, np.arange(len(shreds)).reshape(-1, 3))))
+@pytest.mark.parametrize("whole", [0.0, 0.5])
+def test_a_skin_in_shreds_keeps_them(whole):
+    vertices, faces = ball()
+    kept = vertices[faces].mean(axis=1)[:, 2] > 100.0 - 200.0 * whole
+    corners = vertices[faces[~kept]].reshape(-1, 3)
+    shreds = corners + 0.3 * RNG(0).normal(size=corners.shape), np.arange(len(corners)).reshape(-1, 3)
+    mended = repair(*beside((vertices, faces[kept]), shreds))
     assert len(mended[1]) > 0.98 * len(faces)
 
 
