@@ -94,15 +94,16 @@ class ScanDesk(QObject):
     def show_stuck(self, stuck: StuckError) -> None:
         """Show a scan that cannot go on: ask how it stands if that is not sure, else for its landmarks."""
         window, self.stuck = self._window, stuck
-        if not stuck.body.pose.sure:
+        if stuck.asks:
             self._ask(stuck.body, stuck.design)
             return
         window.landmarks.set_landmarks(landmark_views(stuck.landmarks), [stuck.message])
         window.scan.set_scan(scan_view(stuck.design.scan, stuck.body))
         window.view.show_stuck(stuck.body, stuck.landmarks)
-        window.desk.go_to("landmarks")
-        window.rail.set_state("scan", "done")
-        window.rail.set_state("landmarks", "look")
+        step, other = ("scan", "missing") if stuck.refused else ("landmarks", "look")
+        window.desk.go_to(step)
+        window.rail.set_state("scan", "look" if stuck.refused else "done")
+        window.rail.set_state("landmarks", other)
         window.notices.withdraw("bad")
         window.notices.show_notice("bad", stuck.message, stuck.hint, lasting=True)
 

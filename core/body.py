@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+import numpy as np
+
 from core.cleaning.calm import calmed, noise_of
 from core.cleaning.holes import Hole, find_holes
 from core.cleaning.mending import mended
@@ -17,7 +19,11 @@ from core.progress import Progress, quiet
 from core.reading.raw_scan import RawScan
 from core.reading.scan_file import read_raw, scan_bytes
 from core.reading.surface import FEWEST_POINTS, is_cloud, surface_of
+from core.standing.body_size import MILLIMETRES
 from core.standing.upright import Pose, find_pose
+
+TORSO = 600.0
+"""About how high the scan of a torso is [mm]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +53,14 @@ class Body:
     def holes(self) -> tuple[Hole, ...]:
         """The holes that stay open, longest first; where a neck, an arm or the hips were cut is none."""
         return tuple(hole for hole in find_holes(self.mesh) if not hole.opening)
+
+
+class RefusedError(ScanError):
+    """It cannot be told how a scan stands; ``body`` is what it holds as it lies in its file, z up."""
+
+    def __init__(self, problem: ScanError, body: Body) -> None:
+        super().__init__(problem.message, problem.hint)
+        self.body = body
 
 
 def read_scan(
@@ -86,7 +100,14 @@ def body_of(
     if len(faces) == 0:
         raise ScanError(f"{name} has no sound triangles.", "Export the scan again.")
     progress("finding up and front", 0.0)
-    pose = find_pose(vertices, faces, unit=unit, up=up, front=front)
+    try:
+        pose = find_pose(vertices, faces, unit=unit, up=up, front=front)
+    except ScanError as refusal:
+        lies = as_it_lies(vertices, unit)
+        mesh = Mesh(vertices @ lies.file_to_mm[:3, :3].T, faces)
+        raise RefusedError(
+            refusal, Body(mesh, lies, (*said, *repairs), scan_name(name), rebuilt)
+        ) from refusal
     progress("finding up and front", 1.0)
     turn = pose.file_to_mm[:3, :3]
     skin, cut = _off_the_stand(Skin(vertices @ turn.T, faces), pose.stand)
@@ -100,6 +121,15 @@ def _off_the_stand(skin: Skin, level: float) -> tuple[Skin, tuple[str, ...]]:
     if body.all():
         return skin, ()
     return skin.with_vertices(body).compact(), ("Cut away the stand that the body is mounted on.",)
+
+
+def as_it_lies(vertices: Points, unit: str | None) -> Pose:
+    """Return the pose of what is only looked at: z up, in the unit told or that which makes it a torso."""
+    height = max(float(np.ptp(vertices[:, 2])), 1e-9)
+    likely = min(MILLIMETRES, key=lambda each: abs(np.log(height * MILLIMETRES[each] / TORSO)))
+    unit = unit if unit in MILLIMETRES else likely
+    scale = np.diag([*[MILLIMETRES[unit]] * 3, 1.0])
+    return Pose(unit, "+z", "-y", scale, False, "It is shown as it lies in its file.", 0.0)
 
 
 def scan_name(name: str) -> str:

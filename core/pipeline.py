@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from core.body import Body, body_of
+from core.body import Body, RefusedError, body_of
 from core.control_mesh import ControlMesh, fit_control_mesh
 from core.design import Design, OwnLine, ScanSource
 from core.errors import FitError, LandmarkError, LineError, UserError
@@ -101,7 +101,8 @@ READING = {
 class StuckError(UserError):
     """A ``body`` was read, and no bust found on it or no control mesh laid: it can be shown and corrected.
 
-    ``landmarks`` by name are those that were found, or at least placed.
+    ``landmarks`` by name are those that were found, or at least placed; ``asks`` that it may stand otherwise.
+    If it was ``refused`` it is shown as it lies in its file.
     """
 
     def __init__(
@@ -111,6 +112,8 @@ class StuckError(UserError):
         self.body = body
         self.design = design
         self.landmarks = landmarks
+        self.refused = isinstance(problem, RefusedError)
+        self.asks = not body.pose.sure and not self.refused
 
 
 class _Stager:
@@ -162,7 +165,10 @@ def build(design: Design, previous: Stages | None = None, progress: Progress = q
     Raises the UserError of the stage that fails, or Cancelled; ``previous`` then still stands.
     """
     stage = _Stager(previous, progress)
-    scan, body = stage("read scan", partial(read_body, progress=stage.inside), design.scan)
+    try:
+        scan, body = stage("read scan", partial(read_body, progress=stage.inside), design.scan)
+    except RefusedError as refusal:
+        raise StuckError(refusal, refusal.body, design, {}) from refusal
     try:
         return _stages(stage, design, scan, body)
     except (LandmarkError, FitError) as problem:

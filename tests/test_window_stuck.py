@@ -19,10 +19,11 @@ from app.main_window import MainWindow
 from app.picture import draw_window
 from core.body import Body
 from core.design import Design, ScanSource
-from core.errors import LandmarkError
+from core.errors import LandmarkError, ScanError
 from core.landmarks import find_landmarks
 from core.pipeline import StuckError
 from core.placing import in_mm
+from core.standing.upright import find_pose
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -76,6 +77,33 @@ def test_the_picture_of_a_scan_that_cannot_go_on_shows_it(
     with pytest.raises(StuckError, match="No bust is here"):
         draw_window(Design(ScanSource(str(mannequin))), tmp_path / "stuck.png", size=(1280, 800))
     assert (tmp_path / "stuck.png").stat().st_size > 100_000
+
+
+def test_a_refused_scan_is_shown_as_it_lies_and_can_be_told_how_it_stands(
+    mannequin: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(vertices: Any, faces: Any, **told: Any) -> Any:
+        if told["up"] is None:
+            raise ScanError("This is no body.", "Say which way is up.")
+        return find_pose(vertices, faces, **told)
+
+    monkeypatch.setattr(core.body, "find_pose", refuse)
+
+    def script(window: MainWindow) -> Script:
+        yield lambda: window.scan_desk.stuck is not None and not window.view.busy.isVisible()
+        notice = window.notices.notice()
+        assert notice is not None
+        assert notice.sentence == "This is no body."
+        assert window.scan.isVisible()
+        assert window.view.viewport.scene.body is not None
+        window.scan.told.emit("up", "+z")
+        yield settled(window)
+        design = window.session.design
+        assert design is not None
+        assert design.scan.up == "+z"
+        assert window.scan_desk.stuck is None
+
+    run_main([str(mannequin)], script)
 
 
 def test_a_landmark_that_was_not_found_can_be_placed_and_undone(monkeypatch: pytest.MonkeyPatch) -> None:
