@@ -142,9 +142,7 @@ def _is_built(skin: Skin, faces: Indices) -> bool:
     flattest = np.argsort(spread[:, 0] / np.maximum(spread[:, 1], 1e-300))[: len(places) // 2]
     few = normals[flattest[:: len(flattest) // 12]]
     crossed = np.cross(few[:, None], few[None])[np.triu_indices(len(few), 1)]
-    crossed = unit(
-        crossed[np.linalg.norm(crossed, axis=1) > UPRIGHT]
-    )  # two normals of one plate cross in none
+    crossed = unit(crossed[np.linalg.norm(crossed, axis=1) > UPRIGHT])  # those of one plate cross in none
     thick = FLAT * float(np.sqrt(skin.areas[faces].sum()))
     main = np.linalg.eigh(normals.T @ normals)[1].T
     for axis in np.concatenate([main, few, crossed]):

@@ -210,7 +210,7 @@ def _upright(seen: Look) -> float:
 
 
 def _taper(seen: Look) -> float:
-    width = seen.trunk.width[np.isfinite(seen.trunk.width)]
+    width = seen.trunk.width[~seen.trunk.slim]
     end = max(1, len(width) // 6)
     bottom, top = np.median(width[:end]), np.median(width[-end:])
     return float(np.log(max(bottom, 1e-9) / max(top, 1e-9)))

@@ -22,6 +22,12 @@ GAP = 3
 SUNK = 0.25
 """A level whose middle lies deeper than this share of its depth, in front and at the back, is two legs."""
 
+SLIM = 0.25
+"""A level slimmer than this share of most of the skin [1] is no body: a neck is wider, a pole is not."""
+
+NECK, BASE = 0.35, 0.8
+"""What is slimmer than the one, over what is wider than the other, is a stand: no head is that wide [1]."""
+
 
 @dataclass(frozen=True, eq=False)
 class Silhouette:
@@ -89,13 +95,34 @@ class Silhouette:
         """Height of each level over the lowest, shape (k,) [mm of a typical trunk]."""
         return np.asarray((self.z - self.z[0]) * self.mm)
 
+    @cached_property
+    def slim(self) -> Flags:
+        """Levels too slim for a body, even for its neck: a pole that it stands on, or nothing."""
+        width = np.sort(self.width[np.isfinite(self.width)])
+        total = np.cumsum(width)
+        usual = (
+            width[np.searchsorted(total, 0.5 * total[-1])] if len(width) else np.inf
+        )  # by area, not height
+        return ~(self.width > SLIM * usual)
+
+    @cached_property
+    def stand(self) -> float:
+        """The level under which there is no body but the pole that it stands on; -inf without one."""
+        proper = np.flatnonzero(self.proper)
+        with np.errstate(invalid="ignore"):
+            thin = (self.width < NECK * self.half_width) & np.logical_or.accumulate(
+                self.width > BASE * self.half_width
+            )
+        pole = np.flatnonzero((thin | self.slim & np.isfinite(self.width))[: proper[len(proper) // 2]])
+        return float(self.z[pole[-1]] + 0.5 * self.cell) if len(pole) else -np.inf
+
     def _reference(self, value: Floats) -> float:
-        width = self.width[np.isfinite(self.width)]
+        width = self.width[~self.slim]
         if len(width) == 0:
             return float("nan")
         upper = np.median(width[width >= np.median(width)])
         with np.errstate(invalid="ignore"):
-            return float(np.percentile(value[self.width <= 1.25 * upper], 70))
+            return float(np.percentile(value[~self.slim & (self.width <= 1.25 * upper)], 70))
 
     def turned(self, up: int, back: int) -> Silhouette:
         """Return the same trunk with z and depth taken along these signs (+1 or -1)."""

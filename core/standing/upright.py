@@ -43,7 +43,7 @@ class Pose:
     a mirror, without a shift. ``up`` and ``front`` name the nearest axes of the file; ``tilt`` is the angle
     between up and its axis [degrees]. ``margin`` is the lead of this reading over the best other one [1]; if
     small, ``sure`` is False and the user should be asked. ``others`` are the ``file_to_mm`` of the next best
-    readings, at most three.
+    readings, at most three. What lies under the level ``stand`` [mm] is a pole or a base, no body.
     """
 
     unit: str
@@ -55,6 +55,7 @@ class Pose:
     margin: float
     tilt: float = 0.0
     others: tuple[Floats, ...] = ()
+    stand: float = -np.inf
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "file_to_mm", frozen(self.file_to_mm))
@@ -101,7 +102,9 @@ def find_pose(
     if tilt > 0.0:
         reason += f" The body stands {tilt:.0f} degrees off {axes[0]} in its file and was set upright."
     matrices = [_scaled(turn, MILLIMETRES[size.unit]) for turn in turns]
-    return Pose(size.unit, *axes, matrices[0], clear and size.sure, reason, margin, tilt, tuple(matrices[1:]))
+    stand = MILLIMETRES[size.unit] * best.seen.trunk.stand
+    sure = clear and size.sure
+    return Pose(size.unit, *axes, matrices[0], sure, reason, margin, tilt, tuple(matrices[1:]), stand)
 
 
 def _readings(cloud: Cloud, up: Told | None, front: Told | None) -> list[Stance]:
