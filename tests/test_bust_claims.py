@@ -1,0 +1,54 @@
+"""Claims about the bust that chance or damage puts to the test: flat bodies, noise, holes near a fold."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from test_landmarks import SIDES, found, landmarks_of, part, sample
+
+from core.errors import LandmarkError
+from core.finding.breast_profile import OFFSETS, OWN, Profile
+from core.finding.fold import trace
+from core.finding.under_breast import CREASE
+
+
+def test_a_body_that_is_too_flat_is_refused_for_that():
+    mesh = sample("mannequin")
+    with pytest.raises(LandmarkError, match="not as deep as a body"):
+        landmarks_of(mesh.moved(mesh.vertices * [1.0, 0.5, 1.0]))
+
+
+def test_smooth_breasts_that_are_alike_point_alike_whatever_the_noise():
+    mesh = sample("mannequin")
+    rough = np.random.default_rng(1).normal(0.0, 0.8, (len(mesh.vertices), 1))
+    noisy = landmarks_of(mesh.moved(mesh.vertices + mesh.vertex_normals * rough))
+    left, right = (noisy.position(f"bust_point_{side}") for side in SIDES)
+    assert left * [-1.0, 1.0, 1.0] == pytest.approx(right, abs=0.4)  # one by one they are 1.5 mm apart
+
+
+def test_a_hole_below_a_fold_that_shows_leaves_it_in_place_and_less_sure():
+    mesh, whole = sample("mannequin"), found("mannequin").points["fold_left"]
+    below = (mesh.vertices - whole.position + [0.0, 0.0, 45.0]) * [1.0, 0.3, 1.0]
+    centre = mesh.vertices[np.argmin(np.linalg.norm(below, axis=1))]
+    away = np.linalg.norm(mesh.vertices[mesh.faces].mean(axis=1) - centre, axis=1)
+    fold = landmarks_of(part(mesh, away > 12.0)).points["fold_left"]
+    assert fold.rule == CREASE
+    assert np.linalg.norm(fold.position - whole.position) < 1.0
+    assert 0.0 < fold.confidence < 0.6 * whole.confidence
+
+
+def test_a_fold_keeps_near_its_course_where_noise_is_sharper():
+    arc = np.arange(120.0)
+    crease = 0.03 * np.exp(-0.5 * ((arc - 50.0) / 4.0) ** 2)
+    spike = 0.14 * np.exp(-0.5 * (arc - 56.0) ** 2)
+    bundle = [
+        Profile(
+            np.stack([0.0 * arc + x, 0.0 * arc, 50.0 - arc], axis=1),
+            crease + spike * (k == OWN),
+            arc > -1.0,
+            True,
+        )
+        for k, x in enumerate(OFFSETS)
+    ]
+    run = trace(bundle, 0.0)
+    assert run.curve[run.own, 2] == pytest.approx(0.0, abs=3.0)
