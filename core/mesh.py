@@ -21,6 +21,10 @@ Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
 
 
+FARTHEST = 1e9
+"""A coordinate beyond this [file units, mm] is a mistake: squares and cubes of it would not stay finite."""
+
+
 def frozen(array: npt.ArrayLike, dtype: npt.DTypeLike = np.float64) -> npt.NDArray[np.float64]:
     """Return a contiguous read-only copy of ``array``."""
     result = np.array(array, dtype=dtype, order="C")
@@ -81,6 +85,11 @@ class Mesh:
         """
         corners = self.vertices[self.faces] - np.asarray(apex, dtype=np.float64)
         return float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6.0
+
+
+def quadric_terms(u: Floats, v: Floats) -> Floats:
+    """Return what a quadric height over the plane at places ``u``, ``v`` is made of, shape (.., 6)."""
+    return np.stack([np.ones_like(u), u, v, u * u, u * v, v * v], axis=-1)
 
 
 def unit(vectors: Points) -> Points:

@@ -9,7 +9,7 @@ import numpy as np
 
 from core.errors import LandmarkError
 from core.landmark import NAMES, Landmark
-from core.mesh import Floats, Mesh, Points
+from core.mesh import FARTHEST, Floats, Mesh, Points
 from core.proximity import nearest_on
 
 HELP = (
@@ -18,9 +18,6 @@ HELP = (
     f"'busk detect' prints them. The names are: {', '.join(NAMES)}"
 )
 """What a user has to know to place a landmark."""
-
-FARTHEST = 1e9
-"""A coordinate beyond this [file units] is a mistake."""
 
 PLACED = "Placed by hand."
 

@@ -11,7 +11,7 @@ from core.cleaning.holes import border_loops, find_holes, frame_of, hole_sentenc
 from core.cleaning.polygon import triangulated
 from core.cleaning.repair import counted
 from core.cleaning.skin import Skin
-from core.mesh import Faces, Floats, Indices, Mesh, Points
+from core.mesh import Faces, Floats, Indices, Mesh, Points, quadric_terms
 from core.progress import Progress, quiet
 
 CLOSED = 30.0
@@ -173,8 +173,7 @@ def _quadric(places: Points, scale: float) -> Callable[[Floats], Floats]:
     """Fit a quadric height over the plane to ``places``, shape (k, 3); the middle counts most."""
 
     def terms(flat: Floats) -> Floats:
-        u, v = flat[:, 0] / scale, flat[:, 1] / scale
-        return np.stack([np.ones_like(u), u, v, u * u, u * v, v * v], axis=1)
+        return quadric_terms(*(flat[:, :2].T / scale))
 
     weight = np.exp(-((places[:, :2] / scale) ** 2).sum(axis=1))
     basis = terms(places[:, :2]) * weight[:, None]

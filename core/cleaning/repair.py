@@ -9,13 +9,10 @@ import numpy as np
 from core.cleaning.inner import drop_hidden
 from core.cleaning.pieces import drop_furniture, drop_inner, drop_specks, size_of
 from core.cleaning.skin import Skin, components, first_equal
-from core.mesh import Faces, Flags, Indices, Points
+from core.mesh import FARTHEST, Faces, Flags, Indices, Points
 from core.progress import Progress, quiet
 
 Step = Callable[[Skin], tuple[Skin, int]]
-
-FARTHEST = 1e9
-"""A coordinate beyond this [file units] is a mistake: squares and cubes of it would not stay finite."""
 
 FAR_OFF = 50.0
 """A vertex farther from the middle than so many times the median vertex [1] is a mistake."""

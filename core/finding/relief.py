@@ -8,7 +8,7 @@ import numpy as np
 from scipy.ndimage import correlate, maximum_filter
 from scipy.spatial import Delaunay
 
-from core.mesh import Floats, Mesh, Points, unit
+from core.mesh import Floats, Mesh, Points, quadric_terms, unit
 
 NEAR = 24.0
 """A nipple is looked for so far from the pole [mm]."""
@@ -123,7 +123,7 @@ def relief_kernels(cell: float, core: float = 3.0, ring: tuple[float, float] = R
     t = np.arange(-reach, reach + 1) * cell
     u, v = (a.ravel() for a in np.meshgrid(t, t))
     r = np.hypot(u, v)
-    basis = np.stack([np.ones_like(u), u, v, u * u, u * v, v * v], axis=1)
+    basis = quadric_terms(u, v)
     on_ring = (r >= ring[0]) & (r <= ring[1])
     fit = np.zeros((6, len(u)))
     fit[:, on_ring] = np.linalg.pinv(basis[on_ring])

@@ -141,7 +141,7 @@ def spacing_of(points: Points) -> float:
 
 def nearest(tree: cKDTree, places: Points, count: int) -> tuple[Floats, Indices]:
     """Return how far the nearest ``count`` points of a tree lie, and which they are, shapes (n, count)."""
-    reach, near = tree.query(places, k=np.arange(1, min(count, tree.n) + 1))
+    reach, near = tree.query(places, k=np.arange(1, min(count, tree.n) + 1), workers=-1)  # all cores
     return np.asarray(reach), np.asarray(near, dtype=np.int64)
 
 

@@ -7,16 +7,13 @@ from scipy import sparse
 from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
 from scipy.spatial import cKDTree
 
-from core.mesh import Faces, Flags, Floats, Indices, Points, unit
+from core.mesh import FARTHEST, Faces, Flags, Floats, Indices, Points, quadric_terms, unit
 from core.progress import Progress, quiet
 from core.reading.contour import BLOCK, contour, nearest, once, spacing_of
 from core.reading.raw_scan import RawScan
 
 FEWEST_POINTS = 2000
 """With fewer points no breast could be made out."""
-
-FARTHEST = 1e9
-"""A coordinate beyond this [file units] is a mistake."""
 
 SMOOTHEST_FOG = 0.8
 """Mean cosine [1] between the normals of neighbours; points in a volume give 0.66, a very noisy skin 0.9."""
@@ -142,7 +139,7 @@ def _patches(queries: Points, tree: cKDTree) -> tuple[Points, Points]:
     _, axes = np.linalg.eigh(np.swapaxes(offset * weight[..., None], 1, 2) @ offset)
     local = around @ axes
     height, u, v = local[..., 0], local[..., 1], local[..., 2]
-    terms = np.stack([np.ones_like(u), u, v, u * u, u * v, v * v], axis=2)
+    terms = quadric_terms(u, v)
     weighted = np.swapaxes(terms * weight[..., None], 1, 2)
     fit = np.linalg.solve(weighted @ terms + 1e-7 * np.eye(6), weighted @ height[..., None])[..., 0]
     normal = axes[..., 0] - fit[:, 1, None] * axes[..., 1] - fit[:, 2, None] * axes[..., 2]
