@@ -181,6 +181,14 @@ def _cylinder() -> Mesh:
     return Mesh(np.asarray(tube.vertices), np.asarray(tube.faces))
 
 
+def _one_bump() -> Mesh:
+    """A tube with a bump in the middle of its front, both sides of which come forward."""
+    tube = trimesh.creation.cylinder(130.0, 500.0, sections=64).subdivide_to_size(12.0)
+    x, y, z = np.asarray(tube.vertices).T
+    bump = np.where(y < 0.0, 80.0 * np.exp(-((np.hypot(x, z - 50.0) / 80.0) ** 4)), 0.0)
+    return Mesh(np.stack([1.15 * x, 0.85 * y - bump, z], axis=1), np.asarray(tube.faces))
+
+
 def _torus() -> Mesh:
     ring = trimesh.creation.torus(150.0, 60.0)
     return Mesh(np.asarray(ring.vertices), np.asarray(ring.faces))
@@ -198,6 +206,7 @@ def _turned(x: float, y: float, z: float) -> Mesh:
 NO_BUST = {
     "a cube": lambda: _box((300.0, 300.0, 300.0)),
     "a cylinder": _cylinder,
+    "one bump in the middle": _one_bump,
     "a torus": _torus,
     "the back": lambda: _half(1, -100.0, 1.0),
     "the front": lambda: _half(1, -100.0, -1.0),

@@ -35,6 +35,9 @@ ASIDE = 40.0
 DEEPEST = 220.0
 """The under-bust level lies by less than this below that of the bust [mm]."""
 
+ONE_BUMP = 0.3
+"""What comes forward in the middle by more than this part of the sides is one bump: busts had up to 0.11."""
+
 OPEN = 0.25
 """One straight line is no longer than this part of an outline: else a side of the trunk is missing."""
 
@@ -57,7 +60,7 @@ def refusal(why: str, placed: Sequence[Landmark] = ()) -> LandmarkError:
 def check_anchor(anchor: Anchor) -> None:
     """Raise LandmarkError where the body does not come forward as over a bust."""
     least = 2.0 * KINK if anchor.lone else KINK
-    if anchor.kink < least or anchor.middle_kink > 0.5 * anchor.kink:
+    if anchor.kink < least or anchor.middle_kink > ONE_BUMP * anchor.kink:
         raise refusal("no fold lies under a left and a right breast")
 
 
