@@ -21,6 +21,28 @@ KINK = 8.0
 SIDES = (1.0, -1.0)
 """Sign of x of the left and of the right side."""
 
+BELOW, ABOVE = 25.0, 130.0
+"""A pole is looked for so far below and above the anchor [mm]: the longest breast and the highest one."""
+
+BESIDE = 0.17
+"""And further from the middle than this part of the half width of the trunk: the breastbone is no breast."""
+
+USUAL, STRAYING = (18.0, 52.0), 0.6
+"""A pole usually lies so far round the trunk from the front [degrees]; a degree more must be paid by so much
+prominence [mm], as the side of the trunk and an arm stand out too."""
+
+HIGH, RISING = 85.0, 0.15
+"""Each mm over this height above the anchor [mm] must be paid by so much prominence [mm]: shoulders."""
+
+FARTHEST, HIGHEST = 66.0, 122.0
+"""A summit so far round [degrees] or so high [mm] is the border of the search and no breast."""
+
+TALL, TURN = 5.0, 3.0
+"""Cell of the map of prominence: height [mm] and bearing [degrees]."""
+
+TOP = 25.0
+"""The pole is the middle of what stands out most so near to the summit [mm]."""
+
 
 @dataclass(frozen=True, eq=False)
 class Anchor:
@@ -105,7 +127,7 @@ def find_poles(survey: Survey, anchor: Anchor) -> tuple[Pole, Pole]:
     Prominence is measured from the convex outline of the trunk under the breasts, after the body has been
     narrowed to the width of the back there. Raises LandmarkError without a chest. Source: ours.
     """
-    near = (survey.samples[:, 2] > anchor.z - 25.0) & (survey.samples[:, 2] < anchor.z + 130.0)
+    near = (survey.samples[:, 2] > anchor.z - BELOW) & (survey.samples[:, 2] < anchor.z + ABOVE)
     p, row = survey.samples[near], survey.row[near]
     x = p[:, 0] - survey.middle
     depth = 0.5 * (survey.front + survey.back)[row] - p[:, 1]
@@ -115,7 +137,7 @@ def find_poles(survey: Survey, anchor: Anchor) -> tuple[Pole, Pole]:
             "The trunk under the breasts is missing.", "Open a scan that shows the whole trunk."
         )
     width = float(np.median(survey.half_width[under]))
-    window = (depth > 0.0) & (np.abs(x) > 0.17 * width) & (np.abs(x) < max(1.25 * width, width + 35.0))
+    window = (depth > 0.0) & (np.abs(x) > BESIDE * width) & (np.abs(x) < max(1.25 * width, width + 35.0))
     azimuth = np.degrees(np.arctan2(np.abs(x), depth))
     prominence = np.full(len(p), -np.inf)
     prominence[window] = _prominence(survey, anchor, p[window], row[window])
@@ -141,17 +163,17 @@ def _pole(p: Points, azimuth: Floats, prominence: Floats, anchor: Anchor) -> Pol
     if len(p) < 200:
         raise LandmarkError("The front of the chest is missing.", "Open a scan that shows the whole bust.")
     high = p[:, 2] - anchor.z
-    score = prominence - 0.6 * (np.maximum(azimuth - 52.0, 0.0) + np.maximum(18.0 - azimuth, 0.0))
-    score -= 0.15 * np.maximum(high - 85.0, 0.0)
-    cells = (np.floor((high + 25.0) / 5.0).astype(np.int64), np.floor(azimuth / 3.0).astype(np.int64))
-    grid = np.full((31, 30), -np.inf)
+    score = prominence - STRAYING * np.abs(azimuth - np.clip(azimuth, *USUAL))
+    score -= RISING * np.maximum(high - HIGH, 0.0)
+    cells = (np.floor((high + BELOW) / TALL).astype(np.int64), np.floor(azimuth / TURN).astype(np.int64))
+    grid = np.full((round((BELOW + ABOVE) / TALL), round(90.0 / TURN)), -np.inf)
     np.maximum.at(grid, cells, score)
     grid = smoothed(grid, (1.2, 0.9))
     grid = np.where(np.isnan(grid), -np.inf, grid)
     summit = grid == maximum_filter(grid, (9, 7), mode="nearest")
-    inner = summit[cells] & (azimuth < 66.0) & (high < 122.0)
-    allowed = inner if inner.any() else (azimuth < 60.0) & (high < 100.0)
+    inner = summit[cells] & (azimuth < FARTHEST) & (high < HIGHEST)
+    allowed = inner if inner.any() else (azimuth < 60.0) & (high < 100.0)  # well away from the border
     top = p[np.argmax(np.where(allowed, grid[cells], -np.inf))]
-    near = np.flatnonzero(((p - top) ** 2).sum(axis=1) < 25.0**2)
+    near = np.flatnonzero(((p - top) ** 2).sum(axis=1) < TOP**2)
     best = near[np.argsort(prominence[near])[-len(near) // 2 :]]
     return Pole(p[best].mean(axis=0), float(prominence[best].mean()), bool(inner.any()))
