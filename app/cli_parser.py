@@ -121,7 +121,9 @@ def _add_scan(parser: argparse.ArgumentParser) -> None:
     """Add a scan and all that can be said about it."""
     kinds = f"a scan ({KINDS}, each also packed as {PACKED}) or a project (.busk)"
     parser.add_argument("input", metavar="SCAN_OR_PROJECT", help=kinds)
-    parser.add_argument("--unit", choices=tuple(MILLIMETRES), help="the scan's unit, if not guessed well")
+    parser.add_argument(
+        "--unit", type=str.lower, choices=tuple(MILLIMETRES), help="the scan's unit, if not guessed well"
+    )
     parser.add_argument("--up", metavar="AXIS", help=f"what points up in the scan: {_AXIS.format(axis='+z')}")
     parser.add_argument(
         "--front", metavar="AXIS", help=f"where the body faces in the scan: {_AXIS.format(axis='-y')}"

@@ -109,7 +109,7 @@ class LandmarksPanel(QWidget):
     def _foot(self) -> QWidget:
         self._rule_box = QWidget()
         rule = QVBoxLayout(self._rule_box)
-        rule.setContentsMargins(4, 8, 4, 0)
+        rule.setContentsMargins(4, 8, 4, 12)
         rule.setSpacing(3)
         self._rule_title, self._rule = sentence("", "name"), sentence()
         self._hint = sentence(role="caption")
@@ -164,7 +164,7 @@ class LandmarksPanel(QWidget):
             self._rule_title.setText(view.title)
             self._rule.setText(say(view.rule))
             drag = tr("Drag its pin over the skin to correct it.")
-            self._hint.setText(tr("Its pin will wait in the middle of the view.") if absent else drag)
+            self._hint.setText(tr("Puts a pin in the middle of the view.") if absent else drag)
             if view.group == "further":
                 self._open_further()
 
