@@ -168,7 +168,7 @@ def test_a_body_of_no_human_size_is_refused_unless_the_unit_is_told_so():
     ("told", "words"),
     [
         ({"unit": "foot"}, "unit 'foot'"),
-        ({"up": "z"}, "axis 'z'"),
+        ({"up": "w"}, "axis 'w'"),
         ({"up": "+z", "front": "-z"}, "same axis"),
     ],
 )

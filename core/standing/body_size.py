@@ -40,7 +40,7 @@ def find_unit(girth: float, told: str | None = None) -> Size:
             )
             return Size(told, True, reason)
         raise ScanError(
-            f"In {told} the trunk would measure {mm:.4g} mm round, which is not the size of a body.",
+            f"In {told} the trunk would measure {_plain(mm)} mm round, which is not the size of a body.",
             "Check the unit, and that the scan holds an upper body.",
         )
     usual, rare = (
@@ -49,7 +49,7 @@ def find_unit(girth: float, told: str | None = None) -> Size:
     )
     if not rare:
         raise ScanError(
-            f"The trunk measures {girth:.4g} round, which is the size of a body in no unit.",
+            f"The trunk measures {_plain(girth)} round, which is the size of a body in no unit.",
             "Check that the scan holds an upper body, or say in which unit it is.",
         )
     unit = (usual or rare)[0]
@@ -60,3 +60,10 @@ def find_unit(girth: float, told: str | None = None) -> Size:
         if other != unit:
             reason += f" It might also be {other} ({girth * MILLIMETRES[other]:.0f} mm): please check it."
     return Size(unit, len(rare) == 1, reason)
+
+
+def _plain(length: float) -> str:
+    """Return a length in words without powers of ten."""
+    if 0.01 < length < 1e6:
+        return f"{length:,.0f}" if length > 100.0 else f"{length:.3g}"
+    return "more than a million" if length > 1.0 else "almost nothing"

@@ -21,12 +21,13 @@ TRIED = 16
 
 @dataclass(frozen=True, eq=False)
 class FlatEnd:
-    """A plane that a skin ends at: ``normal`` points out of the body, shape (3,); ``area`` in file units^2.
+    """A plane {p: p . normal = offset} that a skin ends at: ``normal`` points out of the body, shape (3,).
 
-    ``filled`` tells a plate from the rim of a hole.
+    ``area`` is in file units^2; ``filled`` tells a plate from the rim of a hole.
     """
 
     normal: Floats
+    offset: float
     area: float
     filled: bool
 
@@ -89,4 +90,4 @@ def _flat_end(points: Points, grain: float, normal: Floats, offset: float) -> Fl
     length, area = float(outline.area), float(outline.volume)  # of a plane hull: its perimeter and its area
     if gap > np.radians(40.0) or len(touching) < 0.7 * length / grain:
         return None
-    return FlatEnd(normal, area, len(touching) > 0.5 * area / grain**2)
+    return FlatEnd(normal, offset, area, len(touching) > 0.5 * area / grain**2)

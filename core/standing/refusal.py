@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from core.errors import ScanError
-from core.standing.flat_ends import flat_ends
+from core.standing.flat_ends import TOUCH, FlatEnd, flat_ends
 from core.standing.stance import Stance
 from core.standing.symmetry import Cloud
 
@@ -24,7 +24,10 @@ HALF = 0.3
 SHORT, FAINT = 300.0, 12.0
 """A scan lower than this [mm of a typical trunk] must show a fold deeper than this [mm]."""
 
-WHOLE = "Open a scan of a whole upper body."
+FACING = 0.6
+"""At a rim the skin runs up to the plane of the opening [cosine]; what only touches a plane faces it."""
+
+WHOLE = "Open a scan of a whole upper body, or say which way is up and which way is front."
 
 
 def refuse_unlike(cloud: Cloud, best: Stance) -> None:
@@ -58,6 +61,12 @@ def _halved(cloud: Cloud, best: Stance, area: float) -> bool:
     return any(
         end.area > area
         and abs(end.normal @ best.up) < np.cos(np.radians(45.0))
+        and _is_rim(cloud, end)
         and not any(other.normal @ end.normal < -0.7 and other.area > 0.4 * end.area for other in ends)
         for end in ends
     )
+
+
+def _is_rim(cloud: Cloud, end: FlatEnd) -> bool:
+    touching = np.abs(cloud.points @ end.normal - end.offset) < TOUCH * cloud.grain
+    return bool(np.median(np.abs(cloud.normals[touching] @ end.normal)) < FACING)

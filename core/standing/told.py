@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.errors import ScanError
-from core.mesh import Floats
+from core.mesh import Floats, unit
 
 AXES: dict[str, Floats] = {
     sign + name: direction * np.eye(3)[k]
@@ -32,11 +32,13 @@ class Told:
 
 
 def read_direction(text: str | None) -> Told | None:
-    """Read "+x" .. "-z", or "x,y,z" as numbers. Raises ScanError."""
+    """Read "+x" .. "-z", "x" for "+x", or "x,y,z" as numbers. Raises ScanError."""
     if text is None:
         return None
-    if text in AXES:
-        return Told(AXES[text], exact=False)
+    axis = text.strip().lower()
+    axis = axis if axis.startswith(("+", "-")) else "+" + axis
+    if axis in AXES:
+        return Told(AXES[axis], exact=False)
     try:
         direction = np.array([float(number) for number in text.split(",")])
     except ValueError:
@@ -55,6 +57,9 @@ def read_directions(up: str | None, front: str | None) -> tuple[Told | None, Tol
     told_up, told_front = read_direction(up), read_direction(front)
     if told_up and told_front and abs(told_up.direction @ told_front.direction) > 0.9:
         raise ScanError(f"Up {up} and front {front} lie along the same axis.", "Choose two different axes.")
+    if told_up and told_front and told_front.exact:  # up is believed first, front lies level
+        level = told_front.direction - (told_front.direction @ told_up.direction) * told_up.direction
+        told_front = Told(unit(level), exact=True)
     return told_up, told_front
 
 

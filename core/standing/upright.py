@@ -79,6 +79,7 @@ def find_pose(
     ``front`` overrule the shape: they are "+x" .. "-z", the nearest axis, or numbers "x,y,z", exactly so.
     Raises ScanError if this is no upper body. Source: ours.
     """
+    unit = unit and unit.strip().lower()
     if unit is not None and unit not in MILLIMETRES:
         raise ScanError(f"The unit {unit!r} is not known.", f"Choose one of {', '.join(MILLIMETRES)}.")
     if len(faces) == 0:
@@ -129,9 +130,14 @@ def _readings(cloud: Cloud, up: Told | None, front: Told | None) -> list[Stance]
             chosen.append(stance)
     if exact is None:
         near = chosen[0].score - RIVAL
-        chosen = [settled(cloud, stance) if stance.score > near else stance for stance in chosen]
+        found = [settled(cloud, stance) if stance.score > near else stance for stance in chosen]
+        chosen = [stance for stance in found if _allowed(stance, up, front)] or chosen
     chosen.sort(key=lambda stance: -stance.score)
     return [s for k, s in enumerate(chosen) if all(s.differs(other, DIFFERENT) for other in chosen[:k])]
+
+
+def _allowed(stance: Stance, up: Told | None, front: Told | None) -> bool:
+    return (up is None or up.allows(stance.up)) and (front is None or front.allows(-stance.back))
 
 
 def _told_plane(cloud: Cloud, up: Told, front: Told) -> MirrorPlane:
