@@ -76,6 +76,13 @@ def test_what_the_body_stands_on_or_by_goes_and_the_body_stays(stand):
     assert "Dropped 1 piece shaped like a floor, a wall or a stand." in sentences
 
 
+def test_a_closed_dress_form_is_no_furniture():
+    form = read_triangles("mannequin.ply", (SAMPLES / "mannequin.ply").read_bytes())
+    pole = shape(trimesh.creation.cylinder(18.0, 900.0), (0.0, -95.0, -440.0), edge=30.0)
+    *mended, _ = repair(*beside(form, pole))
+    assert same_skin(mended, form)
+
+
 def test_a_file_of_furniture_alone_is_left_as_it_is():
     box = shape(trimesh.creation.box((400, 400, 400)), edge=40.0)
     *mended, _ = repair(*beside(box, STANDS["a wall"]))

@@ -140,3 +140,25 @@ def test_a_girth_that_fits_two_units_is_said_not_to_be_sure():
     assert stout.unit == "inch"
     assert not stout.sure
     assert find_pose(vertices * 900.0 / girth, faces).sure
+
+
+def test_a_told_up_is_believed_before_the_front_and_neither_is_overruled():
+    vertices, faces = sample("person")
+    for up, front in (("+z", "0,-1,0.5"), ("0,0.05,1", "0,-1,0"), (" Z", "-y")):
+        pose = find_pose(vertices, faces, up=up, front=front, unit="MM")
+        assert (pose.up, pose.front, pose.unit) == ("+z", "-y", "mm")
+        assert pose.tilt == pytest.approx(0.0 if "z" in up.lower() else np.degrees(np.arctan(0.05)), abs=0.1)
+    for up in ("+y", "-y"):
+        with pytest.raises(ScanError, match="or say which way is up"):
+            find_pose(vertices, faces, up=up)
+
+
+def test_a_pole_in_one_piece_with_the_body_is_no_body_and_tells_no_size():
+    vertices, faces = sample("mannequin")
+    pole = trimesh.creation.cylinder(18.0, 900.0).apply_translation([0.0, -95.0, -440.0])
+    foot = trimesh.creation.cylinder(170.0, 20.0).apply_translation([0.0, -95.0, -890.0])
+    pose = find_pose(*together(trimesh.Trimesh(vertices, faces, process=False), pole, foot))
+    assert (pose.unit, pose.up, pose.front, pose.sure) == ("mm", "+z", "-y", True)
+    assert pose.stand == pytest.approx(vertices[:, 2].min(), abs=20.0)
+    assert find_pose(vertices, faces).stand == -np.inf
+    assert find_pose(vertices, faces, up="-z", front="+y").stand == -np.inf  # a neck is no pole
