@@ -19,8 +19,8 @@ FLOORS = {
     "reading": "reading.raw_scan reading.text_table reading.ply_file reading.obj_file reading.stl_file "
     "reading.off_file reading.gltf_file reading.vtp_file reading.scan_file reading.contour "
     "reading.surface",
-    "cleaning": "cleaning.skin cleaning.pieces cleaning.inner cleaning.repair cleaning.holes cleaning.polygon "
-    "cleaning.mending cleaning.calm",
+    "cleaning": "cleaning.skin cleaning.pieces cleaning.inner cleaning.repair cleaning.holes "
+    "cleaning.polygon cleaning.mending cleaning.calm",
     "standing": "standing.symmetry standing.silhouette standing.cues standing.flat_ends standing.told "
     "standing.stance standing.body_size standing.refusal standing.upright body",
     "slicing": "slicing.outline slicing.gaps slicing.arms slicing.trunk_pieces slicing.trunk_guide trunk",
