@@ -6,24 +6,18 @@ stands between the marks of each set there is replaced by the counts and the tab
 
 from __future__ import annotations
 
-import re
 import sys
 from pathlib import Path
 
-PAGE = Path(__file__).parents[1] / "docs" / "accuracy.md"
-MARKED = "<!-- {0} -->\n{1}<!-- end of {0} -->\n"
+from pages import put
 
 
 def main() -> None:
-    page = PAGE.read_text(encoding="utf-8")
     for name, folder in zip(("bodies", "made"), sys.argv[1:], strict=False):
         report = (Path(folder) / "accuracy.md").read_text(encoding="utf-8")
         counts = report.split("\n\n")[1]
-        table = report.partition("## At a glance")[2].partition("\n## ")[0].strip()
-        told = MARKED.format(name, f"\n{counts}\n\n{table}\n\n")
-        page, changes = re.subn(MARKED.format(name, "(?s:.*?)"), lambda _, told=told: told, page)
-        assert changes == 1, name
-    PAGE.write_text(page, encoding="utf-8")
+        glance = report.partition("## At a glance")[2].partition("\n## ")[0].strip()
+        put("accuracy.md", name, f"{counts}\n\n{glance}")
 
 
 if __name__ == "__main__":
