@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -18,7 +18,7 @@ SLIMMEST, WIDEST = 550.0, 1600.0
 """Under-bust girths of adults [mm]: the sizes of bands that are sold, some 600 to 1500, and a little more."""
 
 FLATTEST_BUST, FULLEST_BUST = 5.0, 500.0
-"""A bust is by so much wider round than the trunk under it [mm]: to twice the largest cup that is sold."""
+"""A bust is by so much wider round than the trunk under it [mm]: wide bounds of our own, from no table."""
 
 ROUNDEST, FLATTEST = 1.0, 2.3
 """A trunk is so many times as wide as deep; chairs, bottles and things on a table are not."""
@@ -36,7 +36,8 @@ DEEPEST = 220.0
 """The under-bust level lies by less than this below that of the bust [mm]."""
 
 ONE_BUMP = 0.3
-"""What comes forward in the middle by more than this part of the sides is one bump: busts had up to 0.11."""
+"""What comes forward in the middle by more than this part of the sides is one bump; of the samples' busts
+the middle does not come forward at all."""
 
 OPEN = 0.25
 """One straight line is no longer than this part of an outline: else a side of the trunk is missing."""
@@ -87,45 +88,42 @@ def check(
     Raises LandmarkError where this cannot be a bust.
     """
     check_placed(landmarks)
-    left, right = (landmarks.position(f"bust_point_{side}") for side in SIDES)
-    under, bust = stable_level(mesh, landmarks.underbust_level), trunk_levels(mesh, landmarks.bust_level)[0]
-    if under.tape == 0.0 or bust.tape == 0.0:
-        raise refusal("the trunk is missing there", _placed(landmarks))
-    across, middle = left - right, 0.5 * (left + right)
-    wide, deep, _ = np.ptp(under.points, axis=0)
-    busts = [landmarks.points[f"bust_point_{side}"] for side in SIDES if side not in missing]
-    clear = all(mark.rule == NIPPLE or mark.by_hand for mark in busts)
-    rules = [landmarks.points[f"fold_{side}"].rule for side in SIDES]
-    for wrong, why in (
-        (
-            under.longest_straight > OPEN * under.tape,
-            "the trunk is open, as if only a part of it was scanned",
-        ),
-        (not SLIMMEST < under.tape < WIDEST, f"the girth under it would be {under.tape:.0f} mm"),
-        (len(missing) > 0 and not clear, "only one side stands out of the chest"),
-        (
-            not FLATTEST_BUST < bust.tape - under.tape < FULLEST_BUST,
-            "it would not be wider than the trunk under it",
-        ),
-        (not ROUNDEST < wide / deep < FLATTEST, "the trunk is not as deep as a body"),
-        (not APART[0] < across[0] < APART[1], f"its points would lie {across[0]:.0f} mm apart"),
-        (abs(across[2]) > UNEVEN and not missing, "its points would lie at very different heights"),
-        (abs(middle[0] - trunk.middle) > ASIDE and not missing, "it would lie beside the middle of the body"),
-        (max(pole.prominence for pole in poles) < FLAT, "nothing stands out of the chest"),
-        (not any(pole.inside for pole in poles), "no highest place of a breast shows"),
-        (
-            not 0.0 < landmarks.bust_level - landmarks.underbust_level < DEEPEST,
-            "no fold lies at a likely depth under it",
-        ),
-        (rules == [NO_CREASE, NO_CREASE], "there is no crease under it"),
-    ):
+    for wrong, why in _rules(mesh, trunk, poles, missing, landmarks):
         if wrong:
             raise refusal(why, _placed(landmarks))
+    rules = [landmarks.points[f"fold_{side}"].rule for side in SIDES]
     return tuple(
         warning
         for side, rule in zip(SIDES, rules, strict=True)
         for warning in _warnings(side, rule, side in missing)
     )
+
+
+def _rules(
+    mesh: Mesh, trunk: Survey, poles: tuple[Pole, Pole], missing: Sequence[str], landmarks: Landmarks
+) -> Iterator[tuple[bool, str]]:
+    """Give what a bust must not be, whether it is so, and why it is refused then; the first is told."""
+    under, bust = stable_level(mesh, landmarks.underbust_level), trunk_levels(mesh, landmarks.bust_level)[0]
+    yield under.tape == 0.0 or bust.tape == 0.0, "the trunk is missing there"
+    left, right = (landmarks.position(f"bust_point_{side}") for side in SIDES)
+    across, middle = left - right, 0.5 * (left + right)
+    wide, deep, _ = np.ptp(under.points, axis=0)
+    busts = [landmarks.points[f"bust_point_{side}"] for side in SIDES if side not in missing]
+    clear = all(mark.rule == NIPPLE or mark.by_hand for mark in busts)
+    more, depth = bust.tape - under.tape, landmarks.bust_level - landmarks.underbust_level
+    yield under.longest_straight > OPEN * under.tape, "the trunk is open, as if only a part of it was scanned"
+    yield not SLIMMEST < under.tape < WIDEST, f"the girth under it would be {under.tape:.0f} mm"
+    yield len(missing) > 0 and not clear, "only one side stands out of the chest"
+    yield not FLATTEST_BUST < more < FULLEST_BUST, "it would not be wider than the trunk under it"
+    yield not ROUNDEST < wide / deep < FLATTEST, "the trunk is not as deep as a body"
+    yield not APART[0] < across[0] < APART[1], f"its points would lie {across[0]:.0f} mm apart"
+    yield abs(across[2]) > UNEVEN and not missing, "its points would lie at very different heights"
+    yield abs(middle[0] - trunk.middle) > ASIDE and not missing, "it would lie beside the middle of the body"
+    yield max(pole.prominence for pole in poles) < FLAT, "nothing stands out of the chest"
+    yield not any(pole.inside for pole in poles), "no highest place of a breast shows"
+    yield not 0.0 < depth < DEEPEST, "no fold lies at a likely depth under it"
+    rules = {landmarks.points[f"fold_{side}"].rule for side in SIDES}
+    yield rules == {NO_CREASE}, "there is no crease under it"
 
 
 def _warnings(side: str, rule: str, missing: bool) -> list[str]:
