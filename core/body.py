@@ -73,7 +73,7 @@ def read_scan(
 ) -> Body:
     """Read a scan from its file; see ``body_of``. Raises ScanError, Cancelled."""
     path = Path(path)
-    return body_of(path.name, scan_bytes(path), unit=unit, up=up, front=front, progress=progress)
+    return body_of(path.name, scan_bytes(path, progress), unit=unit, up=up, front=front, progress=progress)
 
 
 def body_of(

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from core.design import Design, ScanSource, from_json, to_json
 from core.errors import ProjectError
+from core.progress import Progress, quiet
 from core.reading.scan_file import scan_bytes
 
 SUFFIX = ".busk"
@@ -67,12 +68,12 @@ def open_project(path: str | os.PathLike[str]) -> Design:
     return replace(design, scan=replace(design.scan, path=str(source)))
 
 
-def read_scan_file(source: ScanSource) -> ScanFile:
-    """Read the bytes of a scan, alone or inside a project. Raises ScanError or ProjectError."""
+def read_scan_file(source: ScanSource, progress: Progress = quiet) -> ScanFile:
+    """Read the bytes of a scan, alone or inside a project. Raises ScanError, ProjectError, Cancelled."""
     if source.member:
         with _archive(Path(source.path)) as archive:
             return ScanFile(source.name, _member(archive, source.member, _LARGEST_SCAN))
-    return ScanFile(source.name, scan_bytes(Path(source.path)))
+    return ScanFile(source.name, scan_bytes(Path(source.path), progress))
 
 
 def _safe_name(name: str) -> str:

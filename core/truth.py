@@ -20,6 +20,9 @@ MOST_BYTES = 100_000_000
 FORM = "Its form is told in docs/accuracy.md."
 TINY = 1e-9
 
+ROUNDED = 5e-3
+"""A written matrix is rounded: so far its square may be from that of one that only turns and scales [1]."""
+
 Table = dict[str, Any]
 
 OTHER_NAMES = {
@@ -173,7 +176,9 @@ def _to_mm(entry: Table) -> tuple[Floats, bool]:
     """Return the matrix from the file to the canonical frame, and whether its turn is known."""
     if "canonical_to_file" in entry:
         matrix = _numbers("canonical_to_file", entry["canonical_to_file"], 16).reshape(4, 4)
-        if abs(np.linalg.det(matrix[:3, :3])) < TINY**2 or not np.array_equal(matrix[3], [0, 0, 0, 1]):
+        turn, scale = matrix[:3, :3], np.cbrt(max(np.linalg.det(matrix[:3, :3]), 0.0))
+        even = np.abs(turn @ turn.T - scale**2 * np.eye(3)).max() < ROUNDED * scale**2
+        if not even or not np.array_equal(matrix[3], [0, 0, 0, 1]):
             raise ValueError("'canonical_to_file' is no matrix that turns, scales and shifts")
         return np.asarray(np.linalg.inv(matrix)), True
     unit = entry.get("unit", "mm")

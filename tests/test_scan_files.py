@@ -1,9 +1,7 @@
 """Every format gives the same house, and what no scan is ends in one sentence, soon, in little memory."""
 
-import base64
 import codecs
 import gzip
-import json
 import os
 import random
 import tracemalloc
@@ -161,34 +159,6 @@ def test_a_file_packed_in_pieces_is_read_whole():
     pieces = [gzip.compress(HOUSES["groups.obj"][a:b]) for a, b in ((0, half), (half, None))]
     found = read_raw("a.obj.gz", b"".join(pieces) + bytes(512))
     assert np.array_equal(found.vertices, read_raw("a.obj", HOUSES["groups.obj"]).vertices)
-
-
-def test_a_gltf_file_is_read_with_the_file_beside_it_and_with_no_other(tmp_path):
-    text = json.loads(gltf(binary=False))
-    content = base64.b64decode(text["buffers"][0]["uri"].partition(",")[2])
-    folder = tmp_path / "scan"
-    folder.mkdir()
-    for place in (folder, tmp_path):
-        (place / "the house.bin").write_bytes(content)
-    (folder / "link.bin").symlink_to(tmp_path / "the house.bin")
-
-    def read(uri):
-        text["buffers"][0]["uri"] = uri
-        (folder / "house.gltf").write_text(json.dumps(text))
-        return read_raw("house.gltf", scan_bytes(folder / "house.gltf"))
-
-    assert np.array_equal(read("the%20house.bin").faces, read_raw("a.gltf", HOUSES["text.gltf"]).faces)
-    outside = (
-        "../the house.bin",
-        "..%2Fthe house.bin",
-        str(tmp_path / "the house.bin"),
-        "link.bin",
-        "no.bin",
-        "..",
-    )
-    for uri in outside:
-        with pytest.raises(ScanError, match="in another file"):
-            read(uri)
 
 
 def test_corners_of_single_triangles_are_no_more_points_than_shared_ones(monkeypatch):

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import base64
 import codecs
+import io
 import json
 import re
+import struct
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -15,7 +17,7 @@ import numpy.typing as npt
 
 from core.errors import ScanError
 from core.mesh import Faces, Floats, Indices
-from core.progress import Progress
+from core.progress import Progress, quiet
 from core.reading.raw_scan import (
     AGAIN,
     RawScan,
@@ -33,6 +35,7 @@ _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 _MOST_NODES, _DEEPEST = 10_000, 100
 _MOST_MARKS = 2_000_000
+_STEP = 1 << 20
 _WHOLE = "Put that file beside it, or export all as one GLB file."
 _OUTSIDE = re.compile(rb'"uri"\s*:\s*"(?!data:)')
 
@@ -46,7 +49,7 @@ def read_gltf(name: str, data: bytes, progress: Progress) -> RawScan:
     Nothing but the file itself is read: buffers in other files are put in before, by ``with_buffers``.
     Source: Khronos, glTF 2.0 specification.
     """
-    document, binary = _glb(name, data) if data[:4] == b"glTF" else (data, b"")
+    document, binary = _glb(name, data) if data[:4] == b"glTF" else (data, memoryview(b""))
     if _marks(document) > _MOST_MARKS:
         raise too_much(name)
     reader = _Reader(name, json.loads(document), binary)
@@ -61,26 +64,54 @@ def read_gltf(name: str, data: bytes, progress: Progress) -> RawScan:
     return joined(parts)
 
 
-def with_buffers(path: Path, data: bytes, most: int) -> bytes:
-    """Return a glTF file as text with what it keeps in files beside it put in, up to ``most`` bytes.
+def with_buffers(path: Path, data: bytes, most: int, progress: Progress = quiet) -> bytes:
+    """Return a glTF file as text with what it keeps in files beside it, joined as GLB of ``most`` bytes.
 
-    Names that lead out of its folder, and files that are not there, stay as they are. Raises OSError.
+    Of each file no more is read than the text says it uses. Names that lead out of the folder, and files
+    that are not there or too large, stay as they are. Raises OSError, ScanError, Cancelled.
     """
     if not data[:1000].lstrip(codecs.BOM_UTF8 + b" \t\r\n").startswith(b"{") or not _OUTSIDE.search(data):
         return data
     if _marks(data) > _MOST_MARKS:
         return data
     try:
-        document = json.loads(data)
-        for buffer in document["buffers"][:_MOST_NODES]:
-            beside = _beside(path, buffer.get("uri"))
-            most -= beside.stat().st_size if beside else 0
-            if beside and most >= 0:
-                content = base64.b64encode(beside.read_bytes()).decode()
-                buffer["uri"] = f"data:application/octet-stream;base64,{content}"
-        return json.dumps(document).encode()
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        document, most = json.loads(data), most - len(data)
+        kept, joins, where, total = [{"byteLength": 0}], list[tuple[Path, int]](), dict[int, Any](), 0
+        for k, buffer in enumerate(document["buffers"][:_MOST_NODES]):
+            beside, size = _beside(path, buffer.get("uri")), int(buffer["byteLength"])
+            if beside is None or not 0 <= size <= most - total:
+                where[k] = len(kept), 0
+                kept.append(buffer)
+                continue
+            where[k] = 0, total
+            joins.append((beside, size))
+            total += size + -size % 4
+        kept[0]["byteLength"] = total
+        for view in document["bufferViews"]:
+            view["buffer"], start = where[view["buffer"]]
+            view["byteOffset"] = view.get("byteOffset", 0) + start
+        text = json.dumps({**document, "buffers": kept}).encode()
+    except (ValueError, KeyError, TypeError, AttributeError, ArithmeticError, RecursionError):
         return data  # the reader tells what is wrong with it
+    return _joined_glb(text, joins, total, progress) if joins else data
+
+
+def _joined_glb(text: bytes, files: list[tuple[Path, int]], total: int, progress: Progress) -> bytes:
+    """Return a GLB file of a description and the first bytes of ``files``, which it holds only once."""
+    text += b" " * (-len(text) % 4)
+    out = io.BytesIO()
+    out.write(struct.pack("<4sII", b"glTF", 2, 28 + len(text) + total))
+    out.write(struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", total, b"BIN\0"))
+    for file, size in files:
+        left = size
+        with file.open("rb") as content:
+            while left and (piece := content.read(min(left, _STEP))):
+                progress("reading", out.tell() / (28 + len(text) + total))
+                left -= out.write(piece)
+        if left:
+            raise _cut_short(file.name)
+        out.write(b"\0" * (-size % 4))
+    return out.getvalue()
 
 
 def _beside(path: Path, uri: Any) -> Path | None:
@@ -98,30 +129,34 @@ def _marks(document: bytes) -> int:
     return sum(document.count(mark) for mark in (b"[", b"{", b","))
 
 
+def _cut_short(name: str) -> ScanError:
+    return ScanError(f"{name} is cut short: its header promises more than the file holds.", AGAIN)
+
+
 def _packed(name: str) -> ScanError:
     return ScanError(
         f"{name} is compressed in a way that Busk does not read.", "Export it without mesh compression."
     )
 
 
-def _glb(name: str, data: bytes) -> tuple[bytes, bytes]:
+def _glb(name: str, data: bytes) -> tuple[bytes, memoryview]:
     """Return the two chunks of a GLB file: the description, and what it describes."""
     if int.from_bytes(data[4:8], "little") != 2:
         raise ScanError(f"{name} is a glTF file of an old kind.", "Export it as glTF 2.0.")
-    chunks, at = dict[bytes, bytes](), 12
+    whole, chunks, at = memoryview(data), dict[bytes, memoryview](), 12
     while at + 8 <= len(data):
         size = int.from_bytes(data[at : at + 4], "little")
         if at + 8 + size > len(data):
-            raise ScanError(f"{name} is cut short: its header promises more than the file holds.", AGAIN)
-        chunks.setdefault(data[at + 4 : at + 8], data[at + 8 : at + 8 + size])
+            raise _cut_short(name)
+        chunks.setdefault(data[at + 4 : at + 8], whole[at + 8 : at + 8 + size])
         at += 8 + size
-    return chunks[b"JSON"], chunks.get(b"BIN\0", b"")
+    return bytes(chunks[b"JSON"]), chunks.get(b"BIN\0", memoryview(b""))
 
 
 class _Reader:
     """What a file describes, taken apart on demand."""
 
-    def __init__(self, name: str, document: Json, binary: bytes) -> None:
+    def __init__(self, name: str, document: Json, binary: memoryview) -> None:
         self.name, self.json = name, document
         if document["asset"]["version"].split(".")[0] != "2":
             raise ScanError(f"{name} is a glTF file of an old kind.", "Export it as glTF 2.0.")
@@ -130,7 +165,7 @@ class _Reader:
             raise _packed(name)
         self._buffers = [self._buffer(each, binary) for each in document.get("buffers", [])[:_MOST_NODES]]
 
-    def _buffer(self, buffer: Json, binary: bytes) -> bytes:
+    def _buffer(self, buffer: Json, binary: memoryview) -> bytes | memoryview:
         uri = buffer.get("uri")
         if uri is None:
             return binary
@@ -201,7 +236,7 @@ class _Reader:
             or stride < row
             or start + max(count - 1, 0) * stride + row * (count > 0) > len(buffer)
         ):
-            raise ScanError(f"{self.name} is cut short: its header promises more than the file holds.", AGAIN)
+            raise _cut_short(self.name)
         check_size(self.name, count // (1 if width == 3 else 3))
         values = np.ndarray((count, width), kind, buffer, start, (stride, kind.itemsize)).copy()
         if accessor.get("normalized") and kind.kind in "iu":

@@ -58,8 +58,8 @@ _THINNER = f"Thin the scan until its file is smaller than {LARGEST_FILE // 1_000
 _STEP = 1 << 20
 
 
-def scan_bytes(path: Path) -> bytes:
-    """Return what a scan file holds, a glTF file with what it keeps in files beside it. Raises ScanError."""
+def scan_bytes(path: Path, progress: Progress = quiet) -> bytes:
+    """Return what a scan file holds, glTF with what it keeps beside it. Raises ScanError, Cancelled."""
     try:
         kind = path.stat()
         if not stat.S_ISREG(kind.st_mode):  # a pipe or a device may never end
@@ -67,7 +67,7 @@ def scan_bytes(path: Path) -> bytes:
         if kind.st_size > LARGEST_FILE:
             raise ScanError(f"{path.name} is too large.", _THINNER)
         with path.open("rb") as file:
-            return with_buffers(path, file.read(LARGEST_FILE), LARGEST_FILE)
+            return with_buffers(path, file.read(kind.st_size), LARGEST_FILE, progress)
     except FileNotFoundError:
         raise ScanError(f"There is no file {path}.", "Check the name, or choose another scan.") from None
     except (OSError, ValueError) as problem:
