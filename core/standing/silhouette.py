@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.ndimage import gaussian_filter
+from scipy.ndimage import gaussian_filter, label, mean
 
 from core.mesh import Flags, Floats, Indices, Points
 
@@ -28,6 +28,12 @@ SLIM = 0.25
 NECK, BASE = 0.35, 0.8
 """What is slimmer than the one, over what is wider than the other, is a stand: no head is that wide [1]."""
 
+POLE = 40.0
+"""A pole shows at least this much of its length [mm of a typical trunk]; torn rings of skin are lower."""
+
+SECTORS = 6
+"""A level with skin in all of so many directions from its middle goes round, as that of a pole does."""
+
 
 @dataclass(frozen=True, eq=False)
 class Silhouette:
@@ -36,7 +42,7 @@ class Silhouette:
     Shape (k,): ``z``, half ``width``, its ends in depth ``low`` and ``high``, NaN where there is no trunk;
     whether ``arms`` lie beside it, and whether there are only ``legs``. Shape (k, c): how far ``front`` and
     ``back`` stand out, NaN where nothing is. ``cell`` is the distance of levels and columns; ``own``, shape
-    (n,), tells which points are trunk, or between the arms.
+    (n,), tells which points are trunk, or between the arms; ``closed``, shape (k,), where it goes all round.
     """
 
     cell: float
@@ -49,6 +55,7 @@ class Silhouette:
     front: Floats
     back: Floats
     own: Flags
+    closed: Flags
 
     @cached_property
     def half_width(self) -> float:
@@ -113,8 +120,14 @@ class Silhouette:
             thin = (self.width < NECK * self.half_width) & np.logical_or.accumulate(
                 self.width > BASE * self.half_width
             )
-        pole = np.flatnonzero((thin | self.slim & np.isfinite(self.width))[: proper[len(proper) // 2]])
-        return float(self.z[pole[-1]] + 0.5 * self.cell) if len(pole) else -np.inf
+        slim = (thin | self.slim & np.isfinite(self.width))[: proper[len(proper) // 2]]
+        runs, count = label(slim)
+        lengths = np.bincount(runs)[1:] * self.cell * self.mm
+        whole = mean(self.closed[: len(slim)], runs, np.arange(count) + 1) if count else lengths
+        poles = np.flatnonzero((lengths >= POLE) & (whole > 0.5))
+        if len(poles) == 0:
+            return -np.inf
+        return float(self.z[np.flatnonzero(runs == poles[-1] + 1)[-1]] + 0.5 * self.cell)
 
     def _reference(self, value: Floats) -> float:
         width = self.width[~self.slim]
@@ -136,6 +149,7 @@ class Silhouette:
             high=high[::up],
             arms=self.arms[::up],
             legs=self.legs[::up],
+            closed=self.closed[::up],
             front=front[::up],
             back=rear[::up],
         )
@@ -160,7 +174,8 @@ def silhouette(points: Points, grain: float) -> Silhouette | None:
     left, right = _ends(mine[:, 0], level, rows)
     half = 0.5 * (right - left)
     nothing = np.empty((rows, 0))
-    bare = Silhouette(cell, z, half, low, high, beside, legs & beside, nothing, nothing, own)
+    closed = _goes_round(mine, level, rows)
+    bare = Silhouette(cell, z, half, low, high, beside, legs & beside, nothing, nothing, own, closed)
     if not (bare.half_width > 0.0 and bare.main_girth > 0.0 and bare.proper.any()):
         return None
     front, back = (_reach(mine * [1.0, sign, 1.0], level, bare, sign) for sign in (1.0, -1.0))
@@ -174,6 +189,15 @@ def _ends(values: Floats, row: Indices, rows: int) -> tuple[Floats, Floats]:
     np.maximum.at(high, row, values)
     empty = low > high
     return np.where(empty, np.nan, low), np.where(empty, np.nan, high)
+
+
+def _goes_round(points: Points, row: Indices, rows: int) -> Flags:
+    """Tell in which rows points lie in all directions from the middle, shape (rows,)."""
+    x, y = (points[:, k] - 0.5 * sum(_ends(points[:, k], row, rows))[row] for k in (0, 1))
+    sector = np.floor((np.arctan2(y, x) / (2.0 * np.pi)) * SECTORS).astype(np.int64) % SECTORS
+    taken = np.zeros((rows, SECTORS), dtype=bool)
+    taken[row, sector] = True
+    return np.asarray(taken.all(axis=1))
 
 
 def _own(points: Points, row: Indices, rows: int, grain: float) -> Flags:
