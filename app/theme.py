@@ -9,6 +9,7 @@ from PySide6.QtGui import QColor, QFont, QFontDatabase, QPalette
 from PySide6.QtWidgets import QApplication, QLabel, QWidget
 
 from app.tokens import DARK, LIGHT, Tokens
+from core.landmark import CERTAIN
 
 FAMILIES = ("Inter", "Inter Variable", "Noto Sans JP")
 """Type in the order in which a letter is looked for."""
@@ -73,8 +74,8 @@ def tokens_of(widget: QWidget) -> Tokens:
 
 
 def tone_of(confidence: float) -> str:
-    """Return the tone of a landmark's confidence 0..1: ok from 0.5, bad below 0.3, warn between them."""
-    return "ok" if confidence >= 0.5 else "warn" if confidence >= 0.3 else "bad"
+    """Return the tone of a landmark's confidence 0..1: ok if certain, bad below 0.3, warn between them."""
+    return "ok" if confidence >= CERTAIN else "warn" if confidence >= 0.3 else "bad"
 
 
 def apply_theme(app: QApplication, dark: bool) -> None:

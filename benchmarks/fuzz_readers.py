@@ -12,6 +12,7 @@ import re
 import resource
 import signal
 import sys
+import tempfile
 import time
 from collections import Counter
 from pathlib import Path
@@ -76,7 +77,9 @@ def main() -> int:
         slowest = max(slowest, time.process_time() - start)
         if failed:
             failures += 1
-            Path(f"/tmp/fuzz-{seed}-{run}-{name}").write_bytes(data)
+            kept = Path(tempfile.gettempdir()) / f"fuzz-{seed}-{run}-{name}"
+            kept.write_bytes(data)
+            print(f"run {run} is kept as {kept}")
     for words, count in outcomes.most_common():
         print(f"{count:7,}  {words}")
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1000.0

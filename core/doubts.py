@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 from core.body import Body
-from core.landmark import SIDES, Landmarks
-
-CERTAIN = 0.5
-"""The confidence [1] from which on a landmark needs no second look."""
+from core.landmark import CERTAIN, SIDES, Landmarks
 
 ESSENTIAL = ("bust_point", "fold")
 """The landmarks, a pair each, that the control mesh hangs on: doubts about others would only distract."""

@@ -11,6 +11,9 @@ from core.mesh import Points, frozen
 
 SIDES = ("left", "right")
 
+CERTAIN = 0.5
+"""The confidence [1] from which on a landmark, and what is measured there, needs no second look."""
+
 PAIRS = ("bust_point", "fold", "lowest", "root_inner", "root_outer", "side", "armpit")
 SINGLE = (
     *("front_centre", "front_centre_underbust", "back_centre", "back_centre_underbust"),

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from core.body import Body
-from core.landmark import SIDES, Landmarks
+from core.landmark import CERTAIN, SIDES, Landmarks
 from core.mesh import Mesh
 from core.trunk import Level, stable_level, trunk_levels
 
@@ -20,9 +20,6 @@ UNDER = tuple(f"{name}_{side}" for name in ("fold", "lowest") for side in SIDES)
 
 MUCH = 50.0
 """Over more than this of an outline that is no skin a girth is an estimate [mm]."""
-
-CERTAIN = 0.5
-"""Where its height is less sure than this (0..1) the under-bust girth is uncertain."""
 
 ESTIMATES = {
     "bust": "The bust girth goes over a hole of the scan or over a joined arm: it is an estimate.",

@@ -32,6 +32,13 @@ def frozen(array: npt.ArrayLike, dtype: npt.DTypeLike = np.float64) -> npt.NDArr
     return result
 
 
+SIGNS = (1.0, -1.0)
+"""Sign of x of the left and of the right side of a body."""
+
+MIRROR = frozen([-1.0, 1.0, 1.0])
+"""Takes a place or a way on one side of a body that stands round x = 0 to that on the other side."""
+
+
 @dataclass(frozen=True, eq=False)
 class Mesh:
     """Triangles in space, shape (n, 3) [mm] and (m, 3); the arrays are read-only copies."""

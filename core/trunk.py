@@ -10,12 +10,12 @@ from scipy.ndimage import median_filter
 from scipy.spatial import ConvexHull
 
 from core.errors import LandmarkError
-from core.mesh import Flags, Floats, Indices, Mesh, Points
+from core.mesh import SIGNS, Flags, Floats, Indices, Mesh, Points
 from core.sections import hull_perimeter
 from core.slicing.arms import SLACK
 from core.slicing.gaps import bearing_bin, bridge, eroded, gaps
 from core.slicing.outline import BINS, Outlines, outlines, places, reach
-from core.slicing.trunk_guide import SIDES, STEP, Guide, cut_off, guide_of
+from core.slicing.trunk_guide import STEP, Guide, cut_off, guide_of
 from core.slicing.trunk_pieces import beside, kept_pieces, main_pieces, split_pieces
 
 STABLE_STEP = 5.0
@@ -118,7 +118,7 @@ def _armless(cuts: Outlines, guide: Guide, own: Indices, near: Indices) -> Indic
     if any(joints):
         for joint, arm in zip(joints, cut_off(cuts, own, centre), strict=True):
             own = own[~np.isin(own, arm)] if joint else own
-    for s, side in enumerate(SIDES):
+    for s, side in enumerate(SIGNS):
         if guide.cut[near, s].any():
             out = side * (cuts.segments[own, :, 0].mean(axis=1) - centre[0])
             own = own[out < guide.half_width(z, side) + SLACK]

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from core.finding.chest import Pole, smoothed
-from core.finding.relief import GRID, MIRROR, Nipple, Patch, breast_patch, find_nipples
+from core.finding.relief import GRID, Nipple, Patch, breast_patch, find_nipples
 from core.landmark import SIDES, Landmark
-from core.mesh import Floats, Mesh, Points
+from core.mesh import MIRROR, Floats, Mesh, Points
 
 NIPPLE = "The nipple: the spot that stands out of the smooth breast around it."
 SMOOTH = "Between the foremost place and the middle of the breast: no nipple stands out."

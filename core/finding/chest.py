@@ -9,7 +9,7 @@ from scipy.ndimage import gaussian_filter, maximum_filter, maximum_filter1d, uni
 from scipy.spatial import ConvexHull
 
 from core.errors import LandmarkError
-from core.mesh import Floats, Indices, Points
+from core.mesh import SIGNS, Floats, Indices, Points
 from core.trunk import Survey
 
 CELL = 5.0
@@ -17,9 +17,6 @@ CELL = 5.0
 
 KINK = 8.0
 """Over a fold the body comes forward by this at least [mm]."""
-
-SIDES = (1.0, -1.0)
-"""Sign of x of the left and of the right side."""
 
 BELOW, ABOVE = 25.0, 130.0
 """A pole is looked for so far below and above the anchor [mm]: the longest breast and the highest one."""
@@ -97,15 +94,18 @@ def find_anchor(survey: Survey) -> Anchor:
     )
     lateral = (np.abs(x) > 0.28 * half_width) & (np.abs(x) < 0.85 * half_width)
     wide = round(24.0 / survey.step) | 1
-    sides = [maximum_filter1d(calm[:, lateral & (s * x > 0)].max(axis=1), wide) for s in SIDES]
+    sides = [maximum_filter1d(calm[:, lateral & (s * x > 0)].max(axis=1), wide) for s in SIGNS]
     both = np.minimum(*sides)
     middle = np.where(np.isnan(kink), -100.0, kink)[:, np.abs(x) < 0.12 * half_width].max(axis=1)
-    value = np.where(usable, both - 0.8 * np.clip(middle, 0.0, 40.0), -np.inf)
-    lone = bool(both[np.argmax(value)] < KINK)
+
+    def best_over(sides: Floats) -> int:
+        return int(np.argmax(np.where(usable, sides - 0.8 * np.clip(middle, 0.0, 40.0), -np.inf)))
+
+    best = best_over(both)
+    lone = bool(both[best] < KINK)
     if lone:
         both = np.maximum(*sides)
-        value = np.where(usable, both - 0.8 * np.clip(middle, 0.0, 40.0), -np.inf)
-    best = int(np.argmax(value))
+        best = best_over(both)
     return Anchor(float(survey.z[best]), float(both[best]), float(middle[best]), half_width, lone)
 
 
@@ -143,7 +143,7 @@ def find_poles(survey: Survey, anchor: Anchor) -> tuple[Pole, Pole]:
     prominence[window] = _prominence(survey, anchor, p[window], row[window])
     left, right = (
         _pole(p[part], azimuth[part], prominence[part], anchor)
-        for part in (window & (s * x > 0.0) for s in SIDES)
+        for part in (window & (s * x > 0.0) for s in SIGNS)
     )
     return left, right
 

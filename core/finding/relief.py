@@ -8,7 +8,7 @@ import numpy as np
 from scipy.ndimage import correlate, maximum_filter
 from scipy.spatial import Delaunay
 
-from core.mesh import Floats, Mesh, Points, quadric_terms, unit
+from core.mesh import MIRROR, Floats, Mesh, Points, quadric_terms, unit
 
 NEAR = 24.0
 """A nipple is looked for so far from the pole [mm]."""
@@ -18,10 +18,6 @@ GRID = 2.0
 
 RING = (9.0, 22.0)
 """Inner and outer radius of the ring that a relief is measured against [mm]."""
-
-
-MIRROR = np.array([-1.0, 1.0, 1.0])
-"""Takes a way on one side of the body to that on the other side."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from core.landmark import SIDES, Landmark, Landmarks
-from core.mesh import Flags, Floats, Mesh, Points
+from core.mesh import SIGNS, Flags, Floats, Mesh, Points
 from core.sections import curvature
 from core.slicing.outline import reach
 from core.trunk import trunk_levels
@@ -35,7 +35,7 @@ def root_marks(mesh: Mesh, found: Landmarks) -> list[Landmark]:
     """Return inner and outer end of both breast roots, those that the outlines show. Source: ours."""
     busts = [found.position(f"bust_point_{side}") for side in SIDES]
     marks = []
-    for side, bust, other, sign in zip(SIDES, busts, busts[::-1], (1.0, -1.0), strict=True):
+    for side, bust, other, sign in zip(SIDES, busts, busts[::-1], SIGNS, strict=True):
         marks += _side(mesh, bust, 0.5 * float(bust[0] + other[0]), side, sign)
     return marks
 

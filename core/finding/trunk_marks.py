@@ -7,7 +7,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from core.finding.bust_point import ACROSS
 from core.landmark import SIDES, Landmark, Landmarks
-from core.mesh import Flags, Floats, Mesh, Points
+from core.mesh import SIGNS, Flags, Floats, Mesh, Points
 from core.sections import arc_length, chains, curvature, cut, resample
 from core.slicing.trunk_guide import STEP, Guide, guide_of
 from core.trunk import Level, stable_level, trunk_levels
@@ -43,7 +43,7 @@ def trunk_marks(mesh: Mesh, found: Landmarks) -> list[Landmark]:
     aside = abs(middle - float(guide.centre_at(stable.z)[0]))
     marks = _fronts(mesh, levels, middle, _level_confidence(found, aside))
     marks += [_back(mesh, guide, level, name) for name, level in levels.items()]
-    marks += [_side(guide, stable, name, sign) for name, sign in zip(SIDES, (1.0, -1.0), strict=True)]
+    marks += [_side(guide, stable, name, sign) for name, sign in zip(SIDES, SIGNS, strict=True)]
     marks += [_armpit(mesh, guide, found, s) for s in (0, 1)]
     waist = _waist(guide, tape, found)
     if waist is not None:
@@ -169,7 +169,7 @@ def _armpit(mesh: Mesh, guide: Guide, found: Landmarks, s: int) -> Landmark | No
     k = int(above[0]) - 1
     if k < 1 or not guide.shown[k] or guide.z[k] > found.bust_level + 220.0:
         return None
-    sign = 1.0 - 2.0 * s
+    sign = SIGNS[s]
     level = trunk_levels(mesh, [float(guide.z[k])])[0]
     points = level.segments.reshape(-1, 3)
     if len(points) < 40:

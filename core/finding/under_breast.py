@@ -10,7 +10,7 @@ import numpy as np
 from core.finding.breast_profile import OWN, Profile, profiles
 from core.finding.fold import Trace, trace
 from core.landmark import SIDES, Landmark
-from core.mesh import Mesh, Points
+from core.mesh import MIRROR, Mesh, Points
 
 HOLLOW = 0.006
 """A crease is hollower than this [1/mm]."""
@@ -28,8 +28,6 @@ HIDDEN = (ESTIMATED, MIRRORED, GUESSED)
 """The rules of folds that a hole of the scan hides."""
 
 LOWEST = "The lowest point of the breast between the bust point and the fold."
-
-MIRROR = np.array([-1.0, 1.0, 1.0])
 
 ASTRAY = 17.0
 """A bust point without any certainty may lie so far to the side [mm], and the profile through it with it."""

@@ -5,12 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from core.mesh import Flags, Floats, Points
+from core.mesh import MIRROR, Flags, Floats, Points
 
 ALONG_ROWS = 0.3
 """Rows bend round the body, columns hardly do: how a row goes on counts so much against a column [1]."""
-
-MIRROR = np.array([-1.0, 1.0, 1.0])
 
 
 def rebuilt(points: Points, middle: float) -> Points:

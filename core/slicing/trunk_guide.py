@@ -9,7 +9,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from scipy.ndimage import median_filter
 
-from core.mesh import Flags, Floats, Indices, Mesh, Points
+from core.mesh import SIGNS, Flags, Floats, Indices, Mesh, Points
 from core.slicing.arms import necks, shoulder_clip
 from core.slicing.gaps import bearing_bin, bridged_levels, eroded, over_strips
 from core.slicing.outline import BEARINGS, BINS, Outlines, outlines, reach, ring
@@ -20,9 +20,6 @@ STEP = 5.0
 
 MOST = 800
 """So many levels are looked at, enough for a tall body from head to foot."""
-
-SIDES = (1.0, -1.0)
-"""Sign of x of the left and of the right side."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +110,7 @@ def _looked_at(mesh: Mesh) -> Guide:
             joints[k] = len(left) > 0, len(right) > 0
             keep[left] = keep[right] = False
     far = reach(cuts.segments[keep], cuts.level[keep], centre)
-    clip = np.stack([shoulder_clip(_width(cuts, keep, far, centre, s), STEP) for s in SIDES], axis=1)
+    clip = np.stack([shoulder_clip(_width(cuts, keep, far, centre, s), STEP) for s in SIGNS], axis=1)
     keep &= within(cuts, centre, clip)
     cut = joints | np.isfinite(clip)
     far = reach(cuts.segments[keep], cuts.level[keep], centre)
