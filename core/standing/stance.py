@@ -122,12 +122,14 @@ def _cut_below(cloud: Cloud, stance: Stance) -> Floats | None:
 def _true_up(cloud: Cloud, stance: Stance, cut: Floats | None) -> Floats:
     axis = AXES[nearest_axis(stance.up)]
     aside = np.degrees(np.arcsin(min(1.0, abs(float(axis @ stance.left)))))
-    if cut is not None:
-        away = _angle(cut, axis)
-        if away < LEVEL or (away < TRUE_LEAN and aside < TRUE_ASIDE):
-            return axis
-        return cut if _angle(cut, stance.left) > 80.0 else _in_plane(cut, stance.left)
+    if cut is not None and _angle(cut, axis) < LEVEL:
+        return axis
     trunk = _along_trunk(cloud, stance)
+    if cut is not None:
+        leaning = _angle(cut, axis) < TRUE_LEAN and aside < TRUE_ASIDE
+        if leaning and _angle(trunk, axis) < _angle(trunk, cut):
+            return axis  # the trunk says so too: the cut was not made level
+        return cut if _angle(cut, stance.left) > 80.0 else _in_plane(cut, stance.left)
     leans = LEAN if aside > TRUE_ASIDE else TRUE_LEAN
     return axis if _angle(trunk, axis) < leans and aside < LEAN_ASIDE else trunk
 
