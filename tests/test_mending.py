@@ -118,6 +118,16 @@ def test_a_large_hole_stays_open_and_is_named(person, place, words):
     assert 60.0 < hole.width <= hole.length < 85.0
 
 
+@pytest.mark.parametrize("low", [100.0, 150.0, 190.0])
+def test_a_ring_torn_off_the_trunk_is_no_opening(person, low):
+    x, y, z = person.vertices[person.faces].mean(axis=1).T
+    patch = (np.abs(x) < 20.0) & (y < np.median(y))
+    skin = Skin(person.vertices, person.faces[(np.abs(z - low) > 6.0) | patch]).compact()
+    torn = Mesh(skin.vertices, skin.faces)
+    assert [hole.opening for hole in find_holes(torn)].count(True) == 4
+    assert any("stays open" in sentence for sentence in mended(torn)[1])
+
+
 def test_what_was_mended_is_whole_the_second_time(person):
     holed = pierced(person, *((np.array(place), 10.0) for place in CENTRES.values()))
     closed, _, count = mend(holed)

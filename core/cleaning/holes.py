@@ -12,6 +12,9 @@ from core.mesh import Floats, Indices, Mesh, Points, unit
 TUBE = 0.5
 """The skin round a hole looks its way; at the end of a neck or an arm it looks across it by more [cosine]."""
 
+FILLED = 0.4
+"""An opening fills this share of its two largest extents [1], an ellipse 0.8; a torn ring encloses little."""
+
 NAMED = 5
 """So many holes are named one by one."""
 
@@ -84,7 +87,7 @@ def frame_of(places: Points) -> tuple[Floats, Floats]:
     ``places``, shape (k, 3), in the order of the border sides of the skin.
     """
     around = places - places.mean(axis=0)
-    normal = -np.cross(around, np.roll(around, -1, axis=0)).sum(axis=0)  # a border runs against its hole
+    normal = _area_vector(places)
     if not normal.any():
         normal = np.linalg.svd(around)[2][2]
     normal = unit(normal)
@@ -94,13 +97,20 @@ def frame_of(places: Points) -> tuple[Floats, Floats]:
     return axes, np.asarray(np.ptp(around @ axes.T, axis=0))
 
 
+def _area_vector(places: Points) -> Floats:
+    """Return the vector area of what a loop encloses, outward, shape (3,)."""
+    around = places - places.mean(axis=0)  # a border runs against its hole
+    return np.asarray(-0.5 * np.cross(around, np.roll(around, -1, axis=0)).sum(axis=0))
+
+
 def _hole(mesh: Mesh, loop: Indices, faces: Indices) -> Hole:
     places = mesh.vertices[loop]
     axes, extent = frame_of(places)
     areas = mesh.area_vectors[faces]
     looks = float((areas @ axes[2]).sum() / max(np.linalg.norm(areas, axis=1).sum(), 1e-300))
     width, length = sorted(extent[:2].tolist())
-    return Hole(loop, places.mean(axis=0), axes[2], length, width, abs(looks) < TUBE)
+    filled = np.linalg.norm(_area_vector(places)) > FILLED * np.prod(np.sort(extent)[1:])
+    return Hole(loop, places.mean(axis=0), axes[2], length, width, bool(abs(looks) < TUBE and filled))
 
 
 def hole_sentences(mesh: Mesh, holes: tuple[Hole, ...]) -> tuple[str, ...]:
