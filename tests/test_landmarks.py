@@ -14,7 +14,7 @@ from core.body import Body
 from core.errors import LandmarkError
 from core.finding.bust_point import MIRRORED, NIPPLE, SMOOTH
 from core.finding.relief import relief_kernels
-from core.landmark import Landmarks
+from core.landmark import CERTAIN, Landmarks
 from core.landmarks import find_landmarks
 from core.mesh import Mesh
 from core.standing.upright import Pose
@@ -82,6 +82,14 @@ def test_levels_follow_from_the_points(name):
     assert landmarks.bust_level == pytest.approx(np.mean(busts))
     rest = [landmarks.position(mark)[2] for mark in NAMES if not mark.startswith("bust")]
     assert landmarks.underbust_level == min(rest)
+
+
+@pytest.mark.parametrize("name", SAMPLES)
+def test_what_was_never_held_against_an_answer_claims_no_certainty(name):
+    further = {key: mark for key, mark in found(name).points.items() if key not in NAMES}
+    sure = [key for key, mark in further.items() if mark.confidence >= CERTAIN]
+    assert all(key.startswith("front_centre") for key in sure), sure
+    assert sum(not key.startswith("front_centre") for key in further) > 6
 
 
 def test_left_is_positive_x_and_an_overhanging_breast_ends_below_its_fold():

@@ -12,7 +12,7 @@ from worn_scans import decimated
 
 from core.body import Body
 from core.errors import LandmarkError
-from core.finding.breast_profile import OFFSETS, OWN, Profile
+from core.finding.breast_profile import OFFSETS, OWN, Profile, profiles
 from core.finding.bust_check import check
 from core.finding.chest import find_anchor, find_poles
 from core.finding.fold import Trace, _rival
@@ -20,6 +20,7 @@ from core.finding.under_breast import CREASE, MIRRORED, _apart, _confidence, _le
 from core.landmark import Landmark, Landmarks
 from core.landmarks import find_landmarks
 from core.mesh import Mesh
+from core.placing import laid_on
 from core.standing.upright import Pose
 from core.trunk import survey
 
@@ -216,6 +217,28 @@ def test_a_coarse_scan_is_called_coarse() -> None:
     coarse = find_landmarks(body(Mesh(vertices, faces)))
     assert any("coarse" in warning for warning in coarse.warnings)
     assert all(coarse.points[name].confidence < 0.5 * fine.points[name].confidence for name in NAMES)
+
+
+def test_a_marker_on_the_skin_is_no_profile_of_it() -> None:
+    mesh, bust = sample("person"), found("person").position("bust_point_left")
+    corners = [(-20.0, -2.0, -10.0), (20.0, -2.0, -10.0), (20.0, -2.0, 10.0), (-20.0, -2.0, 10.0)]
+    plate = np.array([[0, 1, 2], [0, 2, 3]]) + len(mesh.vertices)
+    marked = Mesh(np.concatenate([mesh.vertices, bust + corners]), np.concatenate([mesh.faces, plate]))
+    at = bust - [0.0, 2.0, 0.0]  # on the marker
+    bare, seen = (profiles(skin, at, bust[2] - 150.0)[OWN] for skin in (mesh, marked))
+    assert np.array_equal(seen.points, bare.points)
+    assert seen.whole
+
+
+@pytest.mark.parametrize(("off", "taken"), [(29.0, True), (31.0, False)])
+def test_a_point_is_laid_on_the_skin_from_30_mm_off_and_no_further(off: float, taken: bool) -> None:
+    wall = Mesh(np.array([[0.0, 0.0, 0.0], [90.0, 0.0, 0.0], [0.0, 0.0, 90.0]]), np.array([[0, 1, 2]]))
+    place = {"fold_left": np.array([20.0, off, 20.0])}
+    if taken:
+        assert laid_on(wall, place)["fold_left"].position == pytest.approx([20.0, 0.0, 20.0])
+    else:
+        with pytest.raises(LandmarkError, match="more than 30 mm off"):
+            laid_on(wall, place)
 
 
 def test_placed_points_let_a_body_in_whose_bust_is_not_found() -> None:

@@ -21,6 +21,7 @@ from core.trunk import stable_level, trunk_levels
 ROOT = Path(__file__).parents[1]
 TRUTH = json.loads((ROOT / "tests/data/truth.json").read_text(encoding="utf-8"))
 SAMPLES = ("mannequin", "person")
+SURE = {"left": 0.8, "right": 0.2}
 
 
 def sample(name: str) -> Mesh:
@@ -121,6 +122,9 @@ def test_the_under_bust_girth_is_no_surer_than_the_folds():
     body = Body(cylinder(130.0), Pose("mm", "+z", "-y", np.eye(4), True, "", 1.0), (), "a tube")
     found = girths(body, Landmarks({mark.name: mark for mark in marks}, 20.0, 0.0))
     assert found["underbust"].confidence == 0.3
+    marks = [Landmark(f"bust_point_{side}", np.zeros(3), sure, "") for side, sure in SURE.items()]
+    found = girths(body, Landmarks({mark.name: mark for mark in marks}, 20.0, 0.0))
+    assert found["bust"].confidence == 0.8, "the level of the bust is as sure as its surer point"
 
 
 def test_a_clean_body_is_left_alone_and_the_noise_of_a_scan_is_not_measured():
