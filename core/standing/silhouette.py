@@ -193,7 +193,7 @@ def _ends(values: Floats, row: Indices, rows: int) -> tuple[Floats, Floats]:
 
 def _goes_round(points: Points, row: Indices, rows: int) -> Flags:
     """Tell in which rows points lie in all directions from the middle, shape (rows,)."""
-    x, y = (points[:, k] - 0.5 * sum(_ends(points[:, k], row, rows))[row] for k in (0, 1))
+    x, y = (points[:, k] - 0.5 * np.add(*_ends(points[:, k], row, rows))[row] for k in (0, 1))
     sector = np.floor((np.arctan2(y, x) / (2.0 * np.pi)) * SECTORS).astype(np.int64) % SECTORS
     taken = np.zeros((rows, SECTORS), dtype=bool)
     taken[row, sector] = True
