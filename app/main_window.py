@@ -130,6 +130,7 @@ class MainWindow(QMainWindow):
         view.viewport.pin_released.connect(scan_desk.place_landmark)
         view.busy.cancelled.connect(scan_desk.cancel)
         view.question.answered.connect(scan_desk.answer)
+        view.question.left.connect(scan_desk.leave_question)
         view.tools.view_chosen.connect(view.viewport.set_view)
         view.tools.fit_asked.connect(view.viewport.frame_all)
         view.tools.toggled.connect(view.set_layer)

@@ -37,7 +37,8 @@ if TYPE_CHECKING:
 class ScanDesk(QObject):
     """Brings what was understood of a scan to the window, and what the user knows better to the session.
 
-    ``stuck`` is what keeps the scan that is shown from being a document, until the user knows better.
+    ``stuck`` is what keeps the scan that is shown from being a document, until the user knows better; never
+    while a document is open, for that is what is shown then.
     """
 
     def __init__(self, window: MainWindow) -> None:
@@ -92,20 +93,31 @@ class ScanDesk(QObject):
         self._window.desk.select_landmark(landmark)
 
     def show_stuck(self, stuck: StuckError) -> None:
-        """Show a scan that cannot go on: ask how it stands if that is not sure, else for its landmarks."""
-        window, self.stuck = self._window, stuck
-        if stuck.asks:
+        """Show a scan that cannot go on if no document is open; ask how it stands if that is not sure."""
+        self._forget_question()
+        asked = self.stuck is not None and self.stuck.design.scan is stuck.design.scan
+        if self._session.design is None:
+            self._show_alone(stuck)
+        if stuck.kind == "unsure" and not asked:
             self._ask(stuck.body, stuck.design)
-            return
-        window.landmarks.set_landmarks(landmark_views(stuck.landmarks), [stuck.message])
+        else:
+            self._say_stuck(stuck)
+
+    def _show_alone(self, stuck: StuckError) -> None:
+        """Show a scan that cannot go on in the place of a document."""
+        window, self.stuck = self._window, stuck
+        refused, lacks = stuck.kind == "refused", stuck.kind == "landmarks"
+        window.landmarks.set_landmarks(landmark_views(stuck.landmarks), [stuck.message], placing=not refused)
         window.scan.set_scan(scan_view(stuck.design.scan, stuck.body))
         window.view.show_stuck(stuck.body, stuck.landmarks)
-        step, other = ("scan", "missing") if stuck.refused else ("landmarks", "look")
-        window.desk.go_to(step)
-        window.rail.set_state("scan", "look" if stuck.refused else "done")
-        window.rail.set_state("landmarks", other)
-        window.notices.withdraw("bad")
-        window.notices.show_notice("bad", stuck.message, stuck.hint, lasting=True)
+        window.desk.go_to("landmarks" if lacks else "scan")
+        window.rail.set_state("scan", "done" if lacks else "look")
+        window.rail.set_state("landmarks", "missing" if refused else "look")
+
+    def _say_stuck(self, stuck: StuckError) -> None:
+        notices = self._window.notices
+        notices.withdraw("bad")
+        notices.show_notice("bad", stuck.message, stuck.hint, lasting=True)
 
     def show_work(self, what: str, share: float) -> None:
         """Name the work that takes its time, and how much of it is done."""
@@ -162,11 +174,21 @@ class ScanDesk(QObject):
         self._forget_question()
         self._window.notices.withdraw("warn")
         if waiting is not None:
-            self._session.open_design(replace(waiting, scan=replace(waiting.scan, up=up, front=front)))
+            # What is open may have been edited while the question waited.
+            if self._window.desk.may_leave():
+                self._session.open_design(replace(waiting, scan=replace(waiting.scan, up=up, front=front)))
         elif design is not None:
             self._session.change(
                 {"scan": replace(design.scan, up=up, front=front)}, tr("Front chosen by its picture")
             )
+
+    def leave_question(self) -> None:
+        """Leave a scan as it is understood; one that waited for the answer is let go, if it is not shown."""
+        if self._asked_for is not None:
+            self._window.notices.withdraw("warn")
+        self._forget_question()
+        if self.stuck:
+            self._say_stuck(self.stuck)
 
     def put_pin(self, name: str) -> None:
         """Give a landmark that was not found a pin to drag."""

@@ -267,7 +267,7 @@ class Session(QObject):
             if self.design is not None:
                 self._submit(self.design)
             stuck = failure.error
-            if isinstance(stuck, StuckError) and (self.design is None or stuck.asks):
+            if isinstance(stuck, StuckError) and (self.design is None or stuck.kind == "unsure"):
                 self.asked.emit(stuck)
                 return
         elif failure.revision > self._revision and self._preview is not None:

@@ -19,7 +19,7 @@ from core.comparison import Comparison
 from core.design import Design, cannot_hold, no_balance
 from core.errors import UserError
 from core.mesh import Points
-from core.pipeline import Stages, build, targets_of
+from core.pipeline import Stages, StuckError, build, targets_of
 from core.progress import Cancelled, Progress, quiet
 from core.solver import Marks, Record
 from core.verdict import Verdict
@@ -91,6 +91,7 @@ class LiveSolver:
         self._revision = 0
         self._stopping = False
         self._stages: Stages | None = None
+        self._stuck: StuckError | None = None
         self._comparison: Comparison | None = None
         self._seconds = 0.0
         self._held = False
@@ -174,7 +175,8 @@ class LiveSolver:
                 except Cancelled:
                     pass
                 except UserError as error:
-                    self._fail(Failure(asked, error))
+                    # It is kept as long as it is shown: not so what every caller on its way held.
+                    self._fail(Failure(asked, error.with_traceback(None)))
                 except Exception as error:
                     # A fault of ours: do not run into it again with every turn; the window shows it.
                     self._comparison = None
@@ -192,13 +194,20 @@ class LiveSolver:
         return self._stopping or self._request is not None or turning
 
     def _take(self, request: _Request) -> None:
-        self._at_work = request.revision
+        self._at_work, stuck = request.revision, self._stuck
+        # The very source: who opens the file once more may have mended it meanwhile.
+        again = stuck is not None and stuck.design.scan is request.design.scan
         try:
-            stages = build(request.design, self._stages, self._hear)
+            stages = build(request.design, stuck if again else self._stages, self._hear)
             self._hear("", 1.0)
+        except StuckError as how_far:
+            # An edit of the scan that is open goes back to what stands.
+            if self._stages is None or how_far.body is not self._stages.body:
+                self._stuck = how_far
+            raise
         finally:
             self._tell("", 1.0)
-        old, self._stages = self._stages, stages
+        old, self._stages, self._stuck = self._stages, stages, None
         targets = targets_of(request.design, stages)
         start = time.perf_counter()
         same_body = old is not None and old.control is stages.control and old.binding is stages.binding

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from types import MappingProxyType
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 
@@ -36,6 +36,7 @@ GAIN_SHARE = 0.97
 """The default conventional gain in parts of the limit at rest: just calm, so that excess makes it vibrate."""
 
 T = TypeVar("T")
+Memo = Mapping[str, tuple[tuple[Any, ...], Any]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +60,7 @@ class Stages:
     model: ConstrainedModel
     gain_limit: float
     seconds: Mapping[str, float]
-    memo: Mapping[str, tuple[tuple[Any, ...], Any]]
+    memo: Memo
 
     @property
     def gain(self) -> float:
@@ -101,27 +102,29 @@ READING = {
 class StuckError(UserError):
     """A ``body`` was read, and no bust found on it or no control mesh laid: it can be shown and corrected.
 
-    ``landmarks`` by name are those that were found, or at least placed; ``asks`` that it may stand otherwise.
-    If it was ``refused`` it is shown as it lies in its file.
+    ``kind``: one that is "refused" is shown as it lies in its file, one that is "unsure" may stand otherwise,
+    and one of "landmarks" lacks those alone. ``landmarks`` by name were found, or at least placed;
+    ``seconds`` and ``memo`` are those of the stages that were made, as in ``Stages``.
     """
 
-    def __init__(
-        self, problem: UserError, body: Body, design: Design, landmarks: Mapping[str, Landmark]
-    ) -> None:
+    def __init__(self, problem: UserError, body: Body, design: Design, stage: _Stager) -> None:
         super().__init__(problem.message, problem.hint)
         self.body = body
         self.design = design
-        self.landmarks = landmarks
-        self.refused = isinstance(problem, RefusedError)
-        self.asks = not body.pose.sure and not self.refused
+        self.landmarks = stage.landmarks(body, design)
+        self.seconds: Mapping[str, float] = stage.seconds
+        self.memo: Memo = stage.memo
+        self.kind: Literal["refused", "unsure", "landmarks"] = "landmarks" if body.pose.sure else "unsure"
+        if isinstance(problem, RefusedError):
+            self.kind = "refused"
 
 
 class _Stager:
     """Makes stages in order, taking each from the previous build if its inputs are the same."""
 
-    def __init__(self, previous: Stages | None, progress: Progress) -> None:
-        self._old = previous.memo if previous else {}
-        self._old_seconds = previous.seconds if previous else {}
+    def __init__(self, previous: Stages | StuckError | None, progress: Progress) -> None:
+        self._old: Memo = previous.memo if previous else {}
+        self._old_seconds: Mapping[str, float] = previous.seconds if previous else {}
         self._progress = progress
         self._done = 0.0
         self.memo: dict[str, tuple[tuple[Any, ...], Any]] = {}
@@ -159,20 +162,24 @@ def _same(old: tuple[Any, ...], new: tuple[Any, ...]) -> bool:
     return all(a is b or (not isinstance(a, np.ndarray) and a == b) for a, b in zip(old, new, strict=True))
 
 
-def build(design: Design, previous: Stages | None = None, progress: Progress = quiet) -> Stages:
+def build(design: Design, previous: Stages | StuckError | None = None, progress: Progress = quiet) -> Stages:
     """Build all stages of ``design``; ``progress`` hears the name of each stage that is made anew.
 
-    Raises the UserError of the stage that fails, or Cancelled; ``previous`` then still stands.
+    ``previous`` is what was built last, or how far that came. Raises the UserError of the stage that fails,
+    or Cancelled; ``previous`` then still stands.
     """
     stage = _Stager(previous, progress)
     try:
         scan, body = stage("read scan", partial(read_body, progress=stage.inside), design.scan)
     except RefusedError as refusal:
-        raise StuckError(refusal, refusal.body, design, {}) from refusal
-    try:
-        return _stages(stage, design, scan, body)
-    except (LandmarkError, FitError) as problem:
-        raise StuckError(problem, body, design, stage.landmarks(body, design)) from problem
+        stuck = StuckError(refusal, refusal.body, design, stage)
+    else:
+        try:
+            return _stages(stage, design, scan, body)
+        except (LandmarkError, FitError) as problem:
+            stuck = StuckError(problem, body, design, stage)
+    # Raised out here it has no context: what the window keeps would keep all that was read and tried.
+    raise stuck
 
 
 def _stages(stage: _Stager, design: Design, scan: ScanFile, body: Body) -> Stages:
@@ -213,7 +220,7 @@ def targets_of(design: Design, stages: Stages) -> Targets:
 
 def read_body(source: ScanSource, progress: Progress = quiet) -> tuple[ScanFile, Body]:
     """Return a scan as it came and the body read from it. Raises ScanError, ProjectError or Cancelled."""
-    scan = read_scan_file(source)
+    scan = read_scan_file(source, progress)
     told = {"unit": source.unit, "up": source.up, "front": source.front}
     return scan, body_of(scan.name, scan.data, **told, progress=progress)
 

@@ -87,6 +87,7 @@ def _laid(mesh: Mesh, name: str, point: Points) -> Landmark:
     away = np.linalg.norm(spots - point, axis=1)
     if away.min(initial=np.inf) > REACH:
         raise LandmarkError(
-            f"{name} was placed more than {REACH:.0f} mm off the skin.", "Place it on the skin of the body."
+            f"The landmark {name.replace('_', ' ')} was placed more than {REACH:.0f} mm off the skin.",
+            "Place it on the skin of the body.",
         )
     return Landmark(name, spots[np.argmin(away)], 1.0, PLACED, by_hand=True)

@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from core import pipeline
 from core.design import Design, ScanSource, WornLine
-from core.errors import LineError, ScanError, UserError
-from core.pipeline import Stages, build, targets_of
+from core.errors import LandmarkError, LineError, ScanError, UserError
+from core.pipeline import Stages, StuckError, build, targets_of
 
 Built = Callable[[str], Stages]
 
@@ -51,6 +52,25 @@ def test_a_failing_stage_leaves_the_former_ones_usable(built: Built) -> None:
     with pytest.raises(LineError, match="no line 'wing'"):
         build(replace(stages.design, lines=(WornLine("wing", 0.9),)), stages)
     assert made_anew(stages.design, stages) == []
+
+
+def test_a_stuck_scan_keeps_what_was_read_and_nothing_of_the_failure(
+    built: Built, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def nothing(*_: object) -> None:
+        raise LandmarkError("No bust is here.", "Place its points.")
+
+    monkeypatch.setattr(pipeline, "find", nothing)
+    design, told = replace(built("mannequin").design, lines=()), list[str]()
+    with pytest.raises(StuckError) as first:
+        build(design)
+    assert first.value.kind == "landmarks"
+    assert (first.value.__cause__, first.value.__context__) == (None, None)
+    placed = design.with_placed("fold_left", (60.0, -180.0, 300.0))
+    with pytest.raises(StuckError) as again:
+        build(placed, first.value, lambda what, _: told.append(what))
+    assert told == ["find landmarks"]
+    assert again.value.body is first.value.body
 
 
 def test_a_missing_scan_is_told_by_name(tmp_path: Path) -> None:

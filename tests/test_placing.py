@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -12,6 +13,7 @@ import pytest
 import trimesh
 
 from app.cli import main
+from app.words import say, use_language
 from core.design import Design, ScanSource, from_json, to_json
 from core.errors import LandmarkError, ProjectError
 from core.pipeline import Stages, build, find
@@ -96,6 +98,21 @@ def test_the_command_line_places_as_the_design_does_in_any_frame(
     assert find(stages.body, stages.design.placed).position("fold_left") == pytest.approx(mark["mm"])
 
 
+@pytest.mark.parametrize(
+    ("name", "place"), [("bust_point_left", (-95.0, -200.0, 345.0)), ("fold_left", (9e3, 0.0, 0.0))]
+)
+def test_what_is_wrong_with_placed_points_is_said_in_words(
+    built: Built, name: str, place: tuple[float, float, float]
+) -> None:
+    with pytest.raises(LandmarkError) as wrong:
+        find(built("mannequin").body, (PlacedMark(name, place),))
+    assert "_" not in wrong.value.message
+    use_language("ja")
+    said = say(wrong.value.message)
+    use_language("en")
+    assert not re.search("[a-z]{3}", said)
+
+
 def test_a_landmark_on_no_skin_is_refused(mannequin: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["detect", str(mannequin), "--landmark", "fold_left=900,0,0"]) == 2
-    assert "off the skin" in capsys.readouterr().err
+    assert "landmark fold left was placed more than 30 mm off the skin" in capsys.readouterr().err

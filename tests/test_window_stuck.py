@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -10,12 +11,15 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from test_window_scan import doubtful, pull
+from trimesh.creation import box
 from window_tools import Script, run_main, settled
 
+import app.desk
 import app.scan_desk
 import core.body
 import core.pipeline
 from app.main_window import MainWindow
+from app.parts import ToolButton
 from app.picture import draw_window
 from core.body import Body
 from core.design import Design, ScanSource
@@ -28,11 +32,24 @@ from core.standing.upright import find_pose
 pytestmark = pytest.mark.usefixtures("empty_house")
 
 
-def nothing_unless_placed(body: Body, placed: Any) -> Any:
-    """A ``find`` that finds no bust before a point is placed."""
-    if not placed:
+def nothing_unless_placed(body: Body, placed: Any, needed: int = 1) -> Any:
+    """A ``find`` that finds no bust before so many points are placed."""
+    if len(placed) < needed:
         raise LandmarkError("No bust is here.", "Place its points.")
     return find_landmarks(body)
+
+
+def place(window: MainWindow, name: str, by: QPoint) -> None:
+    """Place a landmark that was not found, as a hand does."""
+    window.desk.go_to("landmarks")
+    window.desk.select_landmark(name)
+    QTest.mouseClick(window.landmarks.place, Qt.MouseButton.LeftButton)
+    pull(window, name, by)
+
+
+def leave(window: MainWindow) -> None:
+    """Close the question without an answer."""
+    QTest.mouseClick(window.view.question.findChild(ToolButton), Qt.MouseButton.LeftButton)
 
 
 def no_waist(body: Body, placed: Any) -> Any:
@@ -68,6 +85,128 @@ def test_a_scan_that_cannot_go_on_is_shown_and_a_placed_point_lets_it_in(
         assert window.notices.notice() is None
 
     run_main([str(mannequin)], script)
+
+
+def test_a_scan_that_cannot_go_on_is_read_once_however_many_pins_it_takes(
+    mannequin: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    read: list[Any] = []
+    reading = core.pipeline.read_body
+    monkeypatch.setattr(core.pipeline, "find", partial(nothing_unless_placed, needed=2))
+    monkeypatch.setattr(core.pipeline, "read_body", lambda *a, **b: (read.append(a), reading(*a, **b))[1])
+
+    def script(window: MainWindow) -> Script:
+        desk, panel = window.scan_desk, window.landmarks
+        yield lambda: desk.stuck is not None
+        first = desk.stuck
+        place(window, "bust_point_left", QPoint(12, -8))
+        yield lambda: desk.stuck is not first
+        assert panel.rows["bust_point_left"].view.by_hand
+        assert len(read) == 1
+        second = desk.stuck
+        window.session.open(str(mannequin))
+        yield lambda: desk.stuck is not second
+        assert len(read) == 2, "the file may be another by now"
+        place(window, "bust_point_left", QPoint(12, -8))
+        third = desk.stuck
+        yield lambda: desk.stuck is not third
+        place(window, "fold_left", QPoint(-9, 14))
+        yield settled(window)
+        assert len(read) == 2
+        assert window.session.design is not None
+        assert len(window.session.design.placed) == 2
+
+    run_main([str(mannequin)], script)
+
+
+def test_a_scan_that_only_asks_leaves_the_open_one_alone(
+    person: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[str] = []
+    monkeypatch.setattr(app.desk, "ask_about_changes", lambda _, name: asked.append(name) or "cancel")
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        session, question = window.session, window.view.question
+        monkeypatch.setattr(core.body, "find_pose", doubtful(180.0))
+        session.open(str(person))
+        yield question.isVisible
+        leave(window)
+        assert window.notices.notice() is None
+        window.desk.go_to("landmarks")
+        pull(window, "bust_point_left", QPoint(0, -14))
+        yield settled(window)
+        assert session.name == "mannequin"
+        assert session.undo_stack.count() == 1
+        session.open(str(person))
+        yield question.isVisible
+        QTest.mouseClick(question.pictures[0], Qt.MouseButton.LeftButton)
+        assert asked == ["mannequin"], "it was edited"
+        yield settled(window)
+        assert session.name == "mannequin"
+        assert session.undo_stack.count() == 1
+
+    run_main([], script)
+
+
+def test_a_scan_whose_question_is_left_is_shown_and_can_be_told(
+    mannequin: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(core.body, "find_pose", doubtful(180.0))
+
+    def script(window: MainWindow) -> Script:
+        yield window.view.question.isVisible
+        leave(window)
+        notice = window.notices.notice()
+        assert notice is not None
+        assert notice.tone == "bad"
+        assert window.scan.isVisible()
+        assert window.view.viewport.scene.body is not None
+        first = window.scan_desk.stuck
+        place(window, "bust_point_left", QPoint(12, -8))
+        yield lambda: window.scan_desk.stuck is not first
+        assert window.view.question.isHidden(), "it was left once"
+        second = window.scan_desk.stuck
+        QTest.mouseClick(window.landmarks.reset, Qt.MouseButton.LeftButton)
+        yield lambda: window.scan_desk.stuck is not second
+        window.scan.told.emit("front", "-y")
+        yield settled(window)
+        assert window.scan_desk.stuck is None
+
+    run_main([str(mannequin)], script)
+
+
+def test_on_a_refused_scan_nothing_can_be_placed_and_what_was_stays_in_sight(
+    tmp_path: Path, mannequin: Path
+) -> None:
+    brick = tmp_path / "brick.ply"
+    box((340.0, 220.0, 700.0)).export(brick)
+
+    def script(window: MainWindow) -> Script:
+        desk, panel = window.scan_desk, window.landmarks
+        yield lambda: desk.stuck is not None
+        refused = desk.stuck
+        assert refused is not None
+        assert refused.kind == "refused"
+        assert refused.__traceback__ is None, "it holds all that was read"
+        window.desk.go_to("landmarks")
+        window.desk.select_landmark("fold_left")
+        assert panel.isVisible()
+        assert not panel.place.isVisible()
+        window.session.open_design(refused.design.with_placed("fold_left", (60.0, -110.0, 30.0)))
+        yield lambda: desk.stuck is not refused
+        assert panel.rows["fold_left"].view.by_hand
+        window.desk.go_to("landmarks")
+        assert panel.reset.isVisible()
+        placed = desk.stuck
+        QTest.mouseClick(panel.reset, Qt.MouseButton.LeftButton)
+        yield lambda: desk.stuck is not placed
+        assert panel.rows["fold_left"].view.absent
+        window.session.open(str(mannequin))
+        yield settled(window)
+        assert desk.stuck is None
+
+    run_main([str(brick)], script)
 
 
 def test_the_picture_of_a_scan_that_cannot_go_on_shows_it(

@@ -130,8 +130,14 @@ class LandmarksPanel(QWidget):
         rule.addLayout(buttons)
         return self._rule_box
 
-    def set_landmarks(self, landmarks: Sequence[LandmarkView], doubts: Sequence[str] = ()) -> None:
-        """Show these landmarks and the ``doubts`` about them; rows stay while names and order stay."""
+    def set_landmarks(
+        self, landmarks: Sequence[LandmarkView], doubts: Sequence[str] = (), *, placing: bool = True
+    ) -> None:
+        """Show these landmarks and the ``doubts`` about them; rows stay while names and order stay.
+
+        ``placing``: those that are absent can be placed.
+        """
+        self._placing = placing
         if [view.name for view in landmarks] != list(self.rows):
             self._rebuild(landmarks)
         for view in landmarks:
@@ -156,7 +162,7 @@ class LandmarksPanel(QWidget):
         for part in (self._rule_title, self._rule, self._hint):
             part.setVisible(name is not None)
         absent = name is not None and self.rows[name].view.absent
-        self.place.setVisible(absent)
+        self.place.setVisible(absent and self._placing)
         self.reset.setVisible(name in placed)
         self.reset_all.setVisible(bool(placed) and placed != (name,))
         if name is not None:
@@ -165,6 +171,7 @@ class LandmarksPanel(QWidget):
             self._rule.setText(say(view.rule))
             drag = tr("Drag its pin over the skin to correct it.")
             self._hint.setText(tr("Puts a pin in the middle of the view.") if absent else drag)
+            self._hint.setVisible(self._placing or not absent)
             if view.group == "further":
                 self._open_further()
 

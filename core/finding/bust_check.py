@@ -10,7 +10,7 @@ from core.errors import LandmarkError
 from core.finding.bust_point import FLAT, NIPPLE
 from core.finding.chest import KINK, Anchor, Pole
 from core.finding.under_breast import HIDDEN, NO_CREASE, UNSEEN
-from core.landmark import SIDES, Landmark, Landmarks
+from core.landmark import SIDES, Landmarks
 from core.mesh import Mesh
 from core.trunk import Survey, stable_level, trunk_levels
 
@@ -43,12 +43,11 @@ OPEN = 0.25
 """One straight line is no longer than this part of an outline: else a side of the trunk is missing."""
 
 
-def refusal(why: str, placed: Sequence[Landmark] = ()) -> LandmarkError:
-    """Return the error that says ``why`` there is no bust; where points were ``placed``, of these first."""
+def refusal(why: str, placed: bool = False) -> LandmarkError:
+    """Return the error that says ``why`` there is no bust, or none with the points that were ``placed``."""
     if placed:
-        names = ", ".join(mark.name for mark in placed)
         return LandmarkError(
-            f"No bust can be found with what was placed by hand ({names}): {why}.",
+            f"No bust can be found with the points that were placed by hand: {why}.",
             "Place bust points on the breasts and folds under them, or take them away.",
         )
     return LandmarkError(
@@ -76,8 +75,8 @@ def check_placed(landmarks: Landmarks) -> None:
         raise refusal("the folds lie above the bust points", _placed(landmarks))
 
 
-def _placed(landmarks: Landmarks) -> list[Landmark]:
-    return [mark for mark in landmarks.points.values() if mark.by_hand]
+def _placed(landmarks: Landmarks) -> bool:
+    return any(mark.by_hand for mark in landmarks.points.values())
 
 
 def check(
