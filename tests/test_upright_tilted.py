@@ -155,12 +155,27 @@ def test_a_told_up_is_believed_before_the_front_and_neither_is_overruled():
             find_pose(vertices, faces, up=up)
 
 
-def test_a_pole_in_one_piece_with_the_body_is_no_body_and_tells_no_size():
+@pytest.mark.parametrize(
+    ("radius", "length"), [(18.0, 900.0), (48.0, 200.0)]
+)  # slim, or slimmer than its foot
+def test_a_pole_in_one_piece_with_the_body_is_no_body_and_tells_no_size(radius, length):
     vertices, faces = sample("mannequin")
-    pole = trimesh.creation.cylinder(18.0, 900.0).apply_translation([0.0, -95.0, -440.0])
-    foot = trimesh.creation.cylinder(170.0, 20.0).apply_translation([0.0, -95.0, -890.0])
+    pole = trimesh.creation.cylinder(radius, length).apply_translation([0.0, -95.0, 10.0 - 0.5 * length])
+    foot = trimesh.creation.cylinder(170.0, 20.0).apply_translation([0.0, -95.0, 10.0 - length])
     pose = find_pose(*together(trimesh.Trimesh(vertices, faces, process=False), pole, foot))
     assert (pose.unit, pose.up, pose.front, pose.sure) == ("mm", "+z", "-y", True)
     assert pose.stand == pytest.approx(vertices[:, 2].min(), abs=20.0)
+
+
+def test_neither_a_neck_nor_a_torn_ring_of_skin_is_a_pole():
+    vertices, faces = sample("mannequin")
     assert find_pose(vertices, faces).stand == -np.inf
-    assert find_pose(vertices, faces, up="-z", front="+y").stand == -np.inf  # a neck is no pole
+    assert find_pose(vertices, faces, up="-z", front="+y").stand == -np.inf
+    x, y, z = vertices[faces].mean(axis=1).T
+    patch = (np.abs(x) < 25.0) & (y < -95.0)
+    for height in (25.0, 80.0):  # the taller does not go round
+        torn = faces[patch | (np.abs(z - 130.0) > 0.5 * height)]
+        assert find_pose(vertices, torn).stand == -np.inf
+    cut = trimesh.Trimesh(vertices, faces[np.abs(z - 130.0) > 15.0], process=False)
+    tube = trimesh.creation.cylinder(18.0, 200.0).apply_translation([0.0, -95.0, 110.0])
+    assert find_pose(*together(cut, tube)).stand == -np.inf  # too little of it shows
