@@ -108,6 +108,7 @@ def borne_out(own: Nipple, other: Nipple | None, middle: float) -> float:
     Two spots at the same place of both breasts bear each other out, however the breasts differ. Of two that
     do not, one at most is a nipple: rather the clearer one, near the pole.
     """
+    # Spots that lie unlike share one nipple: a spot's own certainty, times its part of both squared.
     rival = 0.0 if other is None else other.alone
     alike = 0.0 if other is None else float(np.exp(-max(own.apart(other, middle) - SAME, 0.0) / SAME))
     return alike * own.clear + (1.0 - alike) * own.alone**3 / max(own.alone**2 + rival**2, 1e-9)

@@ -13,6 +13,21 @@ from core.mesh import Flags, Floats, Indices, Points
 SLACK, PULL = 3.0, 0.002
 """From profile to profile the fold may move by ``SLACK`` [mm]; more costs ``PULL`` of curvature a mm."""
 
+FREE, STRAY = 22.0, 0.00035
+"""So far off the height where it is looked for [mm] a crease is as good; each mm more costs curvature."""
+
+REACH = 60.0
+"""It is looked for so far above and below that height [mm]."""
+
+TOP, END = 22, 12
+"""So near to the bust point and to the lower end of a profile [mm] it is not looked for."""
+
+SAME, OWN_BEND = 18, 12
+"""So near to the run another one is the same [mm], and so near to the fold another bend of its profile."""
+
+EVEN, ASTRAY = 2.0, 0.01
+"""A fold may leave the even course of its run by this [mm]; each mm more costs so much curvature [1/mm]."""
+
 HIDDEN = 0.02
 """What a place in a hole is worth [1/mm]: more than a faint hollow beside it, less than a crease."""
 
@@ -48,7 +63,7 @@ def trace(bundle: list[Profile], height: float) -> Trace | None:
         n = len(profile.points)
         points[k, :n] = profile.points
         high = np.abs(profile.points[:, 2] - height)
-        worth = gaussian_filter1d(profile.bend, 4.0) - 0.00035 * np.maximum(high - 22.0, 0.0)
+        worth = gaussian_filter1d(profile.bend, 4.0) - STRAY * np.maximum(high - FREE, 0.0)
         value[k, :n] = np.where(_allowed(profile, height), np.where(profile.seen, worth, HIDDEN), -np.inf)
     usable = np.isfinite(value).any(axis=1)
     if not usable[OWN]:
@@ -61,7 +76,7 @@ def trace(bundle: list[Profile], height: float) -> Trace | None:
     rows = np.arange(low, high_end + 1)
     path, best = _best_run(points[rows], value[rows])
     taken = value[rows].copy()
-    taken[np.abs(np.arange(size)[None] - path[:, None]) <= 18] = -np.inf
+    taken[np.abs(np.arange(size)[None] - path[:, None]) <= SAME] = -np.inf
     other = _best_run(points[rows], taken)[1] if np.isfinite(taken).any(axis=1).all() else 0.0
     found = _trace(bundle, rows, path, (best - max(other, 0.0)) / len(rows))
     return replace(found, rival=_rival(bundle[OWN], found.curve[found.own], height))
@@ -70,7 +85,7 @@ def trace(bundle: list[Profile], height: float) -> Trace | None:
 def _allowed(profile: Profile, height: float) -> Flags:
     """Tell which points of ``profile`` may be the fold: below the bust point and near ``height`` [mm]."""
     arc, n = np.arange(len(profile.points)), len(profile.points)
-    return np.asarray((arc > 22) & (arc < n - 12) & (np.abs(profile.points[:, 2] - height) < 60.0))
+    return np.asarray((arc > TOP) & (arc < n - END) & (np.abs(profile.points[:, 2] - height) < REACH))
 
 
 def _rival(profile: Profile, fold: Points, height: float) -> float:
@@ -81,7 +96,7 @@ def _rival(profile: Profile, fold: Points, height: float) -> float:
     summit = np.zeros(len(bend), dtype=bool)
     summit[1:-1] = (bend[1:-1] >= bend[:-2]) & (bend[1:-1] >= bend[2:])
     other = summit & profile.seen & _allowed(profile, height)
-    other &= (np.abs(np.arange(len(bend)) - at) > 12) & (np.abs(profile.points[:, 2] - fold[2]) > 4.0)
+    other &= (np.abs(np.arange(len(bend)) - at) > OWN_BEND) & (np.abs(profile.points[:, 2] - fold[2]) > 4.0)
     return float(bend[other].max(initial=0.0)) / max(crease, 1e-3)
 
 
@@ -122,7 +137,7 @@ def _trace(bundle: list[Profile], rows: Indices, path: Indices, lead: float) -> 
         sharp = gaussian_filter1d(0.5 * np.mean(bends, axis=0) + 0.5 * bends[near.index(own)], 2.0)
         places = np.clip(path[own] + shift, 0, len(profile.points) - 1)
         # Where noise makes the run stray, the fold keeps near its even course.
-        sharp -= 0.01 * np.maximum(np.abs(profile.points[places, 2] - even[own]) - 2.0, 0.0)
+        sharp -= ASTRAY * np.maximum(np.abs(profile.points[places, 2] - even[own]) - EVEN, 0.0)
         curve[own] = profile.points[places[np.argmax(sharp)]]
     return Trace(curve, seen, depth, lead, rough, own)
 

@@ -20,6 +20,19 @@ RING = (9.0, 22.0)
 """Inner and outer radius of the ring that a relief is measured against [mm]."""
 
 
+AT_POLE, ABOUT = 4.0, 8.0
+"""Nipples lie so near to the pole as a rule [mm]; each ``ABOUT`` [mm] further off makes one less likely."""
+
+LEAST, FARTHER = 0.9, 0.06
+"""A nipple stands out by more than this [mm], off the pole by so much more for each mm."""
+
+OFF_POLE, RIVALLED = 6.0, 1.35
+"""More than this beyond ``AT_POLE`` [mm] it stands out so many times as much as the next best spot."""
+
+UNLIKE, APART = 6.0, 9.0
+"""A pair may lie so unlike on their breasts [mm]; each ``APART`` [mm] more makes it less likely."""
+
+
 @dataclass(frozen=True, eq=False)
 class Patch:
     """A breast seen along the normal at its pole, over a square grid.
@@ -135,7 +148,8 @@ class Nipple:
 
     ``way`` leads to it from the pole, shape (3,) [mm], and ``offset`` is its length seen along the normal
     there [mm]; ``relief`` is how far it stands out [mm]; ``ratio`` is that over the next best spot of the
-    same breast; ``clarity`` is that over the roughness of the breast.
+    same breast; ``clarity`` is that over the roughness of the breast. How sure a spot is of its looks is our
+    judgement: its weights were not measured.
     """
 
     position: Points
@@ -148,8 +162,8 @@ class Nipple:
     @property
     def sure(self) -> bool:
         """Whether the spot stands out enough for a nipple: the farther from the pole, the more it must."""
-        far = max(self.offset - 4.0, 0.0)
-        return self.relief > 0.9 + 0.06 * far and self.ratio > (1.35 if far > 6.0 else 1.0)
+        far = max(self.offset - AT_POLE, 0.0)
+        return self.relief > LEAST + FARTHER * far and self.ratio > (RIVALLED if far > OFF_POLE else 1.0)
 
     @property
     def clear(self) -> float:
@@ -161,7 +175,7 @@ class Nipple:
     @property
     def alone(self) -> float:
         """How sure (0..1) it is without a partner: all else that stands out may lie anywhere."""
-        return 0.8 * self.clear * float(np.exp(-max(self.offset - 4.0, 0.0) / 8.0))
+        return 0.8 * self.clear * float(np.exp(-max(self.offset - AT_POLE, 0.0) / ABOUT))
 
     def apart(self, other: Nipple, middle: float) -> float:
         """Return how far it lies from the mirror image of that of the other breast [mm].
@@ -182,14 +196,15 @@ def find_nipples(left: Patch, right: Patch, middle: float) -> tuple[Nipple | Non
         return (spots[0][0] if spots[0] else None, spots[1][0] if spots[1] else None)
 
     def worth(a: Nipple, b: Nipple) -> float:
-        return _worth(a) + _worth(b) - 0.5 * (max(a.apart(b, middle) - 6.0, 0.0) / 9.0) ** 2
+        return _worth(a) + _worth(b) - 0.5 * (max(a.apart(b, middle) - UNLIKE, 0.0) / APART) ** 2
 
     return max(((a, b) for a in spots[0] for b in spots[1]), key=lambda pair: worth(*pair))
 
 
 def _worth(spot: Nipple) -> float:
+    """Return how clear a spot is for its place [1]: beyond 3 mm more relief makes no better nipple."""
     rough = max(spot.relief / spot.clarity, 0.3)
-    return min(spot.relief, 3.0) / rough - 0.5 * (max(spot.offset - 4.0, 0.0) / 8.0) ** 2
+    return min(spot.relief, 3.0) / rough - 0.5 * (max(spot.offset - AT_POLE, 0.0) / ABOUT) ** 2
 
 
 def _spots(patch: Patch) -> list[Nipple]:

@@ -65,6 +65,7 @@ def _side(mesh: Mesh, bust: Points, middle: float, side: str, sign: float) -> li
     line = np.stack([x, y, np.full(len(at), own.z)], axis=1)
     curve = line[ends[0][0] : ends[1][0] + 1]
     curve = curve[np.isfinite(curve[:, 0])]
+    # Never sure, the outer end the less: our judgement, as no known answer tells where a root ends.
     return [
         Landmark(f"root_{name}_{side}", line[end], low + more * sure, rules[sure == 0.0], curve)
         for name, (end, sure), low, more, rules in (

@@ -27,6 +27,9 @@ HIP = "On the centre line of the front, where the trunk is widest round below th
 NECK_FRONT = "The most hollow place of the centre line of the front between chest and neck."
 NECK_BACK = "The most prominent place of the centre line of the back at the foot of the neck."
 
+CLEAR, PLAIN = 0.8, 0.4
+"""How sure a mark is that shows clearly, and one that hardly shows (0..1): our judgement."""
+
 EVEN = 4.0
 """The bust points lie so evenly about the middle of the trunk [mm]; twice that more, and a third is left."""
 
@@ -113,7 +116,7 @@ def _fronts(
     for name, level, rule in (("", bust, FRONT), ("_underbust", under, FRONT_UNDER)):
         place = _at(line, level.z)
         if place is not None:
-            marks.append(Landmark(f"front_centre{name}", place, min(0.8, sure[name]), rule, line))
+            marks.append(Landmark(f"front_centre{name}", place, min(CLEAR, sure[name]), rule, line))
     return marks
 
 
@@ -138,7 +141,7 @@ def _back(mesh: Mesh, guide: Guide, level: Level, name: str) -> Landmark | None:
     place = _at(line, level.z)
     if place is None:
         return None
-    sure = 0.4 + 0.4 * float(np.clip((depth[best] - 1.0) / 5.0, 0.0, 1.0)) if hollow else 0.4
+    sure = PLAIN + (CLEAR - PLAIN) * float(np.clip((depth[best] - 1.0) / 5.0, 0.0, 1.0)) if hollow else PLAIN
     rule = (BACK_UNDER if name else BACK) if hollow else FLAT_BACK
     return Landmark(f"back_centre{name}", place, sure, rule, line)
 
@@ -157,7 +160,7 @@ def _side(guide: Guide, level: Level, name: str, sign: float) -> Landmark | None
     spread = float(np.ptp(flat[:, 1]))
     near = points[out > out.max() - 25.0]
     curve = near[np.argsort(near[:, 1])]
-    return Landmark(f"side_{name}", best, 0.8 * float(np.exp(-max(spread - 15.0, 0.0) / 40.0)), SIDE, curve)
+    return Landmark(f"side_{name}", best, CLEAR * float(np.exp(-max(spread - 15.0, 0.0) / 40.0)), SIDE, curve)
 
 
 def _armpit(mesh: Mesh, guide: Guide, found: Landmarks, s: int) -> Landmark | None:
@@ -178,7 +181,7 @@ def _armpit(mesh: Mesh, guide: Guide, found: Landmarks, s: int) -> Landmark | No
     best = points[int(np.argmax(out))]
     near = points[out > out.max() - 30.0]
     apart = bool((np.abs(guide.limb_level - k) <= 4).any())
-    sure = (0.8 if apart else 0.4) * (1.0 if guide.z[k] > found.bust_level else 0.5)
+    sure = (CLEAR if apart else PLAIN) * (1.0 if guide.z[k] > found.bust_level else 0.5)
     return Landmark(f"armpit_{SIDES[s]}", best, sure, ARMPIT, near[np.argsort(near[:, 1])])
 
 
