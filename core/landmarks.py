@@ -7,6 +7,7 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from core.body import Body
+from core.cleaning.inner import BURIED
 from core.finding.bust_check import check, check_anchor, check_placed, placed_warnings
 from core.finding.bust_point import bust_points, missing_sides
 from core.finding.chest import find_anchor, find_poles
@@ -51,6 +52,7 @@ def find_landmarks(body: Body, placed: Mapping[str, Points] = NOTHING) -> Landma
         for mark in (*trunk_marks(calm, found), *root_marks(calm, found))
     }
     points = MappingProxyType({**found.points, **further, **by_hand})
+    warnings = (*[BURIED] * (BURIED in body.repairs), *warnings)
     warnings = (*warnings, *placed_warnings(found), *coarse_warning(_spacing(calm, found.points)))
     return Landmarks(points, found.bust_level, found.underbust_level, warnings)
 

@@ -1,11 +1,11 @@
-"""The pieces of a scan: which are body, and which are floor, stand, speck, or a second layer of the skin."""
+"""The pieces of a scan: which are body, and which are floor, stand or speck."""
 
 from __future__ import annotations
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from core.cleaning.skin import Skin, grouped
+from core.cleaning.skin import Skin
 from core.mesh import Floats, Indices, Points, strewn, unit
 
 SPECK = 0.005
@@ -45,15 +45,6 @@ SEAM, SEWN = 0.05, 0.3
 """A border runs along another if it lies nearer, in parts of the square root of the area of its piece [1];
 a patch of a skin does so along that share of its border [1]."""
 
-COVERED = 0.9
-"""Share of a piece [1] that lies inside another, or on it, if it is no skin of its own."""
-
-CELL = 0.05
-"""Edge of the cells into which a skin is gathered to ask what lies inside it, in parts of the size [1]."""
-
-LAYER = 0.02
-"""A second layer lies nearer than this to the skin, in parts of the body's size [1]."""
-
 
 def size_of(skin: Skin) -> float:
     """Return the root mean square distance of a skin from its middle: some 220 for a torso in mm."""
@@ -71,7 +62,7 @@ def drop_furniture(skin: Skin) -> tuple[Skin, int]:
     """
     areas = skin.piece_areas if len(skin.faces) else np.zeros(0)
     built = np.zeros(len(areas), dtype=bool)
-    large = _largest(areas, SPECK)
+    large = largest(areas, SPECK)
     if len(large) < 2:
         return skin, 0
     for number in large:
@@ -92,49 +83,28 @@ def drop_specks(skin: Skin) -> tuple[Skin, int]:
         return skin, 0  # they are what the skin is made of
     doubtful = np.flatnonzero((share < LOOSE) & ~small)
     if len(doubtful):
-        body = cKDTree(_strewn(skin, np.flatnonzero((share >= LOOSE)[skin.piece]), 10 * SAMPLES))
+        body = cKDTree(strewn_on(skin, np.flatnonzero((share >= LOOSE)[skin.piece]), 10 * SAMPLES))
         apart = BESIDE * size_of(skin.without_pieces(share < LOOSE))
         for number in doubtful:
-            places = _strewn(skin, np.flatnonzero(skin.piece == number), 200)
+            places = strewn_on(skin, np.flatnonzero(skin.piece == number), 200)
             small[number] = np.min(body.query(places)[0]) > apart
     return skin.without_pieces(small), int(small.sum())
 
 
-def drop_inner(skin: Skin) -> tuple[Skin, int]:
-    """Drop pieces that lie inside another, or on it: linings and layers scanned twice. Wound outward."""
-    areas = skin.piece_areas if len(skin.faces) else np.zeros(0)
-    large = _largest(areas, 0.0)
-    if len(large) < 2:
-        return skin, 0
-    size, inner = size_of(skin), np.zeros(len(areas), dtype=bool)
-    faces = {number: np.flatnonzero(skin.piece == number) for number in large}
-    for rank, number in enumerate(large):
-        places = _strewn(skin, faces[number], 100)
-        for other_rank, other in enumerate(large):
-            # a lining may be a little larger than what it lines, a layer is the smaller one
-            if other == number or inner[other] or areas[other] < 0.5 * areas[number]:
-                continue
-            low, high = (end(skin.centres[faces[other]], axis=0) for end in (np.min, np.max))
-            if ((places > low - LAYER * size) & (places < high + LAYER * size)).all(axis=1).mean() <= COVERED:
-                continue
-            inner[number] |= other_rank < rank and _covered(skin, faces[other], places, LAYER * size)
-            inner[number] |= bool((_winding(skin, faces[other], places, size) > 0.5).mean() > COVERED)
-    return skin.without_pieces(inner), int(inner.sum())
-
-
-def _largest(areas: Floats, share: float) -> Indices:
+def largest(areas: Floats, share: float = 0.0) -> Indices:
+    """Return the largest of pieces of ``areas``, shape (k,), above a ``share`` of the first."""
     order = np.argsort(-areas, kind="stable")[:LOOKED_AT]
     return np.asarray(order[areas[order] > share * areas.max(initial=0.0)])
 
 
-def _strewn(skin: Skin, faces: Indices, count: int = SAMPLES) -> Points:
+def strewn_on(skin: Skin, faces: Indices, count: int = SAMPLES) -> Points:
     """Return places strewn evenly over triangles, shape (count, 3)."""
     return strewn(skin.vertices, skin.faces[faces], skin.areas[faces], count)[0]
 
 
 def _is_built(skin: Skin, faces: Indices) -> bool:
     """Tell whether a piece is a plate, a body between two plates along one axis, or a pole."""
-    places = _strewn(skin, faces)
+    places = strewn_on(skin, faces)
     _, near = cKDTree(places).query(places, k=NEAREST)
     around = places[near] - places[near].mean(axis=1, keepdims=True)
     spread, directions = np.linalg.eigh(np.einsum("ski,skj->sij", around, around))
@@ -188,31 +158,3 @@ def _is_round(places: Points, axis: Points) -> bool:
     circle = np.linalg.lstsq(np.stack([x, y, np.ones_like(x)], axis=1), x * x + y * y, rcond=None)[0]
     radius = np.hypot(x - 0.5 * circle[0], y - 0.5 * circle[1])
     return bool((np.abs(radius / np.median(radius) - 1.0) < ROUND).mean() > BUILT)
-
-
-def _covered(skin: Skin, faces: Indices, places: Points, near: float) -> bool:
-    """Tell whether nearly all ``places`` lie nearer to the skin of ``faces`` than ``near``."""
-    centres, normals = skin.centres[faces], unit(skin.area_vectors[faces])
-    distance, at = cKDTree(centres).query(places)
-    away = places - centres[at]
-    height = np.abs(np.einsum("ij,ij->i", away, normals[at]))
-    beside = np.sqrt(np.maximum(distance**2 - height**2, 0.0))
-    reach = near + 2.0 * np.sqrt(skin.areas[faces[at]])
-    return bool(((height < near) & (beside < reach)).mean() > COVERED)
-
-
-def _winding(skin: Skin, faces: Indices, places: Points, size: float) -> Floats:
-    """Return how often the skin of ``faces`` goes round each place, shape (k,) [1].
-
-    The skin is taken as dipoles at the middles of coarse cells. Source: Barill et al. 2018.
-    """
-    centres, vectors = skin.centres[faces], skin.area_vectors[faces]
-    cell = np.floor((centres - centres.min(axis=0)) / (CELL * size)).astype(np.int64)
-    order, start = grouped((cell[:, 0] << 40) | (cell[:, 1] << 20) | cell[:, 2])
-    dipole = np.add.reduceat(vectors[order], start, axis=0)
-    weight = skin.areas[faces][order]
-    middle = np.add.reduceat(weight[:, None] * centres[order], start, axis=0)
-    middle /= np.maximum(np.add.reduceat(weight, start), 1e-300)[:, None]
-    way = middle[None] - places[:, None]
-    distance = np.maximum(np.linalg.norm(way, axis=2), CELL * size)
-    return np.asarray((np.einsum("kci,ci->kc", way, dipole) / distance**3).sum(axis=1) / (4.0 * np.pi))

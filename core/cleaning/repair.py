@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from core.cleaning.inner import drop_hidden
-from core.cleaning.pieces import drop_furniture, drop_inner, drop_specks, size_of
+from core.cleaning.inner import BURIED, buried, drop_hidden, drop_inner
+from core.cleaning.pieces import drop_furniture, drop_specks, size_of
 from core.cleaning.skin import Skin, components, first_equal
 from core.mesh import FARTHEST, Faces, Flags, Indices, Points
 from core.progress import Progress, quiet
@@ -59,9 +59,12 @@ def repair(
     skin, sentences = Skin(vertices, faces), []
     for done, (step, words, noun) in enumerate(steps):
         progress("repairing", done / len(steps))
-        skin, count = step(skin)
+        before = skin
+        skin, count = step(before)
         if count:
             sentences.append(words.format(counted(count, noun)))
+        if count and step in (drop_inner, drop_hidden) and buried(before, skin):
+            sentences.append(BURIED)
     return skin.vertices, skin.faces, tuple(sentences)
 
 
