@@ -73,11 +73,10 @@ def test_only_what_is_large_beside_the_largest_piece_hides_others(radius: float,
     assert of_the_last(together(ball(5, 100.0), ball(4, radius, 300.0), small), small) == left
 
 
-@pytest.mark.parametrize("gap", [-12.0, -6.0, 6.0])
-def test_what_is_near_a_coarse_skin_is_not_told_in_or_out_by_its_triangles(gap: float) -> None:
-    large = ball(1, 100.0)
-    small = ball(3, 30.0, float(large.triangles_center.max(axis=0)[0]) + gap - 30.0 * np.sign(-gap))
-    assert of_the_last(together(large, small), small) == (gap > 0.0)
+def test_a_layer_nearer_than_the_triangles_of_a_coarse_skin_are_wide_is_not_taken_for_hidden() -> None:
+    layer = ball(4, 96.0)
+    cap = trimesh.Trimesh(layer.vertices, layer.faces[layer.triangles_center[:, 2] > 30.0])
+    assert of_the_last(together(ball(2, 100.0), cap), cap) == 1.0
 
 
 @pytest.fixture(scope="module")
