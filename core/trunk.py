@@ -227,9 +227,12 @@ def survey(mesh: Mesh) -> Survey:
         )
     guide = guide_of(mesh)
     segments, row = guide.cuts.segments[guide.keep], guide.cuts.level[guide.keep]
-    for k in np.flatnonzero(guide.shown & ~guide.skin.any(axis=1)):
-        strip = _bridges(guide.reach[k], guide.skin[k], guide.centre[k], float(guide.z[k]))
-        segments, row = np.concatenate([segments, strip]), np.append(row, np.full(len(strip), k))
+    seen, bridges = np.bincount(row, minlength=len(guide.z)) > 0, {}
+    for k in np.flatnonzero(guide.shown | seen):
+        bridges[k] = _bridges(guide.reach[k], guide.skin[k], guide.centre[k], float(guide.z[k]))
+        if not guide.skin[k].any():
+            segments = np.concatenate([segments, bridges[k]])
+            row = np.append(row, np.full(len(bridges[k]), k))
     order = np.argsort(row, kind="stable")
     segments, row = segments[order], row[order]
     length = np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1)
@@ -241,8 +244,7 @@ def survey(mesh: Mesh) -> Survey:
     lo, hi = np.zeros((len(guide.z), 3)), np.zeros((len(guide.z), 3))
     start = np.searchsorted(row, np.arange(len(guide.z) + 1))
     for k in np.flatnonzero(np.diff(start)):
-        bridges = _bridges(guide.reach[k], guide.skin[k], guide.centre[k], float(guide.z[k]))
-        points = np.concatenate([segments[start[k] : start[k + 1]], bridges]).reshape(-1, 3)
+        points = np.concatenate([segments[start[k] : start[k + 1]], bridges[k]]).reshape(-1, 3)
         lo[k], hi[k] = points.min(axis=0), points.max(axis=0)
     full = hi[:, 0] > lo[:, 0]
     middle = float(np.median(0.5 * (lo + hi)[full, 0])) if full.any() else 0.0

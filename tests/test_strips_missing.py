@@ -13,6 +13,8 @@ from core.landmark import Landmarks
 from core.landmarks import find_landmarks
 from core.measure import girth_doubts, girths
 from core.mesh import Mesh
+from core.slicing.gaps import over_strips
+from core.slicing.outline import BINS
 
 
 def without(body: Body, axis: int, at: float, wide: float) -> Body:
@@ -55,3 +57,21 @@ def test_a_body_that_strips_in_front_and_behind_cut_in_two_is_one(whole: tuple[B
     known, found = girths(body, landmarks), girths(split, again)
     for name in ("bust", "underbust"):
         assert found[name].tape_mm == pytest.approx(known[name].tape_mm, abs=4.0)
+
+
+@pytest.mark.parametrize(("low", "high"), [(0, 3), (1, 4), (5, 14), (15, 18), (16, 19)])
+def test_a_strip_goes_on_as_an_even_taper_does_near_the_ends_too(low: int, high: int) -> None:
+    taper = np.tile(100.0 + 3.0 * np.arange(20.0)[:, None], BINS)
+    missing = (low < np.arange(20)) & (np.arange(20) < high)
+    far = np.where(missing[:, None], np.nan, taper)
+    filled, shown = over_strips(far, ~missing, 5.0 * np.arange(20))
+    assert shown.all()
+    assert np.allclose(filled, taper)
+
+
+def test_more_than_a_strip_is_not_made_up() -> None:
+    missing = (np.arange(20) > 5) & (np.arange(20) < 15)  # 50 mm from skin to skin
+    far = np.where(missing[:, None], np.nan, np.full((20, BINS), 100.0))
+    filled, shown = over_strips(far, ~missing, 5.0 * np.arange(20))
+    assert np.array_equal(shown, ~missing)
+    assert np.isnan(filled[missing]).all()

@@ -90,12 +90,17 @@ def over_strips(far: Floats, shown: Flags, z: Floats) -> tuple[Floats, Flags]:
         strip, most = np.arange(low + 1, high), z[high] - z[low]
         if len(strip) and most <= ALL_ROUND:
             t, rise = ((z[strip] - z[low]) / (z[high] - z[low]))[:, None], far[high] - far[low]
-            out = (far[low] - far[max(low - 2, 0)]) * (high - low) / 2.0 - rise
-            back = rise - (far[min(high + 2, len(z) - 1)] - far[high]) * (high - low) / 2.0
+            out = _slope(far, max(low - 2, 0), low) * (high - low) - rise
+            back = rise - _slope(far, high, min(high + 2, len(z) - 1)) * (high - low)
             out, back = (np.clip(np.nan_to_num(bend), -most, most) for bend in (out, back))
             result[strip] = far[low] + t * rise + t * (1.0 - t) * ((1.0 - t) * out + t * back)
             filled[strip] = True
     return result, filled
+
+
+def _slope(far: Floats, low: int, high: int) -> Floats:
+    """Return how ``far`` grows a row from one to another, shape (BINS,) [mm]; NaN if they are one."""
+    return np.asarray((far[high] - far[low]) / (high - low if high > low else np.nan))
 
 
 def _between(far: Floats, z: Floats, k: int, below: Indices, above: Indices) -> Floats:
