@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
@@ -16,6 +17,7 @@ from window_tools import Script, run_main, settled
 
 import app.desk
 import app.scan_desk
+import app.ways
 import core.body
 import core.pipeline
 from app.main_window import MainWindow
@@ -45,6 +47,11 @@ def place(window: MainWindow, name: str, by: QPoint) -> None:
     window.desk.select_landmark(name)
     QTest.mouseClick(window.landmarks.place, Qt.MouseButton.LeftButton)
     pull(window, name, by)
+
+
+def unpainted(*_: Any) -> Any:
+    """A ``portrait`` that takes no time."""
+    return np.zeros((8, 8, 4), np.uint8)
 
 
 def leave(window: MainWindow) -> None:
@@ -124,6 +131,7 @@ def test_a_scan_that_only_asks_leaves_the_open_one_alone(
 ) -> None:
     asked: list[str] = []
     monkeypatch.setattr(app.desk, "ask_about_changes", lambda _, name: asked.append(name) or "cancel")
+    monkeypatch.setattr(app.ways, "portrait", unpainted)
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
@@ -153,6 +161,7 @@ def test_a_scan_whose_question_is_left_is_shown_and_can_be_told(
     mannequin: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(core.body, "find_pose", doubtful(180.0))
+    monkeypatch.setattr(app.ways, "portrait", unpainted)
 
     def script(window: MainWindow) -> Script:
         yield window.view.question.isVisible
