@@ -114,7 +114,8 @@ class StuckError(UserError):
         self.landmarks = stage.landmarks(body, design)
         self.seconds: Mapping[str, float] = stage.seconds
         self.memo: Memo = stage.memo
-        self.kind: Literal["refused", "unsure", "landmarks"] = "landmarks" if body.pose.sure else "unsure"
+        told = body.pose.sure or (design.scan.up and design.scan.front)  # then asking again tells no more
+        self.kind: Literal["refused", "unsure", "landmarks"] = "landmarks" if told else "unsure"
         if isinstance(problem, RefusedError):
             self.kind = "refused"
 

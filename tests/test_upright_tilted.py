@@ -150,6 +150,10 @@ def test_a_told_up_is_believed_before_the_front_and_neither_is_overruled():
         pose = find_pose(vertices, faces, up=up, front=front, unit="MM")
         assert (pose.up, pose.front, pose.unit) == ("+z", "-y", "mm")
         assert pose.tilt == pytest.approx(0.0 if "z" in up.lower() else np.degrees(np.arctan(0.05)), abs=0.1)
+    against = find_pose(vertices, faces, up="-z", front="+y")
+    assert (against.up, against.front, against.sure) == ("-z", "+y", False)
+    assert "told. The shape speaks against it" in against.reason
+    assert find_pose(vertices, faces, up="+z", front="-y").sure
     for up in ("+y", "-y"):
         with pytest.raises(ScanError, match="or say which way is up"):
             find_pose(vertices, faces, up=up)

@@ -10,7 +10,10 @@ from core.standing.stance import Stance
 from core.standing.symmetry import Cloud
 
 LEAST = 2.0
-"""A body has at least this much that speaks for it [1]; solids, limbs and furniture have 1.2, bellies 2.0."""
+"""A body has more that speaks for it [1], 3.7 and up; most solids, limbs and furniture have 1.2 at most.
+
+A few come near or over it, a head 2.0, a cone 2.1, a belly 3.0: for want of a bust these are refused later.
+"""
 
 UNLIKE = 0.38
 """Left and right of a body mirror each other better than this [1]; those of a half body do not."""

@@ -90,12 +90,16 @@ def find_pose(
     readings = _readings(cloud, told_up, told_front)
     if told_up and told_front and readings[0].evidence < LEAST:  # against the shape: then to the letter
         readings = _readings(cloud, Told(told_up.direction, exact=True), told_front)
-    best = readings[0]
     if not told:
-        refuse_unlike(cloud, best)
+        refuse_unlike(cloud, readings[0])
+    return _pose(cloud, readings, unit, told)
+
+
+def _pose(cloud: Cloud, readings: list[Stance], unit: str | None, told: bool) -> Pose:
+    best = readings[0]
     size = find_unit(_girth(cloud, best), unit)
     margin = best.score - max((other.score for other in readings[1:]), default=-np.inf)
-    clear = told or (margin >= SURE_MARGIN and best.score >= SURE_SCORE)
+    clear = best.evidence >= LEAST if told else margin >= SURE_MARGIN and best.score >= SURE_SCORE
     turns = [_turn(reading) for reading in readings]
     axes = nearest_axis(turns[0][2]), nearest_axis(-turns[0][1])
     tilt = float(np.degrees(np.arccos(min(1.0, float(np.abs(turns[0][2]).max())))))
@@ -173,7 +177,8 @@ def _scaled(turn: Floats, factor: float) -> Floats:
 def _reason(best: Stance, axes: tuple[str, str], told: bool, sure: bool) -> str:
     up, front = axes
     if told:
-        return f"That {up} is up and {front} is front was told."
+        words = f"That {up} is up and {front} is front was told."
+        return words if sure else words + " The shape speaks against it: please look."
     if not sure:
         return f"It is not certain that {up} is up and {front} is front: please look."
     first, second, third = sorted(best.said, key=lambda words: -best.said[words])[:3]
