@@ -74,7 +74,7 @@ class ScanDesk(QObject):
         if pose.sure:
             return
         if source.up and source.front:
-            unsure = tr("Busk is not sure of the unit of this scan.")
+            unsure = tr("Busk is not sure of the unit, up or front of this scan.")
             self._window.notices.show_notice("warn", unsure, pose.reason, lasting=True)
         else:
             self._ask(stages.body, None)
