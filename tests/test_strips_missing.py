@@ -15,6 +15,7 @@ from core.measure import girth_doubts, girths
 from core.mesh import Mesh
 from core.slicing.gaps import over_strips
 from core.slicing.outline import BINS
+from core.trunk import trunk_levels
 
 
 def without(body: Body, axis: int, at: float, wide: float) -> Body:
@@ -45,6 +46,17 @@ def test_a_strip_all_round_on_a_girth_is_bridged_and_said(
     assert found[name].tape_mm == pytest.approx(known[name].tape_mm, rel=0.01)
     assert found[name].bridged_mm > 500.0
     assert any("estimate" in doubt for doubt in girth_doubts(found))
+
+
+def test_a_patch_that_is_left_of_a_level_does_not_lead_it_astray(whole: tuple[Body, Landmarks]) -> None:
+    body, landmarks = whole
+    (level,) = trunk_levels(body.mesh, landmarks.bust_level)
+    x, y, z = (body.mesh.vertices[body.mesh.faces].mean(axis=1) - landmarks.position("front_centre")).T
+    patch = (np.abs(x) < 50.0) & (y < 60.0)
+    missing = (np.abs(z + landmarks.position("front_centre")[2] - level.z) < 12.0) & ~patch
+    torn = Mesh(body.mesh.vertices, body.mesh.faces[~missing])
+    (found,) = trunk_levels(torn, level.z)
+    assert found.tape == pytest.approx(level.tape, rel=0.005)
 
 
 def test_a_body_that_strips_in_front_and_behind_cut_in_two_is_one(whole: tuple[Body, Landmarks]) -> None:
