@@ -15,6 +15,9 @@ from core.reading.raw_scan import RawScan
 FEWEST_POINTS = 2000
 """With fewer points no breast could be made out."""
 
+SMALL_PART = 0.2
+"""Where less of the points lies near triangles [1] the scan is a cloud; else what has none was cut away."""
+
 SMOOTHEST_FOG = 0.8
 """Mean cosine [1] between the normals of neighbours; points in a volume give 0.66, a very noisy skin 0.9."""
 
@@ -84,7 +87,7 @@ def is_cloud(scan: RawScan) -> bool:
         return True
     low, high = np.percentile(some, (1, 99), axis=0)
     reach, _ = cKDTree(corners).query(some)
-    return bool(np.mean(reach < 0.05 * np.linalg.norm(high - low)) < 0.5)
+    return bool(np.mean(reach < 0.05 * np.linalg.norm(high - low)) < SMALL_PART)
 
 
 def _placed(points: Points) -> Flags:
