@@ -42,8 +42,9 @@ def find_landmarks(body: Body, placed: Mapping[str, Points] = NOTHING) -> Landma
         anchor = find_anchor(trunk)
         check_anchor(anchor)
         poles = find_poles(trunk, anchor)
-        missing = [side for side in missing_sides(poles) if f"bust_point_{side}" not in by_hand]
-        busts = [by_hand.get(mark.name, mark) for mark in bust_points(calm, poles, trunk.middle)]
+        flat = missing_sides(poles, anchor.lone)
+        missing = [side for side in flat if f"bust_point_{side}" not in by_hand]
+        busts = [by_hand.get(mark.name, mark) for mark in bust_points(calm, poles, trunk.middle, flat)]
         marks = busts + folds_and_lowest(calm, busts, anchor.z, by_hand)
         found = _levels(calm, marks, by_hand, missing)
         warnings = check(calm, trunk, poles, missing, found)

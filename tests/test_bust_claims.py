@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.sparse import csr_array, diags_array
+from scipy.sparse.linalg import spsolve
 from test_landmarks import SIDES, found, landmarks_of, part, sample
 
 from core.errors import LandmarkError
 from core.finding.breast_profile import OFFSETS, OWN, Profile
 from core.finding.fold import trace
 from core.finding.under_breast import CREASE
+from core.landmark import CERTAIN
 
 
 def test_a_body_that_is_too_flat_is_refused_for_that():
@@ -52,3 +55,28 @@ def test_a_fold_keeps_near_its_course_where_noise_is_sharper():
     ]
     run = trace(bundle, 0.0)
     assert run.curve[run.own, 2] == pytest.approx(0.0, abs=3.0)
+
+
+def test_a_breast_that_was_taken_away_wholly_leaves_the_other_where_it_is():
+    mesh, whole = sample("person"), found("person")
+    v, pole = mesh.vertices, whole.position("bust_point_right")
+    ellipse = ((v - pole - [0.0, 0.0, 30.0]) / [95.0, 200.0, 130.0]) ** 2
+    inner = (ellipse.sum(axis=1) < 1.0) & (v[:, 1] < pole[1] + 130.0) & (v[:, 0] < -12.0)
+    weights = vertex_neighbours(mesh)
+    flat = v.copy()
+    flat[inner] = spsolve(weights[inner][:, inner].tocsc(), -(weights[inner][:, ~inner] @ v[~inner]))
+    seen = landmarks_of(mesh.moved(flat))  # a membrane over the chest: only ribs are left to stand out
+    assert any("On the right side no breast stands out" in warning for warning in seen.warnings)
+    assert np.linalg.norm(seen.position("bust_point_left") - whole.position("bust_point_left")) < 2.0
+    assert seen.points["bust_point_left"].confidence > CERTAIN
+    assert seen.points["bust_point_right"].confidence < 0.2
+    assert seen.bust_level == pytest.approx(whole.position("bust_point_left")[2], abs=2.0)
+
+
+def vertex_neighbours(mesh):
+    """The graph Laplacian of a mesh, shape (n, n)."""
+    ends = np.concatenate([mesh.faces[:, pair] for pair in ([0, 1], [1, 2], [2, 0])])
+    ones = np.ones(2 * len(ends))
+    rows, columns = np.concatenate([ends.T, ends.T[::-1]], axis=1)
+    graph = csr_array((ones, (rows, columns)), shape=(len(mesh.vertices),) * 2)
+    return diags_array(graph.sum(axis=1)).tocsr() - graph

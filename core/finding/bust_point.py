@@ -37,13 +37,15 @@ FLAT, FAR_FLATTER = 4.0, 0.3
 """A side that stands out less than this [mm], or than this part of the other, shows no breast."""
 
 
-def bust_points(mesh: Mesh, poles: Sequence[Pole], middle: float) -> list[Landmark]:
+def bust_points(
+    mesh: Mesh, poles: Sequence[Pole], middle: float, missing: Sequence[str] = ()
+) -> list[Landmark]:
     """Return the bust points of the left and the right breast, each with a ring round it.
 
-    ``middle`` is x of the middle of the body [mm].
+    ``middle`` is x of the middle of the body [mm]; on sides ``missing`` there is no breast.
     """
     left, right = patches = [breast_patch(mesh, pole.position) for pole in poles]
-    nipples, missing = find_nipples(left, right, middle), missing_sides(poles)
+    nipples = find_nipples(left, right, middle)
     marks = [
         _bust_point(f"bust_point_{side}", patch, own, other, None if missing else middle)
         for side, patch, own, other in zip(SIDES, patches, nipples, nipples[::-1], strict=True)
@@ -80,10 +82,16 @@ def _across(mesh: Mesh, there: Points, middle: float) -> Points:
     return np.asarray(near[np.argmin(near[:, 1])] if len(near) else place)
 
 
-def missing_sides(poles: Sequence[Pole]) -> list[str]:
-    """Return the sides, of left and right, on which no breast stands out of the chest."""
-    least = max(FLAT, FAR_FLATTER * max(pole.prominence for pole in poles))
-    return [side for side, pole in zip(SIDES, poles, strict=True) if pole.prominence < least]
+def missing_sides(poles: Sequence[Pole], lone: bool) -> list[str]:
+    """Return the sides, of left and right, on which no breast stands out of the chest.
+
+    If one side is ``lone`` over a fold the other has none, however much its ribs stand out.
+    """
+    out = [pole.prominence for pole in poles]
+    least = max(FLAT, FAR_FLATTER * max(out))
+    return [
+        side for side, own in zip(SIDES, out, strict=True) if own < least or (lone and own == min(out))
+    ]
 
 
 def _bust_point(

@@ -18,6 +18,9 @@ CELL = 5.0
 KINK = 8.0
 """Over a fold the body comes forward by this at least [mm]."""
 
+LONE = 0.35
+"""A side that comes forward by less than this part of the other has no breast: its ribs do so too [1]."""
+
 BELOW, ABOVE = 25.0, 130.0
 """A pole is looked for so far below and above the anchor [mm]: the longest breast and the highest one."""
 
@@ -101,11 +104,11 @@ def find_anchor(survey: Survey) -> Anchor:
     def best_over(sides: Floats) -> int:
         return int(np.argmax(np.where(usable, sides - 0.8 * np.clip(middle, 0.0, 40.0), -np.inf)))
 
-    best = best_over(both)
-    lone = bool(both[best] < KINK)
+    either = np.maximum(*sides)
+    best, only = best_over(both), best_over(either)
+    lone = bool(both[best] < max(KINK, LONE * either[only]))
     if lone:
-        both = np.maximum(*sides)
-        best = best_over(both)
+        both, best = either, only
     return Anchor(float(survey.z[best]), float(both[best]), float(middle[best]), half_width, lone)
 
 
