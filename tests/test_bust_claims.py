@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.sparse import csr_array, diags_array
@@ -10,9 +12,11 @@ from test_landmarks import SIDES, found, landmarks_of, part, sample
 
 from core.errors import LandmarkError
 from core.finding.breast_profile import OFFSETS, OWN, Profile
+from core.finding.chest import find_anchor
 from core.finding.fold import trace
 from core.finding.under_breast import CREASE
 from core.landmark import CERTAIN
+from core.trunk import survey
 
 
 def test_a_body_that_is_too_flat_is_refused_for_that():
@@ -71,6 +75,16 @@ def test_a_breast_that_was_taken_away_wholly_leaves_the_other_where_it_is():
     assert seen.points["bust_point_left"].confidence > CERTAIN
     assert seen.points["bust_point_right"].confidence < 0.2
     assert seen.bust_level == pytest.approx(whole.position("bust_point_left")[2], abs=2.0)
+
+
+def test_a_chin_over_the_chest_is_no_bust():
+    trunk, above = survey(sample("mannequin")), found("mannequin").bust_level + 60.0
+    forward = [200.0 * np.clip((z - above) / 60.0, 0.0, 1.0) for z in (trunk.samples[:, 2], trunk.z)]
+    samples = trunk.samples - np.outer(forward[0], [0.0, 1.0, 0.0])
+    stooping = replace(trunk, samples=samples, front=trunk.front - forward[1])
+    assert (
+        find_anchor(stooping).z == find_anchor(trunk).z
+    )  # forward by more than the breasts, in the middle too
 
 
 def vertex_neighbours(mesh):

@@ -89,9 +89,7 @@ def missing_sides(poles: Sequence[Pole], lone: bool) -> list[str]:
     """
     out = [pole.prominence for pole in poles]
     least = max(FLAT, FAR_FLATTER * max(out))
-    return [
-        side for side, own in zip(SIDES, out, strict=True) if own < least or (lone and own == min(out))
-    ]
+    return [side for side, own in zip(SIDES, out, strict=True) if own < least or (lone and own == min(out))]
 
 
 def _bust_point(

@@ -102,7 +102,7 @@ def find_anchor(survey: Survey) -> Anchor:
     middle = np.where(np.isnan(kink), -100.0, kink)[:, np.abs(x) < 0.12 * half_width].max(axis=1)
 
     def best_over(sides: Floats) -> int:
-        return int(np.argmax(np.where(usable, sides - 0.8 * np.clip(middle, 0.0, 40.0), -np.inf)))
+        return int(np.argmax(np.where(usable, sides - 0.8 * np.maximum(middle, 0.0), -np.inf)))
 
     either = np.maximum(*sides)
     best, only = best_over(both), best_over(either)
