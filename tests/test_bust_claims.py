@@ -84,7 +84,7 @@ def test_a_chin_over_the_chest_is_no_bust():
     stooping = replace(trunk, samples=samples, front=trunk.front - forward[1])
     assert (
         find_anchor(stooping).z == find_anchor(trunk).z
-    )  # forward by more than the breasts, in the middle too
+    )  # the middle comes forward too
 
 
 def vertex_neighbours(mesh):
