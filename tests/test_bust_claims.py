@@ -82,9 +82,7 @@ def test_a_chin_over_the_chest_is_no_bust():
     forward = [200.0 * np.clip((z - above) / 60.0, 0.0, 1.0) for z in (trunk.samples[:, 2], trunk.z)]
     samples = trunk.samples - np.outer(forward[0], [0.0, 1.0, 0.0])
     stooping = replace(trunk, samples=samples, front=trunk.front - forward[1])
-    assert (
-        find_anchor(stooping).z == find_anchor(trunk).z
-    )  # the middle comes forward too
+    assert find_anchor(stooping).z == find_anchor(trunk).z  # the middle comes forward too
 
 
 def vertex_neighbours(mesh):
