@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from core.body import Body
+from core.finding.bust_point import ACROSS
 from core.landmark import CERTAIN, SIDES, Landmarks
 
 ESSENTIAL = ("bust_point", "fold")
@@ -16,9 +17,10 @@ def doubts(body: Body, landmarks: Landmarks) -> list[str]:
 
 
 def landmark_doubts(landmarks: Landmarks) -> list[str]:
-    """Return what should be looked at on the landmarks alone."""
-    marks = [sentence for kind in ESSENTIAL for sentence in _doubt(kind, weak_sides(landmarks, kind))]
-    return marks + list(landmarks.warnings)
+    """Return what should be looked at on the landmarks alone; a side without a breast is named once."""
+    told = [side for side in SIDES if landmarks.points[f"bust_point_{side}"].rule == ACROSS]
+    weak = {kind: [side for side in weak_sides(landmarks, kind) if side not in told] for kind in ESSENTIAL}
+    return [sentence for kind in ESSENTIAL for sentence in _doubt(kind, weak[kind])] + [*landmarks.warnings]
 
 
 def weak_sides(landmarks: Landmarks, kind: str) -> list[str]:
