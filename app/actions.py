@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from PySide6.QtGui import QAction, QActionGroup, QKeySequence, QUndoStack
 from PySide6.QtWidgets import QMenu, QMenuBar, QWidget
 
-from app.samples import SAMPLES
-from app.words import LANGUAGES, tr
+from app.wording.samples import SAMPLES
+from app.wording.words import LANGUAGES, tr
 
 CONTROLS = ("adaptive", "conventional", "accumulating", "exact", "none")
 

@@ -19,8 +19,8 @@ from PySide6.QtCore import QSettings, Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QApplication
 
-from app.theme import apply_theme, load_fonts
-from app.words import use_language
+from app.dress.theme import apply_theme, load_fonts
+from app.wording.words import use_language
 from core import __version__
 from core.errors import UserError
 

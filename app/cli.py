@@ -14,8 +14,8 @@ from pathlib import Path
 import scipy.linalg  # noqa: F401  its BLAS must be there to be held to one thread
 from threadpoolctl import threadpool_limits
 
-from app.cli_parser import command_options, window_options
-from app.settings import dressed, settings_of
+from app.commands.cli_parser import command_options, window_options
+from app.commands.settings import dressed, settings_of
 from core.design import Design, ScanSource, cannot_hold
 from core.errors import UserError
 from core.own_lines import own_line
@@ -119,7 +119,7 @@ def solve(options: argparse.Namespace) -> int:
 
 def limits(options: argparse.Namespace) -> int:
     """Print how short each line can be made before the body strains, folds or turns inside out."""
-    from app.limits import limits_text
+    from app.commands.limits import limits_text
     from core.pipeline import build
     from core.studies.limits import all_limits
 
@@ -132,7 +132,7 @@ def limits(options: argparse.Namespace) -> int:
 
 def sweep(options: argparse.Namespace) -> int:
     """Try every volume control on the sample bodies and the sphere, and write what comes of it."""
-    from app.trials import run_trials
+    from app.commands.trials import run_trials
 
     run_trials(_folder(options.out), options.quick)
     print(f"written to {options.out}")
@@ -141,7 +141,7 @@ def sweep(options: argparse.Namespace) -> int:
 
 def detect(options: argparse.Namespace) -> int:
     """Find the landmarks of a scan and print them."""
-    from app.found import found_text
+    from app.commands.found import found_text
     from core.detect import detection
     from core.pipeline import find, read_body
 
@@ -155,7 +155,7 @@ def detect(options: argparse.Namespace) -> int:
 
 def picture(options: argparse.Namespace) -> int:
     """Render a scan or project to a PNG file with no display."""
-    from app.picture import draw_picture, draw_window
+    from app.commands.picture import draw_picture, draw_window
 
     design = design_of(options.input, options)
     if options.window:
@@ -170,14 +170,14 @@ def picture(options: argparse.Namespace) -> int:
 
 def demo(options: argparse.Namespace) -> int:
     """Do the sample session with no display, and leave pictures, body and report in a folder."""
-    from app.demo import run_demo
+    from app.commands.demo import run_demo
 
     return run_demo(_folder(options.out))
 
 
 def figures(options: argparse.Namespace) -> int:
     """Make the figures of the paper from the sample bodies and a sphere, with a page that judges them."""
-    from app.figures import make_figures, make_some
+    from app.printing.figures import make_figures, make_some
 
     out = _folder(options.out)
     if options.only:
@@ -189,14 +189,14 @@ def figures(options: argparse.Namespace) -> int:
 
 def accuracy(options: argparse.Namespace) -> int:
     """Measure how well a folder of bodies with known answers is understood."""
-    from app.accuracy import run_accuracy
+    from app.commands.accuracy import run_accuracy
 
     return int(run_accuracy(options.folder, options.out, options.json) or SETTLED)
 
 
 def self_test(options: argparse.Namespace) -> int:
     """Check the installed program on the sample, one line a part."""
-    from app.self_test import run_self_test
+    from app.commands.self_test import run_self_test
 
     return run_self_test()
 

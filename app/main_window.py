@@ -7,23 +7,23 @@ from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QStackedWidget, QVBoxLayout, QWidget
 
 from app.actions import Actions
-from app.convergence import Strip
-from app.desk import Desk
-from app.housekeeping import Housekeeping
-from app.line_maker import LineMaker
-from app.notice import NoticeBar
+from app.asking.housekeeping import Housekeeping
+from app.asking.session import Session
+from app.desks.desk import Desk
+from app.desks.line_maker import LineMaker
+from app.desks.recent import fill_recent_menu
+from app.desks.scan_desk import ScanDesk
+from app.dress.parts import hairline
 from app.panels.landmarks import LandmarksPanel
 from app.panels.lines import LinesPanel
 from app.panels.model import ModelDoor, ModelPanel
+from app.panels.notice import NoticeBar
 from app.panels.rail import Rail
 from app.panels.result import ResultPanel
 from app.panels.scan import ScanPanel
 from app.panels.status import StatusBar
 from app.panels.top_bar import TopBar
-from app.parts import hairline
-from app.recent import fill_recent_menu
-from app.scan_desk import ScanDesk
-from app.session import Session
+from app.showing.convergence import Strip
 from app.view_area import ViewArea
 
 NARROW, WIDE = 340, 364

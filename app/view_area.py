@@ -9,15 +9,15 @@ from PySide6.QtCore import QEvent, QObject
 from PySide6.QtGui import QImage, QResizeEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from app.background import Background
-from app.overlay import Pin
+from app.asking.background import Background
+from app.desks.present import band_label, bands
+from app.desks.present_scan import PINNED, kind_of, landmark_title
 from app.panels.busy import BusyCard
 from app.panels.question import QuestionCard
 from app.panels.view_tools import CompareTools, ViewTools
-from app.present import band_label, bands
-from app.present_scan import PINNED, kind_of, landmark_title
-from app.scene_body import bake_occlusion
-from app.viewport import Viewport
+from app.seeing.body import bake_occlusion
+from app.showing.overlay import Pin
+from app.showing.viewport import Viewport
 from core.body import Body
 from core.control_mesh import ControlMesh
 from core.design import Design

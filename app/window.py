@@ -8,9 +8,9 @@ import sys
 from typing import TYPE_CHECKING
 
 from app.application import application, log_kept
-from app.display import has_display
-from app.samples import sample_design
-from app.session import Session
+from app.asking.session import Session
+from app.wording.display import has_display
+from app.wording.samples import sample_design
 from core.design import Design
 from core.errors import UserError
 

@@ -18,7 +18,7 @@ from threadpoolctl import threadpool_limits
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from app.samples import SAMPLES, sample_design
+from app.wording.samples import SAMPLES, sample_design
 from core.design import Design, WornLine
 from core.exact import solve_exact
 from core.own_lines import ready_made

@@ -10,16 +10,16 @@ from tempfile import TemporaryDirectory
 
 from PySide6.QtGui import QImage
 
-from app.display import off_screen
+from app.wording.display import off_screen
 
 off_screen()
 
 from PySide6.QtWidgets import QApplication  # noqa: E402
 
-from app.figures import make_figures  # noqa: E402
+from app.commands.picture import save_window, settled_window, wait_until  # noqa: E402
 from app.main_window import MainWindow  # noqa: E402
-from app.picture import save_window, settled_window, wait_until  # noqa: E402
-from app.samples import sample_design  # noqa: E402
+from app.printing.figures import make_figures  # noqa: E402
+from app.wording.samples import sample_design  # noqa: E402
 from core.design import Design  # noqa: E402
 
 DOCS = Path(__file__).parent.parent / "docs"

@@ -22,23 +22,23 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app import words
-from app.convergence import Exact, Strip, Track
-from app.model_choices import defaults
-from app.notice import NoticeBar
+from app.desks.present_scan import GROUPS, kind_of, landmark_title
+from app.dress.theme import apply_theme, tokens_of
 from app.panels.landmarks import LandmarksPanel, LandmarkView
 from app.panels.lines import LinesPanel, LineView
 from app.panels.model import ModelPanel
+from app.panels.notice import NoticeBar
 from app.panels.rail import Rail
 from app.panels.result import MeasureView, ResultPanel
 from app.panels.scan import ScanPanel, ScanView
 from app.panels.status import StatusBar
 from app.panels.top_bar import TopBar
 from app.panels.view_tools import CompareTools, ViewTools
-from app.present_scan import GROUPS, kind_of, landmark_title
-from app.theme import apply_theme, tokens_of
-from app.tokens import LINE_COLORS
-from app.words import tr
+from app.showing.convergence import Exact, Strip, Track
+from app.wording import words
+from app.wording.model_choices import defaults
+from app.wording.tokens import LINE_COLORS
+from app.wording.words import tr
 
 LINES = (
     ("bust", "Mid-bust line", 0.965, 454.0, 440.9, True, True, 896.0),

@@ -14,8 +14,8 @@ from body_truth import SIDES, KnownBody, known_again, stable_offset, true_girths
 from PIL import Image
 from worn_scans import Standing, axis_orders, ply_bytes
 
-from app.accuracy import run_accuracy
 from app.cli import main
+from app.commands.accuracy import run_accuracy
 from core.accuracy import compared, judged, spreads
 from core.body import read_scan
 from core.detect import detection

@@ -12,14 +12,14 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLabel, QPushButton
 from pytestqt.qtbot import QtBot
 
-from app.convergence import Exact, Strip, Track
-from app.live_plot import Curve, LivePlot, envelope, flips_every_turn, round_ticks
-from app.notice import NoticeBar
+from app.dress.theme import apply_theme, tokens_of
+from app.panels.notice import NoticeBar
 from app.panels.rail import Rail
 from app.panels.status import StatusBar
 from app.panels.view_tools import VIEWS, CompareTools, ViewTools
-from app.theme import apply_theme, tokens_of
-from app.verdict_chip import SHORTEST_SHOW_MS, TONES, VerdictChip
+from app.showing.convergence import Exact, Strip, Track
+from app.showing.live_plot import Curve, LivePlot, envelope, flips_every_turn, round_ticks
+from app.showing.verdict_chip import SHORTEST_SHOW_MS, TONES, VerdictChip
 from core.verdict import STATES
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.camera import STEEPEST, VIEWS, View
-from app.scene import Scene
+from app.seeing.camera import STEEPEST, VIEWS, View
+from app.seeing.scene import Scene
 
 WIDTH, HEIGHT = 450, 300
 

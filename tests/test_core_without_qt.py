@@ -24,8 +24,7 @@ sys.meta_path.insert(0, NoQt())
 """
 CORE = sorted(path for path in (ROOT / "core").rglob("*.py") if path.stem != "__init__")
 QT_FREE = [".".join(path.relative_to(ROOT).with_suffix("").parts) for path in CORE]
-QT_FREE += [f"app.{path.stem}" for path in sorted((ROOT / "app").glob("scene*.py"))] + [
-    "app.camera",
+QT_FREE += [f"app.seeing.{path.stem}" for path in sorted((ROOT / "app" / "seeing").glob("[a-z]*.py"))] + [
     "app.cli",
 ]
 

@@ -13,13 +13,13 @@ import numpy as np
 import pytest
 
 from app.cli import main
-from app.figure_bodies import figure_1
-from app.figure_page import page_of
-from app.figure_search import Pair, pairs_of, search_words
-from app.figure_side import outward, profile
-from app.figure_study import Study, line_share, moved, reached_length
-from app.figure_style import trimmed
-from app.figures import FIGURES, draw, make_some
+from app.printing.bodies import figure_1
+from app.printing.figures import FIGURES, draw, make_some
+from app.printing.page import page_of
+from app.printing.search import Pair, pairs_of, search_words
+from app.printing.side import outward, profile
+from app.printing.study import Study, line_share, moved, reached_length
+from app.printing.style import trimmed
 from core.errors import UserError
 from core.mesh import Mesh
 from core.studies.search import RATIOS, Finding, mirrored_mean, routes
@@ -180,7 +180,9 @@ def test_the_command_draws_what_is_asked(tmp_path: Path, capsys: pytest.CaptureF
 
 
 def test_figures_need_no_window() -> None:
-    code = "import sys, app.figures; sys.exit(any(name.startswith('PySide6') for name in sys.modules))"
+    code = (
+        "import sys, app.printing.figures; sys.exit(any(name.startswith('PySide6') for name in sys.modules))"
+    )
     assert subprocess.run([sys.executable, "-c", code], check=False, capture_output=True).returncode == 0
 
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from window_tools import Script, points, run_main, settled
 
+from app.desks.present import kept_volume
 from app.main_window import MainWindow
-from app.model_choices import consequences, defaults, groups, summary
 from app.panels.setting_field import AmountField, MenuField, SegmentField
-from app.present import kept_volume
+from app.wording.model_choices import consequences, defaults, groups, summary
 from core.design import Design, OwnLine, ScanSource
 from core.live import Frame
 

@@ -10,9 +10,9 @@ from PySide6.QtCore import QPointF
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.camera import View
-from app.overlay import MARGIN, SPACING, Overlay, Pin, spread
-from app.theme import apply_theme
+from app.dress.theme import apply_theme
+from app.seeing.camera import View
+from app.showing.overlay import MARGIN, SPACING, Overlay, Pin, spread
 
 WIDTH, HEIGHT = 500, 300
 

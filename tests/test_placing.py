@@ -13,7 +13,7 @@ import pytest
 import trimesh
 
 from app.cli import main
-from app.words import say, use_language
+from app.wording.words import say, use_language
 from core.design import Design, ScanSource, from_json, to_json
 from core.errors import LandmarkError, ProjectError
 from core.pipeline import Stages, build, find

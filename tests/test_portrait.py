@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.portrait import portrait
-from app.scene import Scene
-from app.ways import pictures, ways
+from app.seeing.portrait import portrait
+from app.seeing.scene import Scene
+from app.seeing.ways import pictures, ways
 from core.body import read_scan
 from core.mesh import Mesh
 from core.standing.upright import Pose

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.camera import VIEWS
-from app.scene import Scene
-from app.scene_bands import Band, Surface, build_casing, build_ribbon
-from app.scene_body import Sight, split_plates
-from app.scene_stage import LOOKS, rgb
+from app.seeing.bands import Band, Surface, build_casing, build_ribbon
+from app.seeing.body import Sight, split_plates
+from app.seeing.camera import VIEWS
+from app.seeing.scene import Scene
+from app.seeing.stage import LOOKS, rgb
 from core.mesh import Mesh
 
 ROOT = Path(__file__).parents[1]
@@ -83,7 +83,7 @@ def distance_to(mesh: Mesh, points: np.ndarray) -> np.ndarray:
 
 
 def test_the_scene_needs_no_qt() -> None:
-    code = "import sys, app.scene; sys.exit(any('PySide' in m or 'qtpy' in m for m in sys.modules))"
+    code = "import sys, app.seeing.scene; sys.exit(any('PySide' in m or 'qtpy' in m for m in sys.modules))"
     assert subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=False).returncode == 0
 
 

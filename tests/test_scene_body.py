@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.scene_body import bake_occlusion, clay_colours, plate_faces, split_plates
-from app.scene_stage import LOOKS, rgb
+from app.seeing.body import bake_occlusion, clay_colours, plate_faces, split_plates
+from app.seeing.stage import LOOKS, rgb
 from core.mesh import Mesh
 
 SAMPLES = Path(__file__).parents[1] / "resources" / "samples"

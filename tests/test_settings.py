@@ -6,7 +6,7 @@ from dataclasses import fields, replace
 
 import pytest
 
-from app.settings import NUMBERS, SWITCHES, WORDS, settings_of
+from app.commands.settings import NUMBERS, SWITCHES, WORDS, settings_of
 from core.design import Design, ScanSource
 
 

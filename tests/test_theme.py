@@ -12,10 +12,10 @@ import pytest
 from PySide6.QtGui import QFontInfo
 from PySide6.QtWidgets import QApplication, QWidget
 
-from app.icons import SCALES, icon, pixmap
-from app.parts import ToolButton
-from app.theme import ROLES, apply_theme, font, label, load_fonts, tokens_of
-from app.tokens import DARK, LIGHT, LINE_COLORS, Tokens
+from app.dress.icons import SCALES, icon, pixmap
+from app.dress.parts import ToolButton
+from app.dress.theme import ROLES, apply_theme, font, label, load_fonts, tokens_of
+from app.wording.tokens import DARK, LIGHT, LINE_COLORS, Tokens
 
 ICONS = Path(__file__).parent.parent / "resources" / "icons"
 

@@ -8,8 +8,8 @@ import pytest
 from shapes import torso
 
 from app.cli import main
-from app.samples import SAMPLES
-from app.trials import LENGTHS, STIFFNESSES
+from app.commands.trials import LENGTHS, STIFFNESSES
+from app.wording.samples import SAMPLES
 from core.mechanics import LAWS, Mechanics
 from core.studies.sphere import sphere_control
 from core.studies.trial import CONTROLS, TURNS, Subject, _stays_below, trials

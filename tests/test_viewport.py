@@ -15,11 +15,11 @@ from PySide6.QtGui import QGuiApplication, QImage, QMouseEvent, QWheelEvent
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.overlay import Pin
-from app.pointer import NOTCH, TURN
-from app.scene_bands import Band
-from app.theme import apply_theme
-from app.viewport import Viewport
+from app.dress.theme import apply_theme
+from app.seeing.bands import Band
+from app.showing.overlay import Pin
+from app.showing.pointer import NOTCH, TURN
+from app.showing.viewport import Viewport
 from core.mesh import Mesh
 
 Button, Keys, XY = Qt.MouseButton, Qt.KeyboardModifier, tuple[float, float]

@@ -13,12 +13,12 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLabel, QPushButton
 from pytestqt.qtbot import QtBot
 
+from app.dress.theme import apply_theme
 from app.panels.length_slider import LengthSlider
 from app.panels.line_row import LineView
 from app.panels.lines import LinesPanel
 from app.panels.number_field import parse_length
-from app.theme import apply_theme
-from app.words import use_language
+from app.wording.words import use_language
 
 WAIST = LineView("waist", "Waist", "#7A1F2E", 1.0, 400.0, 396.0, True, True, 700.0)
 RIBS = LineView("under-bust", "Under-bust", "#5A3F94", 1.0, 390.0, None, False, True, 745.0)

@@ -11,8 +11,8 @@ from PySide6.QtGui import QColor, QImage
 from PySide6.QtTest import QTest
 from window_tools import Script, drag, points, run_main, settled
 
-from app.camera import VIEWS
 from app.main_window import MainWindow
+from app.seeing.camera import VIEWS
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

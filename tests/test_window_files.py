@@ -13,7 +13,7 @@ from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication, QMessageBox
 from window_tools import Script, drag, points, run_main, settled
 
-import app.desk
+import app.desks.desk
 from app.main_window import MainWindow
 from core.project import open_project
 
@@ -22,7 +22,7 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 
 def test_a_project_is_saved_and_reopened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "customer 0412.busk"
-    monkeypatch.setattr(app.desk, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(path))
     seen = []
 
     def first(window: MainWindow) -> Script:
@@ -55,7 +55,7 @@ def test_the_shown_body_is_exported(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         yield settled(window)
         for ending in ("ply", "obj", "stl"):
             path = tmp_path / f"body.{ending}"
-            monkeypatch.setattr(app.desk, "ask_save", lambda *_, path=path: str(path))
+            monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_, path=path: str(path))
             window.actions_.export.trigger()
             body = trimesh.load(path, process=False)
             assert len(body.faces) == 65742
@@ -91,8 +91,8 @@ def test_a_bad_scan_leaves_everything_as_it_was(tmp_path: Path) -> None:
 @pytest.mark.parametrize("last", ["discard", "save"])
 def test_closing_asks_about_changes(last: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path, answers = tmp_path / "kept.busk", ["stay", last]
-    monkeypatch.setattr(app.desk, "ask_about_changes", lambda *_: answers.pop(0))
-    monkeypatch.setattr(app.desk, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(app.desks.desk, "ask_about_changes", lambda *_: answers.pop(0))
+    monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(path))
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
@@ -115,7 +115,7 @@ def test_the_question_offers_three_ways(qapp: QApplication, monkeypatch: pytest.
     monkeypatch.setattr(
         QMessageBox, "exec", lambda box: given.append(box.text()) or QMessageBox.StandardButton.Cancel.value
     )
-    assert app.desk.ask_about_changes(None, "Customer 0412") == "stay"
+    assert app.desks.desk.ask_about_changes(None, "Customer 0412") == "stay"
     assert "Customer 0412" in given[0]
 
 

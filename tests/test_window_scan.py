@@ -13,7 +13,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from window_tools import Script, drag, run_main, settled
 
-import app.desk
+import app.desks.desk
 import core.body
 import core.pipeline
 from app.main_window import MainWindow
@@ -157,7 +157,7 @@ def test_a_cancelled_edit_of_the_scan_leaves_no_trace(monkeypatch: pytest.Monkey
 
 def test_a_dragged_pin_is_a_correction_that_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "corrected.busk"
-    monkeypatch.setattr(app.desk, "ask_save", lambda *_: str(path))
+    monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(path))
     kept: list[Any] = []
 
     def first(window: MainWindow) -> Script:

@@ -15,14 +15,14 @@ from test_window_scan import doubtful, pull
 from trimesh.creation import box
 from window_tools import Script, run_main, settled
 
-import app.desk
-import app.scan_desk
-import app.ways
+import app.desks.desk
+import app.desks.scan_desk
+import app.seeing.ways
 import core.body
 import core.pipeline
+from app.commands.picture import draw_window
+from app.dress.parts import ToolButton
 from app.main_window import MainWindow
-from app.parts import ToolButton
-from app.picture import draw_window
 from core.body import Body
 from core.design import Design, ScanSource
 from core.errors import LandmarkError, ScanError
@@ -130,8 +130,8 @@ def test_a_scan_that_only_asks_leaves_the_open_one_alone(
     person: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     asked: list[str] = []
-    monkeypatch.setattr(app.desk, "ask_about_changes", lambda _, name: asked.append(name) or "cancel")
-    monkeypatch.setattr(app.ways, "portrait", unpainted)
+    monkeypatch.setattr(app.desks.desk, "ask_about_changes", lambda _, name: asked.append(name) or "cancel")
+    monkeypatch.setattr(app.seeing.ways, "portrait", unpainted)
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
@@ -161,7 +161,7 @@ def test_a_scan_whose_question_is_left_is_shown_and_can_be_told(
     mannequin: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(core.body, "find_pose", doubtful(180.0))
-    monkeypatch.setattr(app.ways, "portrait", unpainted)
+    monkeypatch.setattr(app.seeing.ways, "portrait", unpainted)
 
     def script(window: MainWindow) -> Script:
         yield window.view.question.isVisible
@@ -286,7 +286,7 @@ def test_pictures_that_cannot_be_painted_leave_no_question(
         raise RuntimeError("no paint")
 
     monkeypatch.setattr(core.body, "find_pose", doubtful(0.0))
-    monkeypatch.setattr(app.scan_desk, "pictures", fail)
+    monkeypatch.setattr(app.desks.scan_desk, "pictures", fail)
 
     def script(window: MainWindow) -> Script:
         yield settled(window)

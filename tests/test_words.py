@@ -11,7 +11,7 @@ import pytest
 from PySide6.QtGui import QRawFont
 from PySide6.QtWidgets import QApplication
 
-from app.words import LANGUAGES, number, read_words, say, tr, use_language
+from app.wording.words import LANGUAGES, number, read_words, say, tr, use_language
 
 ROOT = Path(__file__).parent.parent
 TRANSLATIONS = [code for code in LANGUAGES if code != "en"]

@@ -5,10 +5,10 @@ from __future__ import annotations
 from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
+from app.dress.parts import FloatingPanel, button
+from app.dress.theme import label
 from app.panels.status import ProgressBar
-from app.parts import FloatingPanel, button
-from app.theme import label
-from app.words import tr
+from app.wording.words import tr
 
 PATIENCE = 500
 """Milliseconds of work before it is worth a card."""

@@ -19,9 +19,9 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.parts import Disclosure, EmptyState, button, hairline, paint_card, sentence
-from app.theme import font, label, set_tag, tokens_of, tone_of
-from app.words import say, tr
+from app.dress.parts import Disclosure, EmptyState, button, hairline, paint_card, sentence
+from app.dress.theme import font, label, set_tag, tokens_of, tone_of
+from app.wording.words import say, tr
 
 
 @dataclass(frozen=True)

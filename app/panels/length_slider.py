@@ -7,8 +7,8 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QPolygonF, QWheelEvent
 from PySide6.QtWidgets import QAbstractSlider, QSizePolicy, QWidget
 
-from app.theme import tokens_of
-from app.tokens import LINE_COLORS
+from app.dress.theme import tokens_of
+from app.wording.tokens import LINE_COLORS
 
 SHORTEST, LONGEST = 0.80, 1.12
 """Range of a line's length as a share of its length at rest [1]."""

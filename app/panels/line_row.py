@@ -9,11 +9,11 @@ from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QEnterEvent, QMouseEvent, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
+from app.dress.parts import ToolButton, hairline, sentence
+from app.dress.theme import font, label, set_tag, tokens_of
 from app.panels.length_slider import LengthSlider
 from app.panels.number_field import NumberField
-from app.parts import ToolButton, hairline, sentence
-from app.theme import font, label, set_tag, tokens_of
-from app.words import number, tr
+from app.wording.words import number, tr
 
 _OFF = 5e-6  # a set length nearer to the rest length than this means that the line is not worn
 _GAP_SEEN, _GAP_LARGE = 0.005, 0.02  # shares of the set length above which a gap is amber, red

@@ -9,10 +9,10 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
+from app.dress.parts import EmptyState, ToolButton
+from app.dress.theme import label
 from app.panels.line_row import LineRow, LineView
-from app.parts import EmptyState, ToolButton
-from app.theme import label
-from app.words import tr
+from app.wording.words import tr
 
 __all__ = ["LineView", "LinesPanel"]
 

@@ -10,12 +10,12 @@ from PySide6.QtCore import QEvent, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QEnterEvent, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QAbstractButton, QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
-from app.icons import paint_icon
-from app.model_choices import Setting, consequences, defaults, groups, summary
+from app.dress.icons import paint_icon
+from app.dress.parts import ToolButton, button, hairline, sentence
+from app.dress.theme import font, label, set_tag, tokens_of
 from app.panels.setting_field import AmountField, Field, field_of
-from app.parts import ToolButton, button, hairline, sentence
-from app.theme import font, label, set_tag, tokens_of
-from app.words import number, tr
+from app.wording.model_choices import Setting, consequences, defaults, groups, summary
+from app.wording.words import number, tr
 
 DOOR_HEIGHT = 52
 """Height of the foot of the inspector, where the way to the settings is [px]."""

@@ -7,8 +7,8 @@ from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QFocusEvent, QKeyEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QLineEdit
 
-from app.theme import font, set_tag, tokens_of
-from app.words import number, tr
+from app.dress.theme import font, set_tag, tokens_of
+from app.wording.words import number, tr
 from core.lines import RATIO_LIMITS, typed_ratio
 
 _FOCUS = Qt.FocusReason

@@ -10,9 +10,9 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QImage, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QAbstractButton, QHBoxLayout, QVBoxLayout, QWidget
 
-from app.parts import FloatingPanel, ToolButton, sentence
-from app.theme import font, label, tokens_of
-from app.words import tr
+from app.dress.parts import FloatingPanel, ToolButton, sentence
+from app.dress.theme import font, label, tokens_of
+from app.wording.words import tr
 
 PICTURE = (132, 168)
 """Width and height of a picture [px]."""

@@ -7,10 +7,10 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QKeySequence, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QAbstractButton, QButtonGroup, QVBoxLayout, QWidget
 
-from app.icons import paint_icon
-from app.parts import paint_card
-from app.theme import font, tokens_of
-from app.words import tr
+from app.dress.icons import paint_icon
+from app.dress.parts import paint_card
+from app.dress.theme import font, tokens_of
+from app.wording.words import tr
 
 STEP_ICONS = {"scan": "scan", "landmarks": "map-pin", "lines": "lines", "result": "result"}
 """The steps in order, with their drawings."""

@@ -11,9 +11,9 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QFrame, QScrollArea, QVBoxLayout, QWidget
 
-from app.parts import EmptyState, sentence
-from app.theme import font, label, tokens_of
-from app.words import number, tr
+from app.dress.parts import EmptyState, sentence
+from app.dress.theme import font, label, tokens_of
+from app.wording.words import number, tr
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,10 @@ from html import escape
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QScrollArea, QVBoxLayout, QWidget
 
-from app.parts import EmptyState, Segment, button, hairline, sentence
-from app.scan_formats import KINDS
-from app.theme import label, set_tag
-from app.words import number, say, tr
+from app.dress.parts import EmptyState, Segment, button, hairline, sentence
+from app.dress.theme import label, set_tag
+from app.wording.scan_formats import KINDS
+from app.wording.words import number, say, tr
 
 UNITS = ("mm", "cm", "m", "inch")
 """Units that a scan can be in."""

@@ -10,11 +10,11 @@ from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QAction, QActionGroup, QColor, QKeyEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QMenu, QPushButton, QSizePolicy, QWidget
 
-from app.icons import paint_icon
-from app.model_choices import Amount, Choice, Setting
-from app.parts import Segment
-from app.theme import font, tokens_of
-from app.words import number
+from app.dress.icons import paint_icon
+from app.dress.parts import Segment
+from app.dress.theme import font, tokens_of
+from app.wording.model_choices import Amount, Choice, Setting
+from app.wording.words import number
 
 
 class Field(QWidget):

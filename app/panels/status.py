@@ -9,8 +9,8 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
-from app.theme import label, tokens_of
-from app.words import number, tr
+from app.dress.theme import label, tokens_of
+from app.wording.words import number, tr
 
 
 class StatusBar(QWidget):

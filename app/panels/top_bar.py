@@ -7,9 +7,9 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QAction, QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLayout, QMenuBar, QWidget
 
-from app.parts import ToolButton, button
-from app.theme import label, tokens_of
-from app.words import tr
+from app.dress.parts import ToolButton, button
+from app.dress.theme import label, tokens_of
+from app.wording.words import tr
 
 
 class TopBar(QWidget):

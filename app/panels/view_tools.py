@@ -6,8 +6,8 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QWidget
 
-from app.parts import FloatingPanel, Segment, ToolButton, hairline
-from app.words import tr
+from app.dress.parts import FloatingPanel, Segment, ToolButton, hairline
+from app.wording.words import tr
 
 VIEWS = ("front", "left", "right", "back", "three-quarter", "top")
 

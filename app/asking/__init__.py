@@ -1,0 +1,1 @@
+"""Asking: the session, which alone changes the document, and what works behind it."""

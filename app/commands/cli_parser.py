@@ -1,0 +1,144 @@
+"""The words that the command line takes, and the help that it gives."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Sequence
+from typing import NoReturn
+
+from app.commands.settings import help_text
+from app.wording.scan_formats import KINDS, PACKED
+from core import __version__
+from core.errors import UserError
+from core.own_lines import HELP as LINE_HELP
+from core.placing import HELP as LANDMARK_HELP
+from core.standing.upright import MILLIMETRES
+from core.volume import CONTROLS
+
+COMMANDS = {
+    "solve": "solve a design and write body, control mesh, turns and report",
+    "limits": "tell how short each line can be made",
+    "detect": "find the landmarks of a scan",
+    "picture": "render a scan or project to a PNG file",
+    "demo": "do the sample session off-screen and write what comes out",
+    "figures": "make the figures of the paper again, with their tables and a page",
+    "sweep": "try every volume control on the samples and the sphere, with a table",
+    "accuracy": "measure how well landmarks and girths are found, on a folder of bodies with known answers",
+    "self-test": "check this installation",
+}
+"""Every command with what it does, in a few words."""
+
+_OF_A_SCAN = ("solve", "limits", "detect", "picture")
+
+_AXIS = "like {axis}, or a direction x,y,z of the file for a body that stands askew"
+
+
+def command_options(command: str, words: Sequence[str]) -> argparse.Namespace:
+    """Read the words after a command. Raises UserError."""
+    return _parser(command).parse_args(_joined(words))
+
+
+def window_options(words: Sequence[str]) -> argparse.Namespace:
+    """Read the words where there is no command. Raises UserError."""
+    return _window_parser().parse_args(words)
+
+
+def _joined(words: Sequence[str]) -> list[str]:
+    """Join an axis to its option: in '--front -y' the parser takes -y for another option."""
+    joined: list[str] = []
+    for word in words:
+        if joined and joined[-1] in ("--up", "--front"):
+            joined[-1] = f"{joined[-1]}={word}"
+        else:
+            joined.append(word)
+    return joined
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong with the words of a command as all other bad input is said."""
+
+    def error(self, message: str) -> NoReturn:
+        raise UserError(f"{message[:1].upper()}{message[1:]}.", f"See '{self.prog} --help'.")
+
+
+def _window_parser() -> argparse.ArgumentParser:
+    commands = "\n".join(f"  busk {name:10} {help_}" for name, help_ in COMMANDS.items())
+    parser = _Parser(
+        prog="busk",
+        description="See how a foundation garment reshapes a body.",
+        epilog=f"without a window:\n{commands}\n\n'busk COMMAND --help' tells more.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("file", nargs="?", metavar="FILE", help="a project (.busk) or a scan to open")
+    parser.add_argument("--version", action="version", version=f"busk {__version__}")
+    return parser
+
+
+def _parser(command: str) -> argparse.ArgumentParser:
+    parser = _Parser(prog=f"busk {command}", description=COMMANDS[command])
+    if command in _OF_A_SCAN:
+        _add_scan(parser)
+    if command in ("solve", "limits", "picture"):
+        parser.add_argument("--settings", action="append", metavar="KEY=VALUE", help=help_text())
+        parser.add_argument("--path", action="append", metavar="NAME=POINTS", help=LINE_HELP)
+    if command in ("solve", "limits"):
+        parser.add_argument(
+            "--line",
+            action="append",
+            metavar="NAME=LENGTH",
+            help="97%% of the rest length, -20mm shorter, 400mm absolute; of the front part, side to side",
+        )
+    if command == "solve":
+        parser.add_argument("--volume", choices=CONTROLS)
+        parser.add_argument(
+            "--turns", type=_turns, metavar="N", help="exactly N turns; else until settled, at most 300"
+        )
+    if command == "accuracy":
+        parser.add_argument("folder", metavar="DIR", help="scans with a truth.json beside them")
+    if command in ("limits", "detect", "accuracy"):
+        parser.add_argument("--json", action="store_true", help="print JSON")
+    if command == "picture":
+        parser.add_argument(
+            "--view", default="three-quarter", help="front, left, right, back, three-quarter, top, side"
+        )
+        parser.add_argument("--window", action="store_true", help="the whole window, not just the body")
+        parser.add_argument("--dark", action="store_true")
+        parser.add_argument("--language", choices=("en", "ja"), default="en")
+        parser.add_argument("--size", type=_size, default=(1600, 1000), metavar="WIDTHxHEIGHT")
+    if command == "sweep":
+        parser.add_argument("--quick", action="store_true", help="a few cases only")
+    if command == "figures":
+        parser.add_argument("--only", action="append", metavar="N", help="this figure alone; may be repeated")
+    if command in ("solve", "picture", "demo", "figures", "sweep", "accuracy"):
+        needed = command not in ("demo", "accuracy")
+        default = None if command == "accuracy" else "out"
+        parser.add_argument("--out", required=needed, default=default, metavar="PLACE")
+    return parser
+
+
+def _add_scan(parser: argparse.ArgumentParser) -> None:
+    """Add a scan and all that can be said about it."""
+    kinds = f"a scan ({KINDS}, each also packed as {PACKED}) or a project (.busk)"
+    parser.add_argument("input", metavar="SCAN_OR_PROJECT", help=kinds)
+    parser.add_argument(
+        "--unit", type=str.lower, choices=tuple(MILLIMETRES), help="the scan's unit, if not guessed well"
+    )
+    parser.add_argument("--up", metavar="AXIS", help=f"what points up in the scan: {_AXIS.format(axis='+z')}")
+    parser.add_argument(
+        "--front", metavar="AXIS", help=f"where the body faces in the scan: {_AXIS.format(axis='-y')}"
+    )
+    parser.add_argument("--landmark", action="append", metavar="NAME=x,y,z", help=LANDMARK_HELP)
+
+
+def _turns(text: str) -> int:
+    if not (text.isdecimal() and 1 <= int(text) <= 100_000):
+        raise argparse.ArgumentTypeError(f"'{text}' is no number of turns from 1 to 100000")
+    return int(text)
+
+
+def _size(text: str) -> tuple[int, int]:
+    match = re.fullmatch(r"([1-9]\d{1,3})x([1-9]\d{1,3})", text)
+    if match is None:
+        raise argparse.ArgumentTypeError(f"'{text}' is no size like 1600x1000")
+    return int(match[1]), int(match[2])

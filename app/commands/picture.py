@@ -1,0 +1,149 @@
+"""Pictures with no display: the body from one side, or the whole window."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.wording.display import off_screen
+from core.design import Design
+from core.errors import UserError
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+    from app.seeing.scene import Scene
+    from core.solution import Solution
+
+_PATIENCE = 120.0
+
+
+def draw_picture(
+    design: Design,
+    out: Path,
+    *,
+    view: str = "three-quarter",
+    dark: bool = False,
+    size: tuple[int, int] = (1600, 1000),
+) -> None:
+    """Write a PNG of the reshaped body from one side. Raises UserError."""
+    _check_name(out)
+    off_screen()
+    import pyvista as pv
+
+    from app.seeing.camera import VIEWS
+    from app.seeing.scene import Scene
+    from core.pipeline import build
+    from core.solution import run
+
+    side = {"side": "left"}.get(view, view)
+    if side not in VIEWS:
+        raise UserError(f"There is no view '{view}'.", f"Choose one of: {', '.join(VIEWS)}, side.")
+    solution = run(build(design))
+    plotter = pv.Plotter(off_screen=True, window_size=list(size), lighting="none")
+    try:
+        scene = Scene(plotter, dark)
+        _set_up(scene, solution)
+        scene.set_view(side)
+        scene.frame_bust()
+        plotter.enable_anti_aliasing("ssaa")
+        plotter.screenshot(str(out))
+    except OSError as problem:
+        raise UserError(f"{out} cannot be written.", "Choose another folder.") from problem
+    finally:
+        plotter.close()
+
+
+def _set_up(scene: Scene, solution: Solution) -> None:
+    """Put the reshaped body of a solution with its lines into a scene."""
+    from app.desks.present import bands
+    from app.seeing.body import bake_occlusion
+
+    stages = solution.stages
+    scene.show_body(stages.body.mesh)
+    scene.set_occlusion(bake_occlusion(stages.body.mesh))
+    scene.show_control_mesh(stages.control.mesh, stages.control.fixed)
+    scene.show_bands(bands(stages.model.lines, stages.control.mesh.vertices, ()))
+    scene.move_body(stages.moving.vertices, *stages.shape(solution.control_points))
+
+
+def draw_window(
+    design: Design,
+    out: Path,
+    *,
+    dark: bool = False,
+    language: str = "en",
+    size: tuple[int, int] = (1600, 1000),
+) -> None:
+    """Write a PNG of the whole window on a settled design. Raises UserError, that of a stuck scan too."""
+    _check_name(out)
+    with settled_window(design, dark=dark, language=language, size=size) as window:
+        save_window(window, out)
+        if window.scan_desk.stuck is not None:
+            raise window.scan_desk.stuck
+
+
+@contextmanager
+def settled_window(
+    design: Design, *, dark: bool = False, language: str = "en", size: tuple[int, int] = (1600, 1000)
+) -> Iterator[MainWindow]:
+    """Give a window on a design that is solved to the end and fully drawn; it is closed afterwards.
+
+    A scan that cannot go on is shown as far as it came, and stays in ``window.scan_desk.stuck``.
+    """
+    off_screen()
+    from app.application import application
+    from app.window import open_window
+
+    app = application(language=language, dark=dark)
+    window = open_window(design)
+    failures: list[Exception] = []
+    window.session.failed.connect(failures.append)
+    window.view.viewport.motion = False
+    window.resize(*size)
+    window.show()
+
+    def ready() -> bool:
+        view = window.view
+        stuck = window.scan_desk.stuck is not None and (view.is_shaded or view.question.isVisible())
+        return bool(failures) or stuck or (window.is_settled() and view.is_shaded)
+
+    try:
+        wait_until(ready, app.processEvents)
+        if failures:
+            raise failures[0]
+        yield window
+    finally:
+        window.session.undo_stack.setClean()
+        window.close()
+
+
+def save_window(window: MainWindow, out: Path) -> None:
+    """Write a PNG of a window as it stands. Raises UserError."""
+    from PySide6.QtWidgets import QApplication
+
+    window.desk.plot_now()
+    # The view smooths its outlines once it has been still for a while.
+    still = time.monotonic() + 0.6
+    wait_until(lambda: time.monotonic() > still, QApplication.processEvents)
+    if not window.grab().save(str(out)):
+        raise UserError(f"{out} cannot be written.", "Choose another folder.")
+
+
+def _check_name(out: Path) -> None:
+    if out.suffix.lower() != ".png":
+        raise UserError(f"'{out}' is no name for a picture.", "Choose one that ends in .png.")
+    if not out.absolute().parent.is_dir():
+        raise UserError(f"There is no folder {out.absolute().parent}.", "Make it, or choose another one.")
+
+
+def wait_until(ready: Callable[[], bool], turn: Callable[[], None]) -> None:
+    """Let events pass until ``ready``. Raises UserError if that takes too long."""
+    patience = time.monotonic() + _PATIENCE
+    while not ready():
+        if time.monotonic() > patience:
+            raise UserError("Busk has waited too long for its own answer.", "Try again, or report this.")
+        turn()
+        time.sleep(0.005)

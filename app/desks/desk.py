@@ -1,0 +1,276 @@
+"""The desk: what the window does when the session speaks or the user asks for a file."""
+
+from __future__ import annotations
+
+import logging
+import time
+import traceback
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QBuffer, QIODevice, QObject, QSettings, QTimer
+from PySide6.QtGui import QGuiApplication, QImage
+from PySide6.QtWidgets import QApplication
+
+from app.application import chosen_dark
+from app.desks.dialogs import about_busk, ask_about_changes, ask_open, ask_save
+from app.desks.present import (
+    exact_answer,
+    facts,
+    kept_volume,
+    line_title,
+    line_views,
+    measure_views,
+    strip_verdict,
+    tracks,
+)
+from app.desks.recent import remember_file
+from app.dress.theme import apply_theme
+from app.wording.samples import sample_design
+from app.wording.words import tr
+from core.design import Design
+from core.errors import UserError
+from core.live import Frame
+from core.report import warnings
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+
+PLOT_INTERVAL = 200
+"""Milliseconds between two pictures of the live plot: it costs more than the figures beside it."""
+
+STEPS = ("scan", "landmarks", "lines", "result")
+
+
+class Desk(QObject):
+    """Brings answers of the session to the parts of the window, and requests with a dialog to the session."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._session = window.session
+        self._frame: Frame | None = None
+        self._fell_back_to: Design | None = None
+        self._plotted: Frame | None = None
+        self._asked = ""
+        self._plot_due = 0.0
+        self._plot_clock = QTimer(self, interval=PLOT_INTERVAL, singleShot=True)
+        self._plot_clock.timeout.connect(self.plot_now)
+        settings = QSettings()
+        themes, languages = window.actions_.themes, window.actions_.languages
+        themes.get(str(settings.value("theme")), themes["system"]).setChecked(True)
+        languages.get(str(settings.value("language")), languages["en"]).setChecked(True)
+        window.actions_.strip.setChecked(True)
+        self.go_to("lines")
+        self.show_title()
+
+    # -- the session speaks
+
+    def show_opened(self, frame: Frame) -> None:
+        """Show a document that has just been opened."""
+        window = self._window
+        if self._asked:
+            remember_file(self._asked)
+            self._asked = ""
+        window.actions_.enable_document()
+        window.notices.clear()
+        self.show_title()
+        self.select_line(window.view.selected_line)
+        window.view.viewport.setFocus()
+        window.scan_desk.show_opened(frame.stages)
+        for sentence in warnings(frame.stages):
+            window.notices.show_notice("warn", sentence, lasting=True)
+
+    def show_frame(self, frame: Frame) -> None:
+        """Show how far the solver has come."""
+        design = frame.stages.design
+        if not frame.at_work and self._fell_back_to not in (None, design) and design is self._session.design:
+            # What was decided since is solved: a refusal from before speaks of no design any more.
+            self._fell_back_to = None
+            self._window.notices.withdraw("bad")
+        if self._frame is None or frame.stages.landmarks is not self._frame.stages.landmarks:
+            self._window.scan_desk.show_found(frame.stages)
+        self._frame = frame
+        self._window.model.set_gain(frame.stages.gain, frame.stages.gain_limit)
+        self._window.view.show_frame(frame, design)
+        self._window.lines.set_lines(line_views(design, frame, self._window.view.hidden_lines))
+        self._window.status.set_volume(*kept_volume(frame))
+        self._window.status.set_facts(facts(frame))
+        # Drawn together with the body while frames come, else a moment after the last one.
+        if time.monotonic() >= self._plot_due:
+            self.plot_now()
+        elif not self._plot_clock.isActive():
+            self._plot_clock.start()
+
+    def show_design(self, design: Design) -> None:
+        """Show what was decided."""
+        do = self._window.actions_
+        do.controls[design.volume].setChecked(True)
+        do.templates[design.template].setChecked(True)
+        self._window.strip.set_control(design.volume)
+        self._window.model.set_values(vars(design))
+        self._window.door.set_values(vars(design))
+        self.show_title()
+
+    def show_failure(self, error: Exception) -> None:
+        """Say what went wrong; what is on the screen stays."""
+        self._fell_back_to, notices = self._session.design, self._window.notices
+        if isinstance(error, UserError):
+            # What was refused before was asked for before: the last refusal is the one that counts.
+            notices.withdraw("bad")
+            notices.show_notice("bad", error.message, error.hint, lasting=True)
+            if self._frame is not None:
+                self._window.scan_desk.show_found(self._frame.stages)
+            return
+        logging.error("unexpected fault\n%s", "".join(traceback.format_exception(error)))
+        said = tr("Something went wrong inside Busk."), tr("Your design is kept. The log tells more.")
+        notices.show_notice("bad", *said, lasting=True)
+
+    def show_saved(self, path: str) -> None:
+        """Say when the project was saved."""
+        remember_file(path)
+        self._window.status.set_saved(tr("Saved {time}").format(time=time.strftime("%H:%M")))
+        self.show_title()
+
+    def show_title(self) -> None:
+        """Show the document's name, with a mark while it is unsaved."""
+        unsaved = not self._session.undo_stack.isClean()
+        name = self._session.name
+        self._window.top.set_title(name, unsaved)
+        self._window.setWindowTitle(f"{name}{'*' if unsaved else ''} - Busk" if name else "Busk")
+
+    # -- the user asks
+
+    def go_to(self, step: str) -> None:
+        """Show a step: scan and landmarks on the body at rest, lines and result on the reshaped one."""
+        self._window.rail.set_current(step)
+        self._window.inspector.setCurrentIndex(STEPS.index(step))
+        view, worn = self._window.view, step in ("lines", "result")
+        view.set_after(worn)
+        view.set_layer("bands", worn)
+        view.set_layer("landmarks", step == "landmarks")
+
+    def show_model(self) -> None:
+        """Show how the model works in the place of the lines; what it does is seen beside it."""
+        self.go_to("lines")
+        self._window.inspector.setCurrentWidget(self._window.model)
+
+    def select_line(self, name: str) -> None:
+        """Select a line in the list and on the body."""
+        self._window.lines.select(name)
+        self._window.view.select_line(name)
+
+    def select_landmark(self, name: str) -> None:
+        """Select a landmark in the list and on the body."""
+        self._window.landmarks.select(name)
+        self._window.view.select_landmark(name)
+
+    def set_line_visible(self, name: str, visible: bool) -> None:
+        """Show or hide a line's band."""
+        self._window.view.set_line_visible(name, visible)
+        if self._frame is not None:
+            self.show_frame(self._frame)
+
+    def commit_line(self, name: str, ratio: float) -> None:
+        """Set a line's length."""
+        self._session.commit_line(name, line_title(name), ratio)
+
+    def open(self) -> None:
+        """Ask for a file and open it."""
+        self.open_file(ask_open(self._window))
+
+    def open_file(self, path: str) -> None:
+        """Open a project or a scan."""
+        if path and self.may_leave():
+            self._asked = path
+            self._session.open(path)
+
+    def open_sample(self, name: str) -> None:
+        """Open one of the sample bodies."""
+        if self.may_leave():
+            self._asked = ""
+            self._session.open_design(sample_design(name))
+
+    def save(self) -> bool:
+        """Save the project, asking for a place the first time; returns whether it is saved."""
+        path = self._session.path
+        return self.save_as() if path is None else self._session.save(str(path), self._preview())
+
+    def save_as(self) -> bool:
+        """Ask for a place and save the project there."""
+        kinds = f"{tr('Projects')} (*.busk)"
+        path = ask_save(self._window, tr("Save as"), f"{self._session.name}.busk", kinds, ".busk")
+        return bool(path) and self._session.save(path, self._preview())
+
+    def export(self) -> None:
+        """Ask for a place and write the body as it is shown."""
+        kinds = "PLY (*.ply);;OBJ (*.obj);;STL (*.stl)"
+        path = ask_save(self._window, tr("Export body"), f"{self._session.name}-busk.ply", kinds, ".ply")
+        if path and self._session.export_body(path):
+            self._window.notices.show_notice("ok", tr("Body written to {name}.").format(name=Path(path).name))
+
+    def save_picture(self) -> None:
+        """Ask for a place and write what the view shows."""
+        path = ask_save(
+            self._window, tr("Save a picture"), f"{self._session.name}.png", "PNG (*.png)", ".png"
+        )
+        if path and not self._window.view.picture().save(path):
+            self.show_failure(
+                UserError(tr("The picture cannot be written there."), tr("Choose another folder."))
+            )
+
+    def choose_theme(self, theme: str) -> None:
+        """Dress the window in another theme, now and next time."""
+        QSettings().setValue("theme", theme)
+        app = QGuiApplication.instance()
+        if isinstance(app, QApplication):
+            apply_theme(app, chosen_dark(theme))
+
+    def choose_language(self, language: str) -> None:
+        """Remember the language; widgets keep the words that they were built with."""
+        QSettings().setValue("language", language)
+        self._window.notices.show_notice("info", tr("The language changes when Busk is started again."))
+
+    def about(self) -> None:
+        """Say what Busk is."""
+        about_busk(self._window)
+
+    def may_leave(self) -> bool:
+        """Ask about unsaved changes; returns whether the document may be left."""
+        if self._session.undo_stack.isClean():
+            return True
+        answer = ask_about_changes(self._window, self._session.name)
+        return self.save() if answer == "save" else answer == "discard"
+
+    def close(self) -> None:
+        """Stop the clock of the plot."""
+        self._plot_clock.stop()
+
+    def _preview(self) -> bytes:
+        """Return a small picture of the view, for the project file."""
+        return png_of(self._window.view.picture().scaledToWidth(480))
+
+    def plot_now(self) -> None:
+        """Bring the live plot up to date, if there is a frame that it has not shown."""
+        frame = self._frame
+        if frame is None or frame is self._plotted:
+            return
+        self._plotted = frame
+        self._plot_due = time.monotonic() + PLOT_INTERVAL / 1000.0
+        main = frame.stages.design.volume
+        strip = self._window.strip
+        strip.set_verdict(strip_verdict(frame))
+        strip.set_run(tracks(frame), main, exact_answer(frame))
+        self._window.result.set_rows(measure_views(frame))
+        state = frame.verdict.state
+        bad, reached = state in ("folded", "overstrained"), "done" if state == "settled" else "available"
+        self._window.rail.set_state("lines", "look" if bad else reached, int(bad))
+        self._window.rail.set_state("result", reached)
+
+
+def png_of(image: QImage) -> bytes:
+    """Return an image as the bytes of a PNG file."""
+    buffer = QBuffer()
+    buffer.open(QIODevice.OpenModeFlag.WriteOnly)
+    image.save(buffer, "PNG")  # type: ignore[call-overload]  # the stub asks for bytes, Qt for a text
+    return bytes(buffer.data().data())

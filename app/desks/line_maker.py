@@ -1,0 +1,56 @@
+"""The line maker: lines of the designer's own are added, ready made or point by point, and removed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, QPoint
+
+from app.desks.line_dialog import ask_own_line
+from app.desks.present import LINE_COLOURS, line_title
+from app.wording.words import tr
+from core.design import OwnLine
+from core.own_lines import ready_made
+from core.template import read_template
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+
+
+class LineMaker(QObject):
+    """Brings wishes for own lines to the session, and selects the line that has come."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+
+    def show_menu(self) -> None:
+        """Offer what can be added, under the button that asks for it."""
+        button = self._window.lines.add
+        self._window.actions_.add_menu.popup(button.mapToGlobal(QPoint(0, button.height() + 2)))
+
+    def add(self, kind: str) -> None:
+        """Add a pair of ready-made lines of a kind."""
+        design = self._window.session.design
+        if design is not None:
+            self._take(ready_made(read_template(design.template))[kind])
+
+    def ask(self) -> None:
+        """Let a line be drawn, and add it."""
+        session = self._window.session
+        if session.design is not None:
+            names = {*LINE_COLOURS, *(line.name for line in session.design.own_lines)}
+            line = ask_own_line(self._window, read_template(session.design.template), names)
+            if line is not None:
+                self._take((line,))
+
+    def remove(self, name: str) -> None:
+        """Remove a line."""
+        self._window.desk.select_line("mid-bust")
+        self._window.session.remove_own_line(name, line_title(name))
+
+    def _take(self, lines: tuple[OwnLine, ...]) -> None:
+        titles = tr(" and ").join(line_title(line.name) for line in lines)
+        self._window.session.add_own_lines(lines, tr("{line} added").format(line=titles))
+        self._window.desk.go_to("lines")
+        self._window.desk.select_line(lines[0].name)

@@ -1,0 +1,250 @@
+"""What the window says about a design and its frame: plain values for the panels, worked out in one place."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.panels.line_row import LineView
+from app.panels.result import MeasureView
+from app.seeing.bands import Band
+from app.showing.convergence import Exact, Track
+from app.showing.verdict_chip import state_title
+from app.wording.words import number, say, tr
+from core.design import Design
+from core.lines import Line
+from core.live import Frame
+from core.mesh import Points
+from core.report import blamed_line, warnings
+from core.solver import Marks
+
+LINE_COLOURS = {"full-bust": "#0A5F73", "mid-bust": "#E5536B", "under-bust": "#5A3F94"}
+"""Line colours by name, the same in both themes, told apart by the colour-blind; top line first."""
+
+BAND_WIDTHS = {"full-bust": 10.0, "mid-bust": 12.0, "under-bust": 22.0}
+"""Width of the bands as they are drawn [mm]; what they are made of comes with the garment."""
+
+OWN_COLOURS = ("#E2A32F", "#6FA3F5", "#7A1F2E", "#A9ABC9")
+"""Colours of own lines, one after the other; a pair of lines for both sides shares one."""
+
+OWN_WIDTH = 12.0
+"""Width of the band of an own line as it is drawn [mm]."""
+
+PLOTTED_TURNS = 600
+"""Turns that the live plot looks back."""
+
+
+def line_title(name: str) -> str:
+    """Return a line's name in the window's language."""
+    titles = {
+        "full-bust": tr("Full bust"),
+        "mid-bust": tr("Mid-bust"),
+        "under-bust": tr("Under-bust"),
+        "strap left": tr("Strap left"),
+        "strap right": tr("Strap right"),
+        "sling left": tr("Sling left"),
+        "sling right": tr("Sling right"),
+        "oblique left": tr("Oblique left"),
+        "oblique right": tr("Oblique right"),
+        "ring left": tr("Ring left"),
+        "ring right": tr("Ring right"),
+    }
+    return titles.get(name, name[:1].upper() + name[1:])
+
+
+def line_colours(names: Iterable[str]) -> dict[str, str]:
+    """Return the colours of these lines in the order of the list: those of the template, top line first."""
+    given = list(names)
+    own = [name for name in given if name not in LINE_COLOURS]
+    kinds = list(dict.fromkeys(_kind(name) for name in own))
+    colours = {name: colour for name, colour in LINE_COLOURS.items() if name in given}
+    return colours | {name: OWN_COLOURS[kinds.index(_kind(name)) % len(OWN_COLOURS)] for name in own}
+
+
+def _kind(name: str) -> str:
+    """Return the name of a line without its side."""
+    return name.removesuffix(" left").removesuffix(" right")
+
+
+def bands(lines: Sequence[Line], rest: Points, hidden: Collection[str]) -> list[Band]:
+    """Return what is drawn of the lines on the body; ``rest`` are all control points at rest, (n, 3) [mm]."""
+    paths = {line.name: line.path for line in lines}
+    return [
+        Band(name, rest[paths[name]], colour, BAND_WIDTHS.get(name, OWN_WIDTH))
+        for name, colour in line_colours(paths).items()
+        if name not in hidden
+    ]
+
+
+def line_views(design: Design, frame: Frame, hidden: Collection[str]) -> list[LineView]:
+    """Return the rows of the list of lines, top line first, then own lines."""
+    lines = {line.name: line for line in frame.stages.model.lines}
+    return [
+        LineView(
+            name,
+            line_title(name),
+            colour,
+            design.ratio(name),
+            lines[name].rest_length,
+            frame.lengths[name],
+            lines[name].constrains,
+            name not in hidden,
+            lines[name].whole_length,
+            name not in LINE_COLOURS,
+        )
+        for name, colour in line_colours(lines).items()
+    ]
+
+
+def band_label(design: Design, frame: Frame, name: str) -> tuple[str, str]:
+    """Return what stands beside a line on the body: its name and length, and how much shorter that is."""
+    line = next(line for line in frame.stages.model.lines if line.name == name)
+    if not line.constrains:
+        return line_title(name), f"{number(line.rest_length)} mm"
+    ratio = design.ratio(name)
+    change = (ratio - 1.0) * line.rest_length
+    return f"{line_title(name)} {number(100.0 * ratio)} %", f"{number(change, 1, signed=True)} mm"
+
+
+def tracks(frame: Frame) -> dict[str, Track]:
+    """Return the runs of a frame as curves: volume error [%, ml], bust point height over its rest height
+    [mm].
+    """
+    rest = _bust_height(frame.stages.rest_marks)
+    result = {}
+    for control, records in frame.tracks.items():
+        rows = [
+            (row.turn, 100.0 * row.error, row.error_ml, _bust_height(row.marks) - rest)
+            for row in records[-PLOTTED_TURNS:]
+            if row.marks is not None
+        ]
+        result[control] = Track(*np.array(rows, dtype=np.float64).reshape(-1, 4).T)
+    return result
+
+
+def exact_answer(frame: Frame) -> Exact:
+    """Return what the exact answer ends at, for the dashed line."""
+    return Exact(0.0, _bust_height(frame.exact_marks) - _bust_height(frame.stages.rest_marks))
+
+
+def _bust_height(marks: Marks) -> float:
+    """Return the mean height of the two bust points [mm]."""
+    return 0.5 * (marks.nipple_left_z + marks.nipple_right_z)
+
+
+@dataclass(frozen=True)
+class StripVerdict:
+    """What the strip says of a run."""
+
+    state: str
+    numbers: list[tuple[str, str]]
+    hint: str
+    pace: str
+    settling: bool
+
+
+def strip_verdict(frame: Frame) -> StripVerdict:
+    """Return how the run of a frame stands, with the figures that matter then."""
+    verdict = frame.verdict
+    return StripVerdict(
+        verdict.state,
+        _headline(frame),
+        _hint(frame),
+        _pace(frame),
+        verdict.motion == "settling",
+    )
+
+
+def _pace(frame: Frame) -> str:
+    """Return what it took: turns, or Newton's steps to the exact answer, and seconds."""
+    exact = frame.stages.design.volume == "exact"
+    text = tr("{turns} Newton steps · {seconds} s") if exact else tr("{turns} turns · {seconds} s")
+    return text.format(turns=number(frame.verdict.turns, 0), seconds=number(frame.seconds))
+
+
+def kept_volume(frame: Frame) -> tuple[float, float]:
+    """Return how far the volume that is kept is from the one at rest, of that of the control mesh [%, ml].
+
+    It is the body's own where the exact answer keeps that, else that of the control mesh.
+    """
+    design = frame.stages.design
+    own = design.dense_volume and design.volume == "exact"
+    error = frame.stages.moving.volume_change(frame.points) / 1000.0 if own else frame.error_ml
+    return 1e5 * error / frame.stages.model.volume.rest_volume, error
+
+
+def _headline(frame: Frame) -> list[tuple[str, str]]:
+    verdict = frame.verdict
+    lift = frame.marks.apex_z - frame.stages.rest_marks.apex_z
+    if verdict.state == "vibrating":
+        percent = f"{number(100.0 * verdict.error, 2)} ± {number(100.0 * verdict.amplitude, 2)} %"
+        return [
+            (tr("Period"), tr("{turns} turns").format(turns=number(verdict.period, 0))),
+            (tr("Volume error"), percent),
+            (tr("Growth per turn"), f"{number(100.0 * (verdict.growth - 1.0), 1, signed=True)} %"),
+        ]
+    if verdict.state == "diverging":
+        return []  # the figures would be those of the body shown, as it was before
+    error, ml = kept_volume(frame)
+    kept = (tr("Volume error"), f"{number(error, 2, signed=True)} % · {number(ml, 1, signed=True)} ml")
+    if verdict.condition and verdict.state == "folded":
+        return [kept, (tr("Turned skin"), f"{number(verdict.condition.largest_turn, 0)}°")]
+    if verdict.condition and verdict.state == "overstrained":
+        low, high = (number(100.0 * r, 0) for r in (verdict.condition.shortest, verdict.condition.longest))
+        return [kept, (tr("Strained skin"), tr("{low} to {high} %").format(low=low, high=high))]
+    return [kept, (tr("Lift of apex"), f"{number(lift, 1, signed=True)} mm")]
+
+
+def _hint(frame: Frame) -> str:
+    """Return what to do about a shape that is no body any more."""
+    what = {
+        "folded": tr("The skin folds over: this is no body any more."),
+        "overstrained": tr("The skin strains by more than 30 %: hardly a body."),
+    }.get(frame.verdict.state, "")
+    if frame.verdict.state == "diverging":
+        return tr("The turns run away: the body is shown as it was before. Lengthen or soften the lines.")
+    if frame.verdict.state == "settled":
+        return "".join(map(say, warnings(frame.stages)[:1]))  # the others stand in the notice
+    line = blamed_line(frame.stages)
+    if not what or line is None:
+        return what
+    wish = tr("Set {line} longer.") if line.ratio < 1.0 else tr("Set {line} shorter.")
+    return f"{what} {wish.format(line=line_title(line.name))}"
+
+
+def measure_views(frame: Frame) -> list[MeasureView]:
+    """Return the table of what changed."""
+    rest, now = frame.stages.rest_marks, frame.marks
+    volume = frame.stages.model.volume.rest_volume / 1000.0
+    # The body has no volume of its own there: what its skin gains is counted from the same rest volume.
+    skin = frame.stages.moving.volume_change(frame.points) / 1000.0
+    rows: Sequence[tuple[str, str, float, float]] = (
+        (tr("Apex height"), "mm", rest.apex_z, now.apex_z),
+        (tr("Apex protrusion"), "mm", rest.apex_protrusion, now.apex_protrusion),
+        (tr("Bust point left, height"), "mm", rest.nipple_left_z, now.nipple_left_z),
+        (tr("Bust point right, height"), "mm", rest.nipple_right_z, now.nipple_right_z),
+        (tr("Volume of control mesh"), "ml", volume, volume + frame.error_ml),
+        (tr("Volume on the skin"), "ml", volume, volume + skin),
+        *(
+            (_measured_part(line), "mm", line.rest_length, reached)
+            for line, reached in zip(frame.stages.model.lines, frame.lengths.values(), strict=True)
+        ),
+    )
+    return [MeasureView(*row) for row in rows]
+
+
+def _measured_part(line: Line) -> str:
+    title = line_title(line.name)
+    return tr("{line}, front part").format(line=title) if line.back_length else title
+
+
+def facts(frame: Frame) -> list[str]:
+    """Return the plain facts of the status bar."""
+    return [
+        "mm",
+        tr("{count} triangles").format(count=number(len(frame.stages.body.mesh.faces), 0)),
+        tr("control mesh of {count} polygons").format(count=len(frame.stages.control.mesh.faces)),
+        state_title(frame.verdict.state),
+    ]

@@ -1,0 +1,113 @@
+"""What the window says about a scan and its landmarks: plain values for the panels."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from app.panels.landmarks import LandmarkView
+from app.panels.scan import ScanView
+from app.wording.words import number, tr
+from core.body import Body
+from core.design import ScanSource
+from core.landmark import NAMES, Landmark
+
+GROUPS = {
+    "bust_point": "bust",
+    "lowest": "bust",
+    "fold": "under",
+    "root_inner": "under",
+    "root_outer": "under",
+}
+"""The group of each kind of landmark in the list; all others are further ones."""
+
+PINNED = ("bust_point", "lowest", "fold")
+"""The kinds of landmarks that always have a pin at the Landmarks step."""
+
+
+def kind_of(name: str) -> str:
+    """Return a landmark's name without its side."""
+    return name.removesuffix("_left").removesuffix("_right")
+
+
+def landmark_title(name: str) -> str:
+    """Return a landmark's name in the window's language."""
+    titles = {
+        "bust_point": tr("Bust point"),
+        "fold": tr("Under-bust fold"),
+        "lowest": tr("Lowest point"),
+        "root_inner": tr("Inner breast root"),
+        "root_outer": tr("Outer breast root"),
+        "front_centre": tr("Centre front, bust"),
+        "front_centre_underbust": tr("Centre front, under-bust"),
+        "back_centre": tr("Centre back, bust"),
+        "back_centre_underbust": tr("Centre back, under-bust"),
+        "side": tr("Side"),
+        "armpit": tr("Armpit"),
+        "waist_front": tr("Waist, front"),
+        "hip_front": tr("Hip, front"),
+        "neck_front": tr("Neck, front"),
+        "neck_back": tr("Neck, back"),
+    }
+    kind = kind_of(name)
+    sides = {"_left": tr("{name} left"), "_right": tr("{name} right")}
+    return sides.get(name[len(kind) :], "{name}").format(name=titles.get(kind, kind.replace("_", " ")))
+
+
+def landmark_views(points: Mapping[str, Landmark]) -> list[LandmarkView]:
+    """Return the rows of the list of landmarks, those of the bust first; the absent ones are among them."""
+    order = list(GROUPS)
+    known = sorted(
+        NAMES, key=lambda name: order.index(kind_of(name)) if kind_of(name) in order else len(order)
+    )
+    return [_landmark_view(name, points.get(name)) for name in known]
+
+
+def _landmark_view(name: str, mark: Landmark | None) -> LandmarkView:
+    title, group = landmark_title(name), GROUPS.get(kind_of(name), "further")
+    if mark is None:
+        return LandmarkView(name, title, 0.0, tr("The scan does not show it."), group, absent=True)
+    return LandmarkView(name, title, mark.confidence, mark.rule, group, mark.by_hand)
+
+
+def scan_view(source: ScanSource, body: Body) -> ScanView:
+    """Return the facts of the scan."""
+    pose = body.pose
+    return ScanView(
+        source.name,
+        pose.unit,
+        pose.reason,
+        pose.sure,
+        pose.up,
+        pose.front,
+        len(body.mesh.faces),
+        body.repairs,
+        _notes(body),
+        frozenset(key for key in ("unit", "up", "front") if getattr(source, key) is not None),
+    )
+
+
+def _notes(body: Body) -> tuple[str, ...]:
+    """Return what else is to be known of a body: on what copy of its skin it is measured."""
+    if body.calm is body.mesh:
+        return ()
+    if len(body.calm.faces) != len(body.mesh.faces):
+        return (tr("It is so fine that a thinned copy is measured."),)
+    noise = number(body.noise, 1)
+    return (tr("It is noisy, by {noise} mm: a smoothed copy is measured.").format(noise=noise),)
+
+
+def work_words(what: str) -> str:
+    """Return what is said of the work in hand; nothing for what takes no time."""
+    words = {
+        "read scan": tr("Reading the scan"),
+        "reading": tr("Reading the scan"),
+        "repairing": tr("Repairing the scan"),
+        "closing holes": tr("Repairing the scan"),
+        "rebuilding the surface": tr("Laying a skin through the points"),
+        "finding up and front": tr("Finding up and front"),
+        "find landmarks": tr("Finding the landmarks"),
+        "fit control mesh": tr("Fitting the control mesh"),
+        "find patch": tr("Binding the body"),
+        "bind body": tr("Binding the body"),
+    }
+    return words.get(what, "")

@@ -1,0 +1,269 @@
+"""What the window does about the scan: the work on it, the question how it stands, its landmarks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import reduce
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+from PySide6.QtGui import QColor, QImage
+
+from app.asking.background import Background
+from app.desks.present_scan import (
+    kind_of,
+    landmark_title,
+    landmark_views,
+    scan_view,
+    work_words,
+)
+from app.dress.theme import tokens_of, tone_of
+from app.panels.question import PICTURE, Answer
+from app.seeing.portrait import Picture
+from app.seeing.stage import LOOKS
+from app.seeing.ways import Way, pictures
+from app.wording.words import say, tr
+from core.body import Body
+from core.design import Design
+from core.doubts import ESSENTIAL, landmark_doubts, weak_sides
+from core.pipeline import Stages, StuckError
+from core.placing import in_file
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+
+
+class ScanDesk(QObject):
+    """Brings what was understood of a scan to the window, and what the user knows better to the session.
+
+    ``stuck`` is what keeps the scan that is shown from being a document, until the user knows better; never
+    while a document is open, for that is what is shown then.
+    """
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._session = window.session
+        self._asked_for: Design | None = None
+        self._asked_body: Body | None = None
+        self.stuck: StuckError | None = None
+        self._painter = Background(self)
+        self._painter.finished.connect(self._show_question)
+        self._painter.failed.connect(self._show_no_question)
+
+    # -- the session speaks
+
+    def show_found(self, stages: Stages) -> None:
+        """Show what was understood of the scan, and found on it."""
+        window, landmarks = self._window, stages.landmarks
+        said = landmark_doubts(landmarks)
+        window.landmarks.set_landmarks(landmark_views(landmarks.points), said)
+        window.scan.set_scan(scan_view(stages.design.scan, stages.body))
+        window.view.drop_back()
+        weak = sum(len(weak_sides(landmarks, kind)) for kind in ESSENTIAL)
+        window.rail.set_state("scan", "done" if stages.body.pose.sure else "look", 1)
+        window.rail.set_state("landmarks", "look" if weak or said else "done", weak or len(said))
+
+    def show_opened(self, stages: Stages) -> None:
+        """Say what is unclear on a scan that has just been opened, and ask how it stands if need be."""
+        self._forget_question()
+        self.stuck = None
+        self._show_unclear(stages)
+        pose, source = stages.body.pose, stages.design.scan
+        if pose.sure:
+            return
+        if source.up and source.front:
+            unsure = tr("Busk is not sure of the unit, up or front of this scan.")
+            self._window.notices.show_notice("warn", unsure, pose.reason, lasting=True)
+        else:
+            self._ask(stages.body, None)
+
+    def _show_unclear(self, stages: Stages) -> None:
+        """Say which of the landmarks that the control mesh hangs on could hardly be seen."""
+        marks = [mark for mark in stages.landmarks.points.values() if kind_of(mark.name) in ESSENTIAL]
+        worst = min(marks, key=lambda mark: mark.confidence)
+        if tone_of(worst.confidence) == "bad" or stages.landmarks.warnings:
+            said, *more = landmark_doubts(stages.landmarks)
+            look = (tr("Look at it"), lambda: self._look_at(worst.name))
+            self._window.notices.show_notice("warn", said, " ".join(map(say, more)), [look], lasting=True)
+
+    def _look_at(self, landmark: str) -> None:
+        self._window.desk.go_to("landmarks")
+        self._window.desk.select_landmark(landmark)
+
+    def show_stuck(self, stuck: StuckError) -> None:
+        """Show a scan that cannot go on if no document is open; ask how it stands if that is not sure."""
+        self._forget_question()
+        asked = self.stuck is not None and self.stuck.design.scan is stuck.design.scan
+        if self._session.design is None:
+            self._show_alone(stuck)
+        if stuck.kind == "unsure" and not asked:
+            self._ask(stuck.body, stuck.design)
+        else:
+            self._say_stuck(stuck)
+
+    def _show_alone(self, stuck: StuckError) -> None:
+        """Show a scan that cannot go on in the place of a document."""
+        window, self.stuck = self._window, stuck
+        refused, lacks = stuck.kind == "refused", stuck.kind == "landmarks"
+        window.landmarks.set_landmarks(landmark_views(stuck.landmarks), [stuck.message], placing=not refused)
+        window.scan.set_scan(scan_view(stuck.design.scan, stuck.body))
+        window.view.show_stuck(stuck.body, stuck.landmarks)
+        window.desk.go_to("landmarks" if lacks else "scan")
+        window.rail.set_state("scan", "done" if lacks else "look")
+        window.rail.set_state("landmarks", "missing" if refused else "look")
+
+    def _say_stuck(self, stuck: StuckError) -> None:
+        notices = self._window.notices
+        notices.withdraw("bad")
+        notices.show_notice("bad", stuck.message, stuck.hint, lasting=True)
+
+    def show_work(self, what: str, share: float) -> None:
+        """Name the work that takes its time, and how much of it is done."""
+        words = work_words(what)
+        window = self._window
+        if what and not words:
+            return
+        window.status.set_job(words, share)
+        window.view.busy.show_work(words, share)
+        window.actions_.cancel.setEnabled(bool(words))
+
+    # -- the user asks
+
+    def cancel(self) -> None:
+        """Let go of the work in hand; the window is as it was before."""
+        self._session.cancel()
+        self.show_work("", 1.0)
+
+    def tell(self, key: str, value: str) -> None:
+        """Read the scan again with its unit, up or front as told; an empty key forgets what was told."""
+        design = self.stuck.design if self.stuck else self._session.design
+        if design is None:
+            return
+        scan = design.scan
+        if not key:
+            text, scan = tr("Unit, up and front as found"), replace(scan, unit=None, up=None, front=None)
+        elif key == "unit":
+            text, scan = tr("Scan in {unit}").format(unit=value), replace(scan, unit=value)
+        elif key == "up":
+            # What was told to be front may lie along the new axis: then it is to be found.
+            front = (
+                scan.front if scan.front and scan.front[1:] != value[1:] and "," not in scan.front else None
+            )
+            text, scan = tr("{axis} is up").format(axis=value), replace(scan, up=value, front=front)
+        else:
+            up = self._shown_up() if scan.up is None else scan.up
+            text, scan = tr("{axis} is front").format(axis=value), replace(scan, up=up, front=value)
+        if self.stuck:
+            self._session.open_design(replace(design, scan=scan))
+        else:
+            self._session.change({"scan": scan}, text)
+
+    def ask(self) -> None:
+        """Show the pictures for the present scan."""
+        frame = self._session.frame
+        if self.stuck:
+            self._ask(self.stuck.body, self.stuck.design)
+        elif frame is not None:
+            self._ask(frame.stages.body, None)
+
+    def answer(self, up: str, front: str) -> None:
+        """Take the answer: the open scan is read again as one undo step, one that waits is opened."""
+        waiting, design = self._asked_for, self._session.design
+        self._forget_question()
+        self._window.notices.withdraw("warn")
+        if waiting is not None:
+            # What is open may have been edited while the question waited.
+            if self._window.desk.may_leave():
+                self._session.open_design(replace(waiting, scan=replace(waiting.scan, up=up, front=front)))
+        elif design is not None:
+            self._session.change(
+                {"scan": replace(design.scan, up=up, front=front)}, tr("Front chosen by its picture")
+            )
+
+    def leave_question(self) -> None:
+        """Leave a scan as it is understood; one that waited for the answer is let go, if it is not shown."""
+        if self._asked_for is not None:
+            self._window.notices.withdraw("warn")
+        self._forget_question()
+        if self.stuck:
+            self._say_stuck(self.stuck)
+
+    def put_pin(self, name: str) -> None:
+        """Give a landmark that was not found a pin to drag."""
+        self._window.view.put_pin(name)
+
+    def place_landmark(self, name: str) -> None:
+        """Keep where a landmark's pin was let go, as one undo step; a stuck scan is tried again with it."""
+        dropped = self._window.view.dropped()
+        if dropped is None or dropped[0] != name:
+            return
+        if self.stuck:
+            place = in_file(dropped[1], self.stuck.body.pose.file_to_mm)
+            self._session.open_design(self.stuck.design.with_placed(name, place))
+        else:
+            self._session.place_landmark(name, landmark_title(name), dropped[1])
+
+    def reset_landmarks(self, names: Sequence[str]) -> None:
+        """Let landmarks be found again."""
+        if self.stuck:
+            again = reduce(lambda design, name: design.with_placed(name, None), names, self.stuck.design)
+            self._session.open_design(again)
+            return
+        text = tr("{name} found again").format(name=landmark_title(names[0]))
+        self._session.reset_landmarks(names, text if len(names) == 1 else tr("Landmarks found again"))
+
+    def close(self) -> None:
+        """Wait for pictures that are being painted."""
+        self._painter.close()
+
+    # -- inside
+
+    def _shown_up(self) -> str:
+        frame = self._session.frame
+        body = self.stuck.body if self.stuck else frame.stages.body if frame is not None else None
+        return body.pose.up if body is not None else "+z"
+
+    def _forget_question(self) -> None:
+        self._asked_for = self._asked_body = None
+        self._window.view.question.hide()
+
+    def _ask(self, body: Body, waiting: Design | None) -> None:
+        """Have a picture painted for each way the body may stand."""
+        self._asked_for, self._asked_body = waiting, body
+        if not body.pose.sure:
+            unsure, ask = tr("Busk is not sure how this scan stands."), tr("Please choose a picture below.")
+            self._window.notices.show_notice("warn", unsure, ask, lasting=True)
+        clay = QColor(LOOKS[tokens_of(self._window).dark].clay)
+        colour, scale = (clay.red(), clay.green(), clay.blue()), self._window.devicePixelRatioF()
+        size = round(PICTURE[0] * scale), round(PICTURE[1] * scale)
+        self._painter.run(body, lambda: pictures(body, size, colour))
+
+    def _show_question(self, body: object, painted: object) -> None:
+        if body is not self._asked_body or not isinstance(painted, list):
+            return
+        self._window.view.question.ask(
+            [Answer(way.up, way.front, _image(picture), _words(way)) for way, picture in painted]
+        )
+
+    def _show_no_question(self, body: object) -> None:
+        """Without pictures nothing can be chosen below: the Scan step asks the same."""
+        if body is self._asked_body:
+            self._window.notices.withdraw("warn")
+            unsure, ask = (
+                tr("Busk is not sure how this scan stands."),
+                tr("Please check it at the Scan step."),
+            )
+            self._window.notices.show_notice("warn", unsure, ask, lasting=True)
+
+
+def _words(way: Way) -> str:
+    up, front = (axis.replace("-", "\N{MINUS SIGN}") for axis in way.axes)
+    return tr("{up} up, {front} front").format(up=up, front=front)
+
+
+def _image(picture: Picture) -> QImage:
+    height, width, _ = picture.shape
+    # The image only looks at the array: a copy of its own outlives it.
+    return QImage(picture.tobytes(), width, height, 4 * width, QImage.Format.Format_RGBA8888).copy()

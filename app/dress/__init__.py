@@ -1,0 +1,1 @@
+"""Dress: theme, icons and the small widgets that every panel is put together from."""

@@ -1,0 +1,246 @@
+"""Small widgets that every panel is put together from."""
+
+# ruff: noqa: D102, N802 - Qt names its events and says what they are
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QAction, QColor, QFont, QPainter, QPaintEvent, QPen
+from PySide6.QtWidgets import (
+    QAbstractButton,
+    QButtonGroup,
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QSizePolicy,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.dress.icons import icon, pixmap
+from app.dress.theme import font, label, set_tag, tokens_of
+
+
+def button(text: str, kind: str = "secondary") -> QPushButton:
+    """Return a push button: ``primary``, ``secondary`` or ``quiet``."""
+    result = QPushButton(text)
+    result.setFont(font("button"))
+    result.setProperty("kind", kind)
+    result.setCursor(Qt.CursorShape.PointingHandCursor)
+    return result
+
+
+def sentence(text: str = "", role: str = "secondary") -> QLabel:
+    """Return text that wraps and takes the height it needs."""
+    result = label(text, role)
+    result.setWordWrap(True)
+    result.setAlignment(Qt.AlignmentFlag.AlignTop | Qt.AlignmentFlag.AlignLeft)
+    return result
+
+
+def hairline(vertical: bool = False) -> QFrame:
+    """Return a line of one pixel."""
+    result = QFrame()
+    result.setProperty("rule", "true")
+    if vertical:
+        result.setFixedWidth(1)
+    else:
+        result.setFixedHeight(1)
+    return result
+
+
+def paint_card(painter: QPainter, item: QAbstractButton, checked: str, radius: int) -> None:
+    """Paint the ground of an item of a list: ``checked`` names its token, hovered and focused follow."""
+    tokens = tokens_of(item)
+    painter.setPen(QPen(QColor(tokens.accent), 2) if item.hasFocus() else Qt.PenStyle.NoPen)
+    if item.isChecked() or item.underMouse() or item.hasFocus():
+        painter.setBrush(QColor(getattr(tokens, checked) if item.isChecked() else tokens.hover))
+        painter.drawRoundedRect(QRectF(item.rect()).adjusted(1, 1, -1, -1), radius, radius)
+
+
+class IconLabel(QLabel):
+    """An icon that follows the theme; ``token`` names its colour."""
+
+    def __init__(self, name: str, token: str = "text_quiet", size: int = 18) -> None:
+        super().__init__()
+        self._drawing = (name, token, size)
+        self.setFixedSize(size, size)
+
+    def show_icon(self, name: str, token: str) -> None:
+        """Show another drawing in another colour."""
+        self._drawing = (name, token, self._drawing[2])
+        self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        name, token, size = self._drawing
+        picture = pixmap(name, getattr(tokens_of(self), token), size, self.devicePixelRatioF())
+        QPainter(self).drawPixmap(0, 0, picture)
+
+
+class ToolButton(QToolButton):
+    """A button that is only an icon; it follows the theme and, if given, an action."""
+
+    def __init__(
+        self, drawing: str, tip: str = "", *, size: int = 18, room: int = 30, action: QAction | None = None
+    ) -> None:
+        super().__init__()
+        self._drawing, self._size = drawing, size
+        self.setIconSize(QSize(size, size))
+        self.setFixedSize(room, room)
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        if action is not None:
+            action.setIconVisibleInMenu(False)
+            self.setDefaultAction(action)
+        if tip:
+            self.setToolTip(tip)
+            self.setAccessibleName(tip)
+        self._repaint_icon()
+
+    def show_icon(self, drawing: str) -> None:
+        """Show another drawing."""
+        self._drawing = drawing
+        self._repaint_icon()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange:
+            self._repaint_icon()
+
+    def _repaint_icon(self) -> None:
+        tokens = tokens_of(self)
+        drawn = icon(self._drawing, tokens.text_quiet, self._size, on_color=tokens.accent)
+        (self.defaultAction() or self).setIcon(drawn)
+
+
+class Segment(QFrame):
+    """A few choices of which one is on."""
+
+    chosen = Signal(str)
+
+    def __init__(self, choices: Sequence[tuple[str, str]], small: bool = False) -> None:
+        super().__init__()
+        self.setProperty("kind", "segment")
+        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(2, 2, 2, 2)
+        row.setSpacing(0)
+        self._group = QButtonGroup(self)
+        self._buttons: dict[str, QPushButton] = {}
+        for name, title in choices:
+            each = button(title, "segment")
+            each.setCheckable(True)
+            each.setFont(font("title" if small else "name"))
+            each.setFixedSize(each.fontMetrics().horizontalAdvance(title) + (20 if small else 24), 24)
+            each.toggled.connect(lambda on, b=each: b.setFont(_segment_font(on, small)))
+            each.setFont(_segment_font(False, small))
+            each.clicked.connect(lambda _=False, chosen=name: self.chosen.emit(chosen))
+            self._group.addButton(each)
+            row.addWidget(each)
+            self._buttons[name] = each
+
+    def set_choice(self, name: str) -> None:
+        """Show ``name`` as the choice that is on, or that it is none of these; nothing is emitted."""
+        self._group.setExclusive(False)
+        for each, item in self._buttons.items():
+            item.setChecked(each == name)
+        self._group.setExclusive(True)
+
+    def button(self, name: str) -> QPushButton:
+        """Return the button of one choice, for tooltip, shortcut or state."""
+        return self._buttons[name]
+
+
+def _segment_font(on: bool, small: bool) -> QFont:
+    if small:
+        return font("title" if on else "secondary")
+    return font("name" if on else "body")
+
+
+class Disclosure(QAbstractButton):
+    """A heading that opens and closes what stands under it; ``toggled`` says which."""
+
+    def __init__(self, title: str) -> None:
+        super().__init__()
+        self.setText(title)
+        self.setCheckable(True)
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.setCursor(Qt.CursorShape.PointingHandCursor)
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self.setFixedHeight(32)
+
+    def sizeHint(self) -> QSize:
+        return QSize(self.fontMetrics().horizontalAdvance(self.text()) + 40, 32)
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        tokens = tokens_of(self)
+        painter = QPainter(self)
+        if self.hasFocus():
+            painter.setPen(QPen(QColor(tokens.accent), 2))
+            painter.drawRoundedRect(QRectF(self.rect()).adjusted(1, 1, -1, -1), 6, 6)
+        caret = pixmap(
+            "caret-down" if self.isChecked() else "caret-right",
+            tokens.text_quiet,
+            12,
+            self.devicePixelRatioF(),
+        )
+        painter.drawPixmap(QPointF(8, self.height() / 2 - 6), caret)
+        painter.setFont(font("secondary"))
+        painter.setPen(QColor(tokens.text_quiet))
+        words = QRectF(self.rect()).adjusted(28, 0, 0, 0)
+        painter.drawText(words, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, self.text())
+
+
+class FloatingPanel(QWidget):
+    """A translucent rounded panel with a soft shadow, to lie on the view."""
+
+    MARGINS = (10, 8, 10, 12)
+    RADIUS = 10.0
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        left, top, right, bottom = self.MARGINS
+        self.row = QHBoxLayout(self)
+        self.row.setContentsMargins(left + 6, top + 6, right + 6, bottom + 6)
+        self.row.setSpacing(2)
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        tokens = tokens_of(self)
+        left, top, right, bottom = self.MARGINS
+        panel = QRectF(self.rect()).adjusted(left, top, -right, -bottom)
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(0, 0, 0, tokens.shadow_alpha))
+        for spread in range(10):
+            wider = panel.adjusted(-spread, -spread, spread, spread).translated(QPointF(0, 3))
+            painter.drawRoundedRect(wider, self.RADIUS + spread, self.RADIUS + spread)
+        fill = QColor(tokens.floating)
+        fill.setAlpha(tokens.floating_alpha)
+        painter.setBrush(fill)
+        painter.setPen(QColor(tokens.line))
+        painter.drawRoundedRect(panel.adjusted(0.5, 0.5, -0.5, -0.5), self.RADIUS, self.RADIUS)
+
+
+class EmptyState(QFrame):
+    """What is missing and what to do, where nothing can be shown yet; ``asked`` at its button."""
+
+    asked = Signal()
+
+    def __init__(self, drawing: str, missing: str, hint: str, ask: str = "") -> None:
+        super().__init__()
+        set_tag(self, "kind", "card")
+        column = QVBoxLayout(self)
+        column.setContentsMargins(16, 16, 16, 16)
+        column.setSpacing(6)
+        column.addWidget(IconLabel(drawing, "text_quiet", 26))
+        column.addSpacing(4)
+        column.addWidget(sentence(missing, "name"))
+        column.addWidget(sentence(hint))
+        if ask:
+            press = button(ask)
+            press.clicked.connect(self.asked)
+            column.addSpacing(6)
+            column.addWidget(press, alignment=Qt.AlignmentFlag.AlignLeft)

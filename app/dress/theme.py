@@ -1,0 +1,199 @@
+"""The look of all widgets: palette, style sheet and type, made from the colour tokens."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib import resources
+
+from PySide6.QtGui import QColor, QFont, QFontDatabase, QPalette
+from PySide6.QtWidgets import QApplication, QLabel, QWidget
+
+from app.wording.tokens import DARK, LIGHT, Tokens
+from core.landmark import CERTAIN
+
+FAMILIES = ("Inter", "Inter Variable", "Noto Sans JP")
+"""Type in the order in which a letter is looked for."""
+
+ROLES = {
+    "axis": (10, 400, "text_caption"),
+    "caption": (11, 400, "text_caption"),
+    "secondary": (12, 400, "text_quiet"),
+    "title": (12, 600, "text"),
+    "body": (13, 400, "text"),
+    "button": (13, 500, "text"),
+    "name": (13, 600, "text"),
+    "heading": (15, 600, "text"),
+    "wordmark": (15, 700, "text"),
+    "page": (20, 600, "text"),
+    "hero": (22, 650, "text"),
+}
+"""Size [px], weight and colour token of each kind of text."""
+
+
+@cache
+def load_fonts() -> tuple[str, ...]:
+    """Make the shipped fonts known to Qt and return their families; empty when none is shipped."""
+    folder = resources.files("resources") / "fonts"
+    files = [file for file in folder.iterdir() if file.name.endswith((".ttf", ".otf"))]
+    ids = [QFontDatabase.addApplicationFontFromData(file.read_bytes()) for file in files]
+    return tuple(family for i in ids if i >= 0 for family in QFontDatabase.applicationFontFamilies(i))
+
+
+def font(role: str, tabular: bool = False) -> QFont:
+    """Return the type of one role of ``ROLES``; ``tabular`` gives figures of equal width, for numbers."""
+    size, weight, _ = ROLES[role]
+    result = QFont(list(FAMILIES))
+    result.setPixelSize(size)
+    result.setWeight(QFont.Weight(weight))
+    result.setHintingPreference(QFont.HintingPreference.PreferNoHinting)
+    if tabular:
+        result.setFeature(QFont.Tag("tnum"), 1)
+    return result
+
+
+def label(text: str = "", role: str = "body", tabular: bool = False) -> QLabel:
+    """Return a line of text in one role of ``ROLES``; its colour follows the theme."""
+    result = QLabel(text)
+    result.setFont(font(role, tabular))
+    result.setProperty("role", role)
+    return result
+
+
+def set_tag(widget: QWidget, name: str, value: object) -> None:
+    """Set a property that the style sheet looks at, and have the widget styled again if it changed."""
+    if widget.property(name) != value:
+        widget.setProperty(name, value)
+        widget.style().unpolish(widget)
+        widget.style().polish(widget)
+
+
+def tokens_of(widget: QWidget) -> Tokens:
+    """Return the colours of the theme that ``widget`` is shown in; ask again on a palette change."""
+    # A style sheet rewrites the colours of window, button and text in a widget's palette, but never this one.
+    return DARK if widget.palette().color(QPalette.ColorRole.Mid).lightness() < 128 else LIGHT
+
+
+def tone_of(confidence: float) -> str:
+    """Return the tone of a landmark's confidence 0..1: ok if certain, bad below 0.3, warn between them."""
+    return "ok" if confidence >= CERTAIN else "warn" if confidence >= 0.3 else "bad"
+
+
+def apply_theme(app: QApplication, dark: bool) -> None:
+    """Dress the whole program in the light or the dark theme; it may be changed while windows are open."""
+    load_fonts()
+    tokens = DARK if dark else LIGHT
+    app.setStyle("Fusion")
+    app.setFont(font("body"))
+    app.setPalette(palette(tokens))
+    app.setStyleSheet(style_sheet(tokens))
+
+
+def palette(t: Tokens) -> QPalette:
+    """Return the Qt palette of one theme."""
+    role = QPalette.ColorRole
+    colors = {
+        role.Window: t.panel,
+        role.WindowText: t.text,
+        role.Base: t.raised,
+        role.AlternateBase: t.hover,
+        role.Text: t.text,
+        role.Button: t.raised,
+        role.ButtonText: t.text,
+        role.PlaceholderText: t.text_caption,
+        role.Highlight: t.accent,
+        role.HighlightedText: t.on_accent,
+        role.ToolTipBase: t.ink,
+        role.ToolTipText: t.on_ink,
+        role.Mid: t.outline,
+        role.Dark: t.control,
+        role.Light: t.raised,
+        role.Midlight: t.line,
+        role.Link: t.accent,
+        role.Accent: t.accent,
+    }
+    result = QPalette()
+    for each, color in colors.items():
+        result.setColor(each, QColor(color))
+    for each in (role.WindowText, role.Text, role.ButtonText):
+        result.setColor(QPalette.ColorGroup.Disabled, each, faded(t.text_caption, t.panel, 0.55))
+    return result
+
+
+def faded(color: str, ground: str, share: float) -> QColor:
+    """Return ``share`` of ``color`` laid over ``ground``."""
+    top, under = QColor(color), QColor(ground)
+
+    def mix(a: float, b: float) -> float:
+        return share * a + (1 - share) * b
+
+    return QColor.fromRgbF(
+        mix(top.redF(), under.redF()),
+        mix(top.greenF(), under.greenF()),
+        mix(top.blueF(), under.blueF()),
+    )
+
+
+def style_sheet(t: Tokens) -> str:
+    """Return the style sheet of one theme: what the palette cannot say."""
+    roles = "\n".join(
+        f'QLabel[role="{role}"] {{ color: {getattr(t, token)}; }}' for role, (_, _, token) in ROLES.items()
+    )
+    tones = "\n".join(
+        f'QLabel[tone="{tone}"] {{ color: {getattr(t, tone)}; }}'
+        f'QWidget[fill="{tone}"] {{ background: {getattr(t, tone + "_fill")}; }}'
+        for tone in ("ok", "info", "warn", "bad")
+    )
+    return f"""
+{roles}
+{tones}
+QLabel[tone="faint"] {{ color: {t.text_caption}; }}
+QWidget[fill="panel"] {{ background: {t.panel}; }}
+QFrame[rule="true"] {{ background: {t.line}; border: none; }}
+QPushButton {{ border-radius: 6px; padding: 0 12px; min-height: 28px; border: 1px solid {t.outline};
+    background: {t.raised}; color: {t.text}; }}
+QPushButton:hover {{ background: {t.hover}; }}
+QPushButton:pressed {{ background: {t.pressed}; }}
+QPushButton:focus {{ border: 2px solid {t.accent}; padding: 0 11px; min-height: 26px; }}
+QPushButton:disabled {{ color: {faded(t.text_caption, t.panel, 0.6).name()}; border-color: {t.line}; }}
+QPushButton[kind="primary"] {{ background: {t.ink}; color: {t.on_ink}; border-color: {t.ink}; }}
+QPushButton[kind="primary"]:hover {{ background: {faded(t.ink, t.panel, 0.88).name()}; }}
+QPushButton[kind="primary"]:focus {{ border-color: {t.accent}; }}
+QPushButton[kind="primary"]:disabled {{ background: {t.pressed}; border-color: {t.pressed};
+    color: {t.text_caption}; }}
+QPushButton[kind="quiet"] {{ background: transparent; border-color: transparent; color: {t.text_quiet}; }}
+QPushButton[kind="quiet"]:hover {{ background: {t.pressed}; color: {t.text}; }}
+QPushButton[kind="quiet"]:focus {{ border-color: {t.accent}; }}
+QPushButton[kind="quiet"]:disabled {{ color: {faded(t.text_caption, t.panel, 0.6).name()}; }}
+QPushButton[kind="pull"] {{ padding: 0 28px 0 10px; text-align: left; }}
+QPushButton[kind="pull"]:focus {{ padding: 0 27px 0 9px; }}
+QFrame[kind="segment"] {{ background: {t.app if t.dark else t.pressed}; border-radius: 7px; }}
+QPushButton[kind="segment"] {{ border: 2px solid transparent; border-radius: 6px; padding: 0; min-height: 0;
+    background: transparent; color: {t.text_quiet}; }}
+QPushButton[kind="segment"]:hover {{ color: {t.text}; }}
+QPushButton[kind="segment"]:checked {{ background: {t.pressed if t.dark else t.raised}; color: {t.text}; }}
+QPushButton[kind="segment"]:disabled {{ color: {faded(t.text_caption, t.panel, 0.4).name()}; }}
+QPushButton[kind="segment"]:focus {{ border-color: {t.accent}; }}
+QFrame[kind="card"] {{ background: {t.hover}; border-radius: 9px; }}
+QToolButton {{ border: 2px solid transparent; border-radius: 6px; background: transparent; padding: 2px; }}
+QToolButton:hover {{ background: {t.pressed}; }}
+QToolButton:checked {{ background: {t.selected}; }}
+QToolButton:focus {{ border-color: {t.accent}; }}
+QLineEdit {{ border: 1px solid {t.outline}; border-radius: 5px; background: {t.raised}; padding: 1px 6px;
+    color: {t.text}; selection-background-color: {t.accent}; selection-color: {t.on_accent}; }}
+QLineEdit:focus {{ border: 2px solid {t.accent}; padding: 0 5px; }}
+QLineEdit[kind="number"] {{ border-color: transparent; background: transparent; padding: 0 4px; }}
+QLineEdit[kind="number"]:hover {{ border-color: {t.outline}; background: {t.raised}; }}
+QLineEdit[kind="number"]:focus {{ border: 2px solid {t.accent}; background: {t.raised}; padding: 0 3px; }}
+QLineEdit[wrong="true"]:focus {{ border-color: {t.bad}; }}
+QScrollArea, QScrollArea > QWidget > QWidget[scrolled="true"] {{ background: transparent; border: none; }}
+QScrollBar:vertical {{ width: 10px; background: transparent; margin: 2px; }}
+QScrollBar::handle:vertical {{ background: {t.outline}; border-radius: 3px; min-height: 28px; }}
+QScrollBar::handle:vertical:hover {{ background: {t.control}; }}
+QScrollBar::add-line:vertical, QScrollBar::sub-line:vertical {{ height: 0; }}
+QScrollBar::add-page:vertical, QScrollBar::sub-page:vertical {{ background: transparent; }}
+QMenuBar {{ background: transparent; border: none; }}
+QMenuBar::item {{ padding: 5px 9px; border-radius: 6px; background: transparent; color: {t.text_quiet}; }}
+QMenuBar::item:selected, QMenuBar::item:pressed {{ background: {t.pressed}; color: {t.text}; }}
+QToolTip {{ background: {t.ink}; color: {t.on_ink}; border: none; padding: 5px 7px; }}
+QSplitter::handle {{ background: {t.line}; }}
+"""

@@ -1,0 +1,158 @@
+"""The bar above the view that says what happened and what to do."""
+
+# ruff: noqa: D102, N802 - Qt names its events and says what they are
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from html import escape
+
+from PySide6.QtCore import Qt, QTimer, Signal
+from PySide6.QtGui import QColor, QPainter, QPaintEvent
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QWidget
+
+from app.dress.parts import IconLabel, ToolButton, button
+from app.dress.theme import label, tokens_of
+from app.wording.words import say, tr
+
+Action = tuple[str, Callable[[], None]]
+"""The word on a button and what it does."""
+
+TONE_ICONS = {"ok": "check-circle", "info": "info", "warn": "warning", "bad": "warning-octagon"}
+"""The tones of a notice with their drawings."""
+
+_LEAVES_AFTER_MS = 8000
+_BUTTON_KINDS = ("primary", "secondary", "quiet")
+
+
+@dataclass(frozen=True)
+class Notice:
+    """One thing to say; ``lasting`` keeps it until it is closed."""
+
+    tone: str
+    sentence: str
+    hint: str
+    actions: tuple[Action, ...]
+    lasting: bool
+
+
+class NoticeBar(QWidget):
+    """One notice at a time, the others wait; it takes no room while there is none."""
+
+    closed = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._shown: Notice | None = None
+        self._waiting: deque[Notice] = deque()
+        self._timer = QTimer(self)
+        self._timer.setSingleShot(True)
+        self._timer.timeout.connect(self.close_notice)
+        self._build()
+        self.hide()
+
+    def show_notice(
+        self,
+        tone: str,
+        sentence: str,
+        hint: str = "",
+        actions: Sequence[Action] = (),
+        lasting: bool = False,
+    ) -> None:
+        """Say ``sentence`` in the tone ok, info, warn or bad; the first action is the main one.
+
+        A sentence that already stands or waits there is not said twice.
+        """
+        notice = Notice(tone, sentence, hint, tuple(actions), lasting)
+        if any(each.sentence == sentence for each in (self._shown, *self._waiting) if each):
+            return
+        self._waiting.append(notice)
+        if self._shown is None:
+            self._next()
+        else:
+            self._show_waiting()
+
+    def notice(self) -> Notice | None:
+        """Return the notice that stands there."""
+        return self._shown
+
+    def close_notice(self) -> None:
+        """Take the notice away and show the next."""
+        self._shown = None
+        self._next()
+        self.closed.emit()
+
+    def clear(self) -> None:
+        """Take all notices away."""
+        self._waiting.clear()
+        self.close_notice()
+
+    def withdraw(self, tone: str) -> None:
+        """Take away what was said in a tone: it is no longer so."""
+        self._waiting = deque(each for each in self._waiting if each.tone != tone)
+        if self._shown is not None and self._shown.tone == tone:
+            self.close_notice()
+        self._show_waiting()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        if self._shown is None:
+            return
+        tokens = tokens_of(self)
+        painter = QPainter(self)
+        painter.fillRect(self.rect(), QColor(getattr(tokens, f"{self._shown.tone}_fill")))
+        painter.fillRect(0, self.height() - 1, self.width(), 1, QColor(tokens.line))
+
+    def _build(self) -> None:
+        self.setMinimumHeight(44)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(16, 5, 10, 6)
+        row.setSpacing(8)
+        self._icon = IconLabel("info", "info", 19)
+        self._words, self._more = label("", "body"), label("", "caption")
+        self._words.setTextFormat(Qt.TextFormat.RichText)
+        self._words.setWordWrap(True)
+        row.addWidget(self._icon)
+        row.addSpacing(2)
+        row.addWidget(self._words, 1)
+        row.addWidget(self._more)
+        self._buttons: list[QPushButton] = []
+        self._row = row
+        close = ToolButton("x", tr("Close"), size=14, room=28)
+        close.clicked.connect(self.close_notice)
+        row.addWidget(close)
+
+    def _next(self) -> None:
+        self._timer.stop()
+        if not self._waiting:
+            self.hide()
+            return
+        notice = self._shown = self._waiting.popleft()
+        self._icon.show_icon(TONE_ICONS[notice.tone], notice.tone)
+        said, hint = escape(say(notice.sentence)), escape(say(notice.hint))
+        self._words.setText(f'<span style="font-weight:600">{said}</span>&nbsp; {hint}')
+        self._set_buttons(notice.actions)
+        self._show_waiting()
+        if not notice.lasting:
+            self._timer.start(_LEAVES_AFTER_MS)
+        self.show()
+        self.update()
+
+    def _set_buttons(self, actions: tuple[Action, ...]) -> None:
+        for old in self._buttons:
+            self._row.removeWidget(old)
+            old.deleteLater()
+        self._buttons = []
+        for (text, act), kind in zip(actions, _BUTTON_KINDS, strict=False):
+            each = button(text, kind)
+            each.clicked.connect(lambda _=False, chosen=act: self._act(chosen))
+            self._row.insertWidget(self._row.count() - 1, each)
+            self._buttons.append(each)
+
+    def _act(self, act: Callable[[], None]) -> None:
+        self.close_notice()
+        act()
+
+    def _show_waiting(self) -> None:
+        self._more.setText(tr("{count} more").format(count=len(self._waiting)) if self._waiting else "")
+        self._more.setVisible(bool(self._waiting))

@@ -1,0 +1,1 @@
+"""Printing: the figures of the paper and their page, without Qt."""

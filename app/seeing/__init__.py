@@ -1,0 +1,1 @@
+"""Seeing: everything that is drawn in 3D, on any pyvista plotter, without Qt."""

@@ -1,0 +1,290 @@
+"""The body in the 3D view: plates told from skin, clay that is darker in folds, movement in place."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+import pyvista as pv
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
+
+from app.seeing.camera import View
+from app.seeing.stage import Look, rgb
+from core.mesh import Flags, Floats, Indices, Mesh, Points, area_vectors, incidence, unit
+
+Colours = npt.NDArray[np.uint8]
+Singles = npt.NDArray[np.float32]
+
+_DIM_INSIDE = """//VTK::Color::Impl
+  if (!gl_FrontFacing) { ambientColor *= 1.5; diffuseColor *= 0.3; }
+"""
+"""What is seen from inside, through an open neck or arm, lies in its own shadow."""
+
+PLATE_AREA = 1500.0
+"""Smallest flat area that counts as a cut plate and not as skin [mm^2]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Skin:
+    """A mesh whose vertices at the rims of plates are doubled, so that the rim looks crisp.
+
+    ``mesh`` has the body's own n vertices first and the doubles after them; ``source`` is the body vertex of
+    each, shape (n + d,); ``plate`` marks the vertices of plates, shape (n + d,).
+    """
+
+    mesh: Mesh
+    source: Indices
+    plate: Flags
+
+
+def split_plates(mesh: Mesh) -> Skin:
+    """Return ``mesh`` with the rims of its cut plates doubled."""
+    plate_face = plate_faces(mesh)
+    count = len(mesh.vertices)
+    on_plate, on_skin = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
+    on_plate[mesh.faces[plate_face]] = True
+    on_skin[mesh.faces[~plate_face]] = True
+    rim = np.flatnonzero(on_plate & on_skin)
+    double = np.arange(count)
+    double[rim] = count + np.arange(len(rim))
+    faces = np.where(plate_face[:, None], double[mesh.faces], mesh.faces)
+    source = np.concatenate([np.arange(count), rim])
+    plate = np.concatenate([on_plate & ~on_skin, np.ones(len(rim), dtype=bool)])
+    return Skin(Mesh(mesh.vertices[source], faces), source, plate)
+
+
+def plate_faces(mesh: Mesh) -> Flags:
+    """Return which faces belong to a flat area larger than ``PLATE_AREA``, shape (m,)."""
+    count = len(mesh.faces)
+    half = np.sort(mesh.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    key = half[:, 0] * len(mesh.vertices) + half[:, 1]
+    order = np.argsort(key, kind="stable")
+    twin = np.flatnonzero(np.diff(key[order]) == 0)
+    a, b = order[twin] // 3, order[twin + 1] // 3
+    flat = np.einsum("ij,ij->i", mesh.face_normals[a], mesh.face_normals[b]) > np.cos(np.radians(1.0))
+    links = sparse.coo_array((np.ones(int(flat.sum())), (a[flat], b[flat])), shape=(count, count))
+    areas_number, label = connected_components(links, directed=False)
+    facing = np.stack([np.bincount(label, column, areas_number) for column in mesh.area_vectors.T], axis=1)
+    area = np.bincount(label, mesh.face_areas, areas_number)
+    # A gently curved stretch of skin also links up, but its normals do not add up to its area.
+    straight = np.linalg.norm(facing, axis=1) > 0.9999 * area
+    return np.asarray(((area > PLATE_AREA) & straight)[label])
+
+
+def bake_occlusion(mesh: Mesh, directions: int = 32, cell: float = 7.0) -> Floats:
+    """Return how open the sky above each vertex is, shape (n,) [1]: 1 free, small in folds.
+
+    Each direction keeps the surface nearest to the sky on a grid of ``cell`` [mm]; a vertex loses its sky
+    between 5 and 17 mm under it. Runs in any thread.
+    """
+    sky = _sphere(directions)
+    samples = _samples(mesh, cell).astype(np.float32)
+    normals = mesh.vertex_normals
+    count = len(mesh.vertices)
+    seen, possible = np.zeros(count), np.full(count, 1e-6)
+    for towards in sky:
+        facing = normals @ towards
+        depth = samples @ towards.astype(np.float32)
+        under = _shaded(samples, depth, towards, cell)[:count] - depth[:count]
+        weight = np.maximum(facing, 0.0)
+        possible += weight
+        seen += weight * np.clip((17.0 - under) / 12.0, 0.0, 1.0)
+    return _smoothed(seen / possible, mesh, passes=14)
+
+
+def _sphere(count: int) -> Points:
+    """Return ``count`` even directions."""
+    turn = np.arange(count) * np.pi * (3.0 - np.sqrt(5.0))
+    z = 1.0 - (2.0 * np.arange(count) + 1.0) / count
+    radius = np.sqrt(1.0 - z**2)
+    return np.stack([radius * np.cos(turn), radius * np.sin(turn), z], axis=1)
+
+
+def _samples(mesh: Mesh, cell: float) -> Points:
+    """Return the vertices, then the face centres and, on faces too large for the grid, more points."""
+    corners = mesh.vertices[mesh.faces]
+    points = [mesh.vertices, corners.mean(axis=1)]
+    large = corners[mesh.face_areas > cell**2]
+    if len(large):
+        steps = np.arange(1, 8) / 8.0
+        u, v = (grid.ravel() for grid in np.meshgrid(steps, steps))
+        u, v = u[u + v < 1.0], v[u + v < 1.0]
+        mix = np.stack([1.0 - u - v, u, v], axis=1)
+        points.append(np.einsum("sk,mkj->msj", mix, large).reshape(-1, 3))
+    return np.concatenate(points)
+
+
+def _shaded(samples: Singles, depth: Singles, towards: Floats, cell: float) -> Singles:
+    """Return for each sample the depth of the surface nearest to the sky in its grid cell."""
+    helper = np.eye(3)[np.argmin(np.abs(towards))]
+    across = unit(np.cross(towards, helper)[None])[0]
+    plane = np.stack([across, np.cross(towards, across)], axis=1).astype(np.float32)
+    grid = ((samples @ plane) / np.float32(cell)).astype(np.int32)
+    grid -= grid.min(axis=0)
+    place = grid[:, 0] * (grid[:, 1].max() + 1) + grid[:, 1]
+    nearest = np.full(int(place.max()) + 1, -np.inf, dtype=np.float32)
+    np.maximum.at(nearest, place, depth)
+    return np.asarray(nearest[place])
+
+
+def _smoothed(values: Floats, mesh: Mesh, passes: int) -> Floats:
+    a, b = mesh.edges.T
+    count = len(mesh.vertices)
+    links = sparse.csr_array((np.ones(2 * len(a)), (np.r_[a, b], np.r_[b, a])), shape=(count, count))
+    degree = np.maximum(links.sum(axis=1), 1.0)
+    for _ in range(passes):
+        values = 0.5 * values + 0.5 * (links @ values) / degree
+    return np.asarray(values)
+
+
+def clay_colours(occlusion: Floats, plate: Flags, look: Look) -> Colours:
+    """Return the colour of each vertex, (n, 3) uint8: clay in the open, deep in folds, plaster plates."""
+    open_sky = np.clip((occlusion - 0.36) / 0.50, 0.0, 1.0)[:, None]
+    colours = rgb(look.deep) + (rgb(look.clay) - rgb(look.deep)) * open_sky
+    colours[plate] = rgb(look.plaster)
+    return np.asarray(np.round(colours), dtype=np.uint8)
+
+
+class Sight:
+    """Where a straight sight first meets drawn triangles; looks them up anew after they moved."""
+
+    def __init__(self, data: pv.PolyData) -> None:
+        self._data = data
+        self._locator: vtkStaticCellLocator | None = None
+
+    def forget(self) -> None:
+        """Say that the triangles have moved."""
+        self._locator = None
+
+    def hit(self, start: Floats, end: Floats) -> Floats | None:
+        """Return where the segment between two points, each (3,) [mm], first meets the triangles, or None."""
+        if self._locator is None:
+            self._locator = vtkStaticCellLocator()
+            self._locator.SetDataSet(self._data)
+            self._locator.BuildLocator()
+        places = vtkPoints()
+        self._locator.IntersectWithLine(start.tolist(), end.tolist(), places, None)
+        return np.array(places.GetPoint(0)) if places.GetNumberOfPoints() else None
+
+
+class BodyActor:
+    """The body on one plotter: shown once, then moved in place.
+
+    ``points`` are the moved positions of the body's n vertices, (n, 3) [mm], shown or not.
+    """
+
+    def __init__(self, plotter: pv.BasePlotter, mesh: Mesh, look: Look) -> None:
+        self.rest = mesh
+        self.points = np.array(mesh.vertices)
+        self._skin = split_plates(mesh)
+        self._look = look
+        self._occlusion = np.ones(len(mesh.vertices))
+        self._before = False
+        rest = self._skin.mesh
+        self._data = pv.PolyData.from_regular_faces(rest.vertices.astype(np.float32), rest.faces)
+        self._rest_normals = rest.vertex_normals.astype(np.float32)
+        self._normals: Singles = self._rest_normals.copy()
+        self._data.point_data["Normals"] = self._rest_normals.copy()
+        self._data.point_data["Colour"] = np.zeros(rest.vertices.shape, dtype=np.uint8)
+        self.actor = plotter.add_mesh(
+            self._data,
+            scalars="Colour",
+            rgb=True,
+            copy_mesh=False,
+            name="body",
+            reset_camera=False,
+            render=False,
+            diffuse=0.86,
+            specular=0.10,
+            specular_power=14,
+        )
+        self.actor.prop.interpolation = "Gouraud"
+        # Of a closed body no inside is seen; not to fill it halves the time of a frame on software GL.
+        self.actor.prop.culling = "none" if mesh.boundary_loops else "back"
+        # Coloured points overrule VTK's own property for back faces, hence these lines of shader.
+        self.actor.GetShaderProperty().AddFragmentShaderReplacement(
+            "//VTK::Color::Impl", True, _DIM_INSIDE, False
+        )
+        self._data.point_data.active_normals_name = "Normals"
+        self.sight = Sight(self._data)
+        self.set_look(look)
+
+    def set_look(self, look: Look) -> None:
+        """Repaint for one theme."""
+        self._look = look
+        self.actor.prop.ambient = look.ambient
+        sky = self._occlusion[self._skin.source]
+        self._data.point_data["Colour"][:] = clay_colours(sky, self._skin.plate, look)
+        self._data.GetPointData().GetArray("Colour").Modified()
+
+    def set_occlusion(self, occlusion: Floats) -> None:
+        """Darken folds: openness to the sky of each body vertex, shape (n,) [1]."""
+        self._occlusion = np.asarray(occlusion)
+        self.set_look(self._look)
+
+    def move(self, indices: Indices, points: Points, normals: Points | None = None) -> None:
+        """Move body vertices: indices (k,), positions (k, 3) [mm], unit normals (k, 3), else worked out."""
+        self.points[indices] = points
+        if normals is None:
+            self._normals = self._work_out_normals()
+        else:
+            self._normals[indices] = normals
+        if not self._before:
+            self._write()
+
+    def before(self, shown: bool) -> None:
+        """Show the rest positions, or the moved ones again."""
+        if shown != self._before:
+            self._before = shown
+            self._write()
+
+    @property
+    def shown_points(self) -> Points:
+        """The positions on the screen, shape (n, 3) [mm]."""
+        return self.rest.vertices if self._before else self.points
+
+    def _work_out_normals(self) -> Singles:
+        vertices = self.points[self._skin.source]
+        return unit(self._sum_at_vertices @ area_vectors(vertices, self._skin.mesh.faces)).astype(np.float32)
+
+    @cached_property
+    def _sum_at_vertices(self) -> sparse.csr_array:
+        return incidence(self._skin.mesh.faces, len(self._skin.source))
+
+    def _write(self) -> None:
+        """Copy positions and normals into the drawn arrays, which keeps the actor and never flickers."""
+        self._data.points[:] = self.shown_points[self._skin.source]
+        self._data.point_data["Normals"][:] = self._rest_normals if self._before else self._normals
+        self._data.GetPoints().Modified()
+        self._data.GetPointData().GetNormals().Modified()
+        self.sight.forget()
+
+
+class Ghost:
+    """The body at rest, seen only where it reaches out beyond the moved one.
+
+    It is drawn opaque and enlarged about the eye, so that its picture is the same but lies behind the body.
+    """
+
+    _LARGER = 1.12
+
+    def __init__(self, plotter: pv.BasePlotter, mesh: Mesh) -> None:
+        data = pv.PolyData.from_regular_faces(mesh.vertices.astype(np.float32), mesh.faces)
+        self.actor = plotter.add_mesh(
+            data, name="ghost", lighting=False, copy_mesh=False, reset_camera=False, render=False
+        )
+
+    def look_from(self, view: View) -> None:
+        """Keep behind the body for this eye."""
+        matrix = np.eye(4)
+        if view.parallel:
+            matrix[:3, 3] = -(self._LARGER - 1.0) * view.distance * view.axes[2]
+        else:
+            matrix[:3, :3] *= self._LARGER
+            matrix[:3, 3] = (1.0 - self._LARGER) * view.eye
+        self.actor.user_matrix = matrix

@@ -1,0 +1,291 @@
+"""Everything that is drawn in 3D, on any pyvista plotter: a widget, a picture or a test."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+import pyvista as pv
+
+from app.seeing.bands import Band, Bands, Surface
+from app.seeing.body import BodyActor, Ghost
+from app.seeing.camera import LENS, View
+from app.seeing.control import ControlActor
+from app.seeing.stage import LOOKS, Stage
+from app.seeing.trace import Trace
+from core.mesh import Flags, Floats, Indices, Mesh, Points
+
+PARTS = ("body", "bands", "control", "floor", "ghost")
+"""What ``Scene.set_visible`` knows; the ghost is the fringe of the body at rest behind the moved one."""
+
+_ABOVE_BUST, _BELOW_BUST = 270.0, 350.0  # what a framed bust shows: from the neck to below the waist [mm]
+
+_BUST_HEIGHT = 0.56  # of a torso cut at the hips, used until the landmarks are known
+
+
+class Scene:
+    """The body, its lines and its control mesh, seen through one camera.
+
+    All methods belong to the thread of the window. Nothing draws by itself: the holder draws when it likes.
+    ``pixel_ratio`` is the number of device pixels of a logical one, for thin lines.
+    """
+
+    def __init__(self, plotter: pv.BasePlotter, dark: bool = False, pixel_ratio: float = 1.0) -> None:
+        self.plotter = plotter
+        self.body: BodyActor | None = None
+        self._pixel_ratio = pixel_ratio
+        self._stage = Stage(plotter)
+        self.bands = Bands(plotter)
+        self._trace = Trace(plotter)
+        self._surface: Surface | None = None
+        self._ghost: Ghost | None = None
+        self._control: ControlActor | None = None
+        self._control_points: tuple[Points, Points] | None = None
+        self._visible = dict.fromkeys(PARTS, True) | {"control": False, "ghost": False}
+        self._before = False
+        self._view = View()
+        self.set_dark(dark)
+        self.look_from(self._view)
+
+    # -- what is shown
+
+    def show_body(self, mesh: Mesh) -> None:
+        """Show a body at rest in place of the former one; its lines and control mesh leave."""
+        self.bands.clear()
+        self._trace.show(np.empty((0, 3)))
+        self._drop_control()
+        self.body = BodyActor(self.plotter, mesh, LOOKS[self._dark])
+        self._surface = Surface(mesh)
+        low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+        self._stage.stand(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), low[2])
+        self._before, self._ghost = False, None
+        self.plotter.remove_actor("ghost", reset_camera=False, render=False)
+        self._apply_visible()
+        self.look_from(self._view)
+
+    def set_occlusion(self, occlusion: Floats) -> None:
+        """Darken the folds of the body by ``bake_occlusion``'s result, shape (n,) [1]."""
+        self._shown_body().set_occlusion(occlusion)
+
+    def show_control_mesh(self, control: Mesh, fixed: Flags) -> None:
+        """Show the control mesh on the body; ``fixed`` control points, shape (n,), are small and dark."""
+        self._drop_control()
+        self._control = ControlActor(self.plotter, control, fixed, self._laying_ground(), self._pixel_ratio)
+        self._control.set_look(LOOKS[self._dark])
+        self._control_points = (control.vertices, control.vertices)
+        self._apply_visible()
+
+    def show_bands(self, bands: Iterable[Band]) -> None:
+        """Show these lines on the body in place of the former ones."""
+        self.bands.show(bands, self._laying_ground())
+        self._follow()
+
+    def show_trace(self, points: Points) -> None:
+        """Draw a curve of the body at rest, shape (k, 3) [mm], where it is on the shown one; or no curve."""
+        self._trace.show(self.carried(points) if len(points) else points)
+
+    def mark_bands(self, selected: str = "", hovered: str = "") -> None:
+        """Put a white casing round the selected line and a faint one round the one under the pointer.
+
+        An empty or unknown name marks none.
+        """
+        self.bands.mark(selected, hovered)
+
+    # -- what moves
+
+    def move_body(self, indices: Indices, points: Points, normals: Points | None = None) -> None:
+        """Move body vertices in place, and the lines with them.
+
+        ``indices`` (k,) of the body's vertices, ``points`` (k, 3) [mm], ``normals`` (k, 3), else worked out.
+        """
+        self._shown_body().move(indices, points, normals)
+        if not self._before:
+            self._follow()
+
+    def move_control_mesh(self, points: Points) -> None:
+        """Move the control points, shape (n, 3) [mm]."""
+        if self._control is not None and self._control_points is not None:
+            self._control_points = (self._control_points[0], points)
+            if not self._before:
+                self._control.move(points)
+
+    def before(self, shown: bool) -> None:
+        """Show everything at rest, or as it was moved."""
+        self._before = shown
+        self._shown_body().before(shown)
+        self._apply_visible()
+        self._follow()
+        if self._control is not None and self._control_points is not None:
+            self._control.move(self._control_points[0 if shown else 1])
+
+    def set_visible(self, what: str, visible: bool) -> None:
+        """Show or hide one of ``PARTS``; raises KeyError for another word."""
+        if what not in self._visible:
+            raise KeyError(what)
+        self._visible[what] = visible
+        self._apply_visible()
+
+    def is_visible(self, what: str) -> bool:
+        """Tell whether one of ``PARTS`` is shown."""
+        return self._visible[what]
+
+    # -- how it is seen
+
+    @property
+    def dark(self) -> bool:
+        """Whether the dark theme is on."""
+        return self._dark
+
+    def set_dark(self, dark: bool) -> None:
+        """Repaint everything for the light or the dark theme."""
+        self._dark = dark
+        look = LOOKS[dark]
+        self._stage.set_look(look)
+        self._trace.set_dark(dark)
+        if self.body is not None:
+            self.body.set_look(look)
+        if self._control is not None:
+            self._control.set_look(look)
+        if self._ghost is not None:
+            self._ghost.actor.prop.color = look.ghost
+
+    @property
+    def view(self) -> View:
+        """Where the scene is seen from."""
+        return self._view
+
+    def look_from(self, view: View) -> None:
+        """See the scene from ``view``."""
+        self._view = view
+        camera = self.plotter.camera
+        camera.position, camera.focal_point, camera.up = tuple(view.eye), view.focus, (0.0, 0.0, 1.0)
+        camera.view_angle = LENS
+        camera.parallel_projection = view.parallel
+        camera.parallel_scale = view.half_height
+        centre, radius = self._ball()
+        depth = float((view.eye - centre) @ view.axes[2])
+        camera.clipping_range = (max(depth - radius, 20.0), max(depth + radius, 40.0))
+        if self._ghost is not None:
+            self._ghost.look_from(view)
+
+    def set_view(self, name: str) -> None:
+        """See the scene from the side called ``name`` in ``app.seeing.camera.VIEWS``."""
+        self.look_from(self._view.named(name))
+
+    def set_parallel(self, parallel: bool) -> None:
+        """Switch between parallel and perspective projection."""
+        self.look_from(replace(self._view, parallel=parallel))
+
+    def frame_all(self) -> None:
+        """Step back until the whole body is in the picture."""
+        self.look_from(self.framing_all(self._aspect()))
+
+    def frame_bust(self) -> None:
+        """Step closer, so that shoulders to waist fill the picture."""
+        self.look_from(self.framing_bust(self._aspect()))
+
+    def framing_all(self, aspect: float) -> View:
+        """Return the view from the same side that shows the whole body; ``aspect`` is width by height."""
+        return self._view.framing(self._box(), aspect)
+
+    def framing_bust(self, aspect: float) -> View:
+        """Return the view from the same side that shows bust and trunk, from the shoulders to the waist."""
+        box = self._box()
+        level = box[4] + _BUST_HEIGHT * (box[5] - box[4])
+        if self._control_points is not None:
+            level = float(self._control_points[0][:, 2].mean())
+        top, bottom = min(level + _ABOVE_BUST, box[5]), max(level - _BELOW_BUST, box[4])
+        return self._view.framing([*box[:4], bottom, top], aspect, margin=1.08)
+
+    # -- what is under the pointer
+
+    def hit_body(self, start: Floats, end: Floats) -> Floats | None:
+        """Return where the segment between two points, each (3,) [mm], first meets the body, or None."""
+        return None if self.body is None else self.body.sight.hit(start, end)
+
+    def hidden(self, point: Floats, clearance: float = 4.0) -> bool:
+        """Tell whether the body stands between the eye and ``point``, shape (3,) [mm]."""
+        sight = np.asarray(point) - self._view.eye
+        nearer = point - clearance * sight / np.linalg.norm(sight)
+        return self.hit_body(self._view.eye, nearer) is not None
+
+    def carried(self, points: Points) -> Points:
+        """Return where places on the body at rest, shape (k, 3) [mm], are on the shown one."""
+        return np.asarray(points + self._laying_ground().follow(points) @ self._displacement())
+
+    def at_rest(self, points: Points) -> Points:
+        """Return where places on the shown body, shape (k, 3) [mm], are on the body at rest."""
+        rest = points
+        for _ in range(4):  # each round leaves a small part of the last one's error
+            rest = rest + points - self.carried(rest)
+        return rest
+
+    def band_at(self, x: float, y: float, width: float, height: float) -> str:
+        """Return the line seen at the pixel (x, y), counted from the top left, or an empty string."""
+        start, sight = self._view.ray(x, y, width, height)
+        met = self.bands.hit(start, start + 2.0 * self._view.distance * sight)
+        if met is None or self.hit_body(start, met[1] - sight) is not None:
+            return ""
+        return met[0]
+
+    def band_anchor(self, name: str) -> Floats:
+        """Return a place on the line that faces the eye, for its label, shape (3,) [mm]."""
+        points, normals = self.bands.spine(name)
+        facing = np.einsum("ij,ij->i", normals, self._view.eye - points) > 0.0
+        seen = points[facing] if facing.any() else points
+        along = np.argsort(seen @ self._view.axes[0])
+        return np.asarray(seen[along[int(0.66 * (len(seen) - 1))]])
+
+    # -- inside
+
+    def _shown_body(self) -> BodyActor:
+        if self.body is None:
+            raise RuntimeError("show_body comes first")
+        return self.body
+
+    def _laying_ground(self) -> Surface:
+        if self._surface is None:
+            raise RuntimeError("show_body comes first")
+        return self._surface
+
+    def _follow(self) -> None:
+        self.bands.move(self._displacement())
+
+    def _displacement(self) -> Points:
+        body = self._shown_body()
+        return np.asarray(body.shown_points - body.rest.vertices)
+
+    def _drop_control(self) -> None:
+        if self._control is not None:
+            self._control.remove()
+        self._control, self._control_points = None, None
+
+    def _apply_visible(self) -> None:
+        if self.body is not None:
+            self.body.actor.SetVisibility(self._visible["body"])
+            self._stage.show_floor(self._visible["floor"])
+            if self._visible["ghost"] and self._ghost is None:
+                self._ghost = Ghost(self.plotter, self.body.rest)
+                self._ghost.actor.prop.color = LOOKS[self._dark].ghost
+                self._ghost.look_from(self._view)
+        if self._ghost is not None:
+            self._ghost.actor.SetVisibility(self._visible["ghost"] and not self._before)
+        if self._control is not None:
+            self._control.set_visible(self._visible["control"])
+        self.bands.set_visible(self._visible["bands"])
+
+    def _box(self) -> list[float]:
+        if self.body is None:
+            return [-200.0, 200.0, -130.0, 130.0, 0.0, 560.0]
+        low, high = self.body.rest.vertices.min(axis=0), self.body.rest.vertices.max(axis=0)
+        return [float(x) for pair in zip(low, high, strict=True) for x in pair]
+
+    def _ball(self) -> tuple[Floats, float]:
+        """Return centre and radius of a ball round body and floor [mm]."""
+        box = np.array(self._box()).reshape(3, 2)
+        return box.mean(axis=1), float(np.hypot(np.linalg.norm(box[:, 1] - box[:, 0]) / 2.0, 700.0))
+
+    def _aspect(self) -> float:
+        width, height = self.plotter.window_size
+        return float(width) / max(float(height), 1.0)

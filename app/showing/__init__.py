@@ -1,0 +1,1 @@
+"""Showing: the 3D view and the strip; plain values in, signals out."""

@@ -1,0 +1,155 @@
+"""The pointer over the 3D view: a turntable by drags, lines and pins under it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import QEvent, QObject, QPointF, Qt, Signal
+from PySide6.QtGui import QMouseEvent, QWheelEvent
+from PySide6.QtWidgets import QWidget
+
+from app.seeing.camera import View
+from app.seeing.scene import Scene
+from app.showing.overlay import Overlay
+from core.mesh import Floats
+
+TURN = 0.4
+"""Degrees that the body turns for each pixel that the pointer is dragged."""
+
+NOTCH = 1.15
+"""How much larger a notch of the wheel makes the body."""
+
+_CLICK = 3.0  # pixels that the pointer may stray within a click
+
+
+class Pointer(QObject):
+    """Reads the pointer over a canvas, before VTK's own camera style does.
+
+    ``turned`` asks for a view from the same distance, ``shifted`` for one that frames something else, and
+    ``centred`` for a glide to a new centre of turning; the other signals are the viewport's.
+    """
+
+    turned = Signal(View)
+    shifted = Signal(View)
+    centred = Signal(View)
+    band_clicked = Signal(str)
+    band_hovered = Signal(str)
+    pin_pressed = Signal(str)
+    pin_moved = Signal(str, object)
+    pin_released = Signal(str)
+
+    def __init__(self, canvas: QWidget, scene: Scene, overlay: Overlay) -> None:
+        super().__init__(canvas)
+        self._canvas = canvas
+        self._scene = scene
+        self._overlay = overlay
+        self._pressed = QPointF()
+        self._last = QPointF()
+        self._grip = ""
+        self._pin = ""
+        self._hovered = ""
+        canvas.installEventFilter(self)
+
+    def let_go(self) -> None:
+        """Read the pointer no longer."""
+        self._canvas.removeEventFilter(self)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+        """Take the pointer before VTK's own camera style does."""
+        if watched is not self._canvas:
+            return super().eventFilter(watched, event)
+        kind = event.type()
+        handlers: dict[QEvent.Type, Callable[..., None]] = {
+            QEvent.Type.MouseButtonPress: self._press,
+            QEvent.Type.MouseMove: self._drag,
+            QEvent.Type.MouseButtonRelease: self._release,
+            QEvent.Type.MouseButtonDblClick: self._centre,
+            QEvent.Type.Wheel: self._wheel,
+            QEvent.Type.Leave: self._leave,
+        }
+        if kind not in handlers:
+            return False
+        handlers[kind](event)
+        return True
+
+    def _press(self, event: QMouseEvent) -> None:
+        self._pressed = self._last = event.position()
+        shift = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
+        if event.button() == Qt.MouseButton.MiddleButton or (
+            event.button() == Qt.MouseButton.LeftButton and shift
+        ):
+            self._grip = "pan"
+        elif event.button() == Qt.MouseButton.LeftButton:
+            self._pin = self._overlay.pin_at(event.position())
+            self._grip = "pin" if self._pin else "click"
+            if self._pin:
+                self.pin_pressed.emit(self._pin)
+
+    def _drag(self, event: QMouseEvent) -> None:
+        step = event.position() - self._last
+        if self._grip == "click" and (event.position() - self._pressed).manhattanLength() > _CLICK:
+            self._grip = "orbit"
+        if self._grip == "orbit":
+            self.turned.emit(self._scene.view.orbit(-TURN * step.x(), TURN * step.y()))
+        elif self._grip == "pan":
+            self.shifted.emit(self._scene.view.pan(step.x(), step.y(), self._canvas.height()))
+        elif self._grip == "pin" and (event.position() - self._pressed).manhattanLength() > _CLICK:
+            self._drag_pin(event.position())
+        elif not self._grip:
+            self._hover(event.position())
+        if self._grip != "click":
+            self._last = event.position()
+
+    def _release(self, event: QMouseEvent) -> None:
+        if self._grip == "click":
+            name = self._band_at(event.position())
+            if name:
+                self.band_clicked.emit(name)
+        if self._grip == "pin":
+            self.pin_released.emit(self._pin)
+        self._grip = self._pin = ""
+
+    def _centre(self, event: QMouseEvent) -> None:
+        """Make the place under the pointer the centre of turning."""
+        place = self._skin_at(event.position())
+        if place is not None and event.button() == Qt.MouseButton.LeftButton:
+            self.centred.emit(self._scene.view.centred(place))
+
+    def _wheel(self, event: QWheelEvent) -> None:
+        half = self._canvas.height() / 2.0
+        x = (event.position().x() - self._canvas.width() / 2.0) / half
+        y = (half - event.position().y()) / half
+        self.shifted.emit(self._scene.view.zoom(NOTCH ** (event.angleDelta().y() / 120.0), x, y))
+
+    def _leave(self, event: QEvent) -> None:
+        self._set_hovered("")
+
+    def _hover(self, place: QPointF) -> None:
+        pin = self._overlay.pin_at(place)
+        name = "" if pin else self._band_at(place)
+        shape = Qt.CursorShape.PointingHandCursor if pin or name else Qt.CursorShape.ArrowCursor
+        self._canvas.setCursor(shape)
+        self._set_hovered(name)
+
+    def _set_hovered(self, name: str) -> None:
+        if name != self._hovered:
+            self._hovered = name
+            self.band_hovered.emit(name)
+
+    def skin_at(self, place: QPointF) -> Floats | None:
+        """Return the place of the body at rest, shape (3,) [mm], that is seen at a pixel, or None."""
+        skin = self._skin_at(place)
+        return None if skin is None else self._scene.at_rest(skin[None])[0]
+
+    def _drag_pin(self, place: QPointF) -> None:
+        skin = self.skin_at(place)
+        if skin is not None:
+            self.pin_moved.emit(self._pin, skin)
+
+    def _band_at(self, place: QPointF) -> str:
+        return self._scene.band_at(place.x(), place.y(), self._canvas.width(), self._canvas.height())
+
+    def _skin_at(self, place: QPointF) -> Floats | None:
+        view = self._scene.view
+        start, sight = view.ray(place.x(), place.y(), self._canvas.width(), self._canvas.height())
+        return self._scene.hit_body(start, start + 3.0 * view.distance * sight)

@@ -1,0 +1,133 @@
+"""How the run stands, as icon and word on a coloured pill."""
+
+# ruff: noqa: D102, N802 - Qt names its events and says what they are
+from __future__ import annotations
+
+from PySide6.QtCore import QElapsedTimer, QRectF, QSize, Qt, QTimer
+from PySide6.QtGui import QColor, QHideEvent, QPainter, QPaintEvent, QShowEvent
+from PySide6.QtWidgets import QSizePolicy, QWidget
+
+from app.dress.icons import paint_icon
+from app.dress.theme import font, tokens_of
+from app.wording.words import tr
+
+TONES = {
+    "settled": ("ok", "check-circle"),
+    "settling": ("info", "arc"),
+    "vibrating": ("warn", "wave"),
+    "diverging": ("bad", "arrow-up-right"),
+    "folded": ("bad", "folded"),
+    "overstrained": ("warn", "overstrained"),
+    "stale": ("plain", "clock-counter-clockwise"),
+    "paused": ("plain", "pause"),
+}
+"""Tone and drawing of each state of a run."""
+
+SHORTEST_SHOW_MS = 250
+"""A state stays at least so long, so that the chip does not flicker."""
+
+_TURN_MS, _STEP_MS = 1200, 150
+
+
+def state_title(state: str) -> str:
+    """Return the word for a state of ``TONES``."""
+    return {
+        "settled": tr("Settled"),
+        "settling": tr("Settling"),
+        "vibrating": tr("Vibrating"),
+        "diverging": tr("Diverging"),
+        "folded": tr("Folded"),
+        "overstrained": tr("Overstrained"),
+        "stale": tr("Stale"),
+        "paused": tr("Paused"),
+    }[state]
+
+
+class VerdictChip(QWidget):
+    """The pill; 32 pixels high, or 22 when ``small``."""
+
+    def __init__(self, small: bool = False) -> None:
+        super().__init__()
+        self._small = small
+        self._state = self._next = "stale"
+        self._angle = 0.0
+        self._since = QElapsedTimer()
+        self._change, self._spin = QTimer(self), QTimer(self)
+        self._change.setSingleShot(True)
+        self._change.timeout.connect(self._take)
+        self._spin.setInterval(_STEP_MS)
+        self._spin.timeout.connect(self._turn)
+        self.setFont(font("title" if small else "heading"))
+        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+        self._take()
+
+    def state(self) -> str:
+        """Return the state that is shown."""
+        return self._state
+
+    def spinning(self) -> bool:
+        """Return whether the arc turns."""
+        return self._spin.isActive()
+
+    def set_state(self, state: str) -> None:
+        """Show a state of ``TONES``, at the latest when the last one has been seen long enough."""
+        if state not in TONES:
+            raise ValueError(state)
+        self._next = state
+        left = SHORTEST_SHOW_MS - self._since.elapsed() if self._since.isValid() else 0
+        if state == self._state or left <= 0:
+            self._take()
+        else:
+            self._change.start(left)
+
+    def sizeHint(self) -> QSize:
+        word = self.fontMetrics().horizontalAdvance(state_title(self._state))
+        return QSize(word + (36 if self._small else 50), 22 if self._small else 32)
+
+    def showEvent(self, event: QShowEvent) -> None:
+        self._run_spin()
+
+    def hideEvent(self, event: QHideEvent) -> None:
+        self._spin.stop()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        tokens = tokens_of(self)
+        tone, drawing = TONES[self._state]
+        ink = tokens.text_quiet if tone == "plain" else getattr(tokens, tone)
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(tokens.pressed if tone == "plain" else getattr(tokens, f"{tone}_fill")))
+        painter.drawRoundedRect(QRectF(self.rect()), self.height() / 2, self.height() / 2)
+        size, left = (14.0, 8.0) if self._small else (19.0, 11.0)
+        painter.save()
+        painter.translate(left + size / 2, self.height() / 2)
+        painter.rotate(self._angle if self._state == "settling" else 0.0)
+        paint_icon(painter, drawing, ink, QRectF(-size / 2, -size / 2, size, size))
+        painter.restore()
+        painter.setPen(QColor(ink))
+        painter.setFont(self.font())
+        word = QRectF(left + size + 6, 0, self.width(), self.height())
+        painter.drawText(
+            word, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, state_title(self._state)
+        )
+
+    def _take(self) -> None:
+        self._change.stop()
+        if self._next != self._state or not self._since.isValid():
+            self._since.restart()
+        self._state = self._next
+        self.setAccessibleName(state_title(self._state))
+        self._run_spin()
+        self.setFixedSize(self.sizeHint())
+        self.update()
+
+    def _run_spin(self) -> None:
+        if self._state == "settling" and self.isVisible():
+            self._spin.start()
+        else:
+            self._spin.stop()
+
+    def _turn(self) -> None:
+        self._angle = (self._angle + 360.0 * _STEP_MS / _TURN_MS) % 360.0
+        self.update()

@@ -1,0 +1,247 @@
+"""The 3D view as a widget: it holds the scene, turns it with the pointer and draws when asked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+
+import numpy as np
+from PySide6.QtCore import QEasingCurve, QEvent, QRectF, Qt, QTimer, QVariantAnimation, Signal
+from PySide6.QtGui import QImage, QResizeEvent
+from PySide6.QtWidgets import QVBoxLayout, QWidget
+
+from app.dress.theme import tokens_of
+from app.seeing.camera import View
+from app.seeing.scene import Scene
+from app.showing.canvas import PaintedCanvas, draw, make_canvas
+from app.showing.overlay import BandLabel, Overlay, Pin
+from app.showing.pointer import Pointer
+from core.mesh import Floats
+
+GLIDE = 220
+"""Duration of a move to another view [ms]."""
+
+REST = 250
+"""Stillness after which the picture is drawn smooth [ms]."""
+
+
+class Viewport(QWidget):
+    """The 3D view with its scene and the overlay of pins and labels.
+
+    ``band_clicked`` and ``band_hovered`` name a line (hovering off all lines: an empty name).
+    ``pin_pressed``, ``pin_moved`` (name, place (3,) [mm] on the body at rest) and ``pin_released`` follow
+    a dragged pin. ``view_changed`` says that the camera has moved. Belongs to the thread of the window.
+    """
+
+    band_clicked = Signal(str)
+    band_hovered = Signal(str)
+    pin_pressed = Signal(str)
+    pin_moved = Signal(str, object)
+    pin_released = Signal(str)
+    view_changed = Signal()
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.motion = True
+        self._canvas, self._plotter = make_canvas(self)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self._canvas)
+        self.scene = Scene(self._plotter, tokens_of(self).dark, self.devicePixelRatioF())
+        self.overlay = Overlay(self._canvas)
+        self._pointer = Pointer(self._canvas, self.scene, self.overlay)
+        self._smoothing = ""
+        self._rest = QTimer(self, singleShot=True, interval=REST)
+        self._rest.timeout.connect(self._refine)
+        self._glide = QVariantAnimation(self)
+        self._glide.setDuration(GLIDE)
+        self._glide.setEasingCurve(QEasingCurve.Type.OutCubic)
+        self._glide.valueChanged.connect(self._glided)
+        self._glide_ends = (self.scene.view, self.scene.view)
+        self._fit: Callable[[float], View] | None = None
+        self._label = ("", "", "")
+        self._pins: tuple[Pin, ...] = ()
+        self._selected_pin = ""
+        self._open = True
+        self._listen()
+
+    def _listen(self) -> None:
+        pointer = self._pointer
+        pointer.turned.connect(self._turn)
+        pointer.shifted.connect(self._shift)
+        pointer.centred.connect(self._centre)
+        pointer.band_hovered.connect(self.hover_band)
+        for name in ("band_clicked", "band_hovered", "pin_pressed", "pin_moved", "pin_released"):
+            getattr(pointer, name).connect(getattr(self, name))
+
+    # -- drawing
+
+    def request_draw(self) -> None:
+        """Draw once when the event loop next turns, however often this is asked for."""
+        if not self._open:
+            return
+        self._smooth("")
+        self._rest.start()
+        self._place_pins()
+        self._place_label()
+        draw(self._canvas)
+
+    def picture(self) -> QImage:
+        """Return what is seen now at its best, labels included, in device pixels."""
+        self.request_draw()
+        self._rest.stop()
+        self._smooth("ssaa")
+        draw(self._canvas)
+        return self.grab().toImage()
+
+    def _refine(self) -> None:
+        """Draw once more without stairs at the outlines, which is too slow while things move."""
+        # FXAA looks nearly as good for a third of the time, but VTK has none without a window.
+        self._smooth("ssaa" if isinstance(self._canvas, PaintedCanvas) else "fxaa")
+        draw(self._canvas)
+
+    def _smooth(self, kind: str) -> None:
+        """Let outlines be smoothed by one of VTK's filters, or by none."""
+        if kind != self._smoothing:
+            self._smoothing = kind
+            if kind:
+                self._plotter.enable_anti_aliasing(kind)
+            else:
+                self._plotter.disable_anti_aliasing()
+
+    def close_view(self) -> None:
+        """Give back all 3D objects; call it before the window goes. A second call does nothing."""
+        if self._open:
+            self._open = False
+            self._glide.stop()
+            self._rest.stop()
+            self._pointer.let_go()
+            self._plotter.close()
+
+    # -- what is shown over the view
+
+    def select_band(self, name: str | None) -> None:
+        """Put a white casing round one line, or round none."""
+        self.scene.mark_bands(name or "", self.scene.bands.hovered)
+        self.request_draw()
+
+    def hover_band(self, name: str | None) -> None:
+        """Put a faint casing round one line, as the pointer does, or round none."""
+        self.scene.mark_bands(self.scene.bands.selected, name or "")
+        self.request_draw()
+
+    def label_band(self, name: str | None, text: str = "", detail: str = "") -> None:
+        """Write beside a line, or take the label away."""
+        self._label = (name or "", text, detail)
+        self._place_label()
+
+    def _place_label(self) -> None:
+        name, text, detail = self._label
+        label = None
+        if name in self.scene.bands.names and self.scene.is_visible("bands"):
+            spine, _ = self.scene.bands.spine(name)
+            colour = self.scene.bands.colour(name)
+            label = BandLabel(text, detail, colour, self.scene.band_anchor(name), spine)
+        self.overlay.set_band(label)
+
+    def set_pins(self, pins: Iterable[Pin], selected: str = "") -> None:
+        """Show landmarks, at their places on the body at rest, as pins with labels, one of them selected."""
+        self._pins, self._selected_pin = tuple(pins), selected
+        self.request_draw()
+
+    def _place_pins(self) -> None:
+        """Let the pins ride on the skin, and tell those behind the body."""
+        pins = self._pins
+        if pins:
+            places = self.scene.carried(np.array([pin.position for pin in pins]))
+            pins = tuple(replace(pin, position=place) for pin, place in zip(pins, places, strict=True))
+        self.overlay.set_pins(pins, self._selected_pin)
+        self.overlay.follow(self.scene.view, [pin.name for pin in pins if self.scene.hidden(pin.position)])
+
+    def skin_in_the_middle(self) -> Floats | None:
+        """Return the place of the body at rest, shape (3,) [mm], in the middle of the picture, or None."""
+        return self._pointer.skin_at(QRectF(self._canvas.rect()).center())
+
+    def set_dark(self, dark: bool) -> None:
+        """Repaint for the light or the dark theme."""
+        self.scene.set_dark(dark)
+        self.request_draw()
+
+    # -- the camera
+
+    @property
+    def gliding(self) -> bool:
+        """Whether the camera is on its way to another view."""
+        return self._glide.state() == QVariantAnimation.State.Running
+
+    def set_view(self, name: str) -> None:
+        """Glide to the side called ``name`` in ``app.seeing.camera.VIEWS``."""
+        self._go(self.scene.view.named(name))
+
+    def set_parallel(self, parallel: bool) -> None:
+        """Switch between parallel and perspective projection."""
+        self.scene.set_parallel(parallel)
+        self._moved()
+
+    def frame_all(self) -> None:
+        """Glide to where the whole body is in the picture, and keep it there when the size changes."""
+        self._fit = self.scene.framing_all
+        self._go(self._fit(self._aspect()))
+
+    def frame_bust(self) -> None:
+        """Glide to the bust, and keep it framed when the size changes."""
+        self._fit = self.scene.framing_bust
+        self._go(self._fit(self._aspect()))
+
+    def _go(self, view: View) -> None:
+        self._glide.stop()
+        if not (self.motion and self.isVisible()):
+            self.scene.look_from(view)
+            self._moved()
+            return
+        self._glide_ends = (self.scene.view, view)
+        self._glide.setStartValue(0.0)
+        self._glide.setEndValue(1.0)
+        self._glide.start()
+
+    def _glided(self, part: float) -> None:
+        start, end = self._glide_ends
+        self.scene.look_from(start.towards(end, part))
+        self._moved()
+
+    def _moved(self) -> None:
+        self.request_draw()
+        self.view_changed.emit()
+
+    def _turn(self, view: View) -> None:
+        self._glide.stop()
+        self.scene.look_from(view)
+        self._moved()
+
+    def _shift(self, view: View) -> None:
+        self._fit = None
+        self._turn(view)
+
+    def _centre(self, view: View) -> None:
+        self._fit = None
+        self._go(view)
+
+    def _aspect(self) -> float:
+        return self.width() / max(self.height(), 1)
+
+    # -- Qt's events
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Keep what was framed in the frame."""
+        super().resizeEvent(event)
+        self.overlay.setGeometry(self._canvas.rect())
+        if self._fit is not None and self._open:
+            self.scene.look_from(self._fit(self._aspect()))
+        self.request_draw()
+
+    def changeEvent(self, event: QEvent) -> None:  # noqa: N802
+        """Follow the theme of the window."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and self._open:
+            self.set_dark(tokens_of(self).dark)

@@ -1,0 +1,1 @@
+"""Wording: words, colours and numbers that the window speaks in."""
