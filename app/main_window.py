@@ -1,4 +1,4 @@
-"""The main window: it puts the parts in their places and holds the one list of connections between them."""
+"""The main window: it makes the parts and puts them in their places."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from app.asking.housekeeping import Housekeeping
 from app.asking.session import Session
 from app.desks.desk import Desk
 from app.desks.line_maker import LineMaker
-from app.desks.recent import fill_recent_menu
 from app.desks.scan_desk import ScanDesk
 from app.dress.parts import hairline
 from app.panels.landmarks import LandmarksPanel
@@ -25,6 +24,7 @@ from app.panels.status import StatusBar
 from app.panels.top_bar import TopBar
 from app.showing.convergence import Strip
 from app.view_area import ViewArea
+from app.wiring import connect
 
 NARROW, WIDE = 340, 364
 """Width of the inspector in windows narrower and wider than 1400 pixels."""
@@ -56,7 +56,7 @@ class MainWindow(QMainWindow):
         self.desk = Desk(self)
         self.line_maker = LineMaker(self)
         self.housekeeping = Housekeeping(self)
-        self._connect()
+        connect(self)
 
     def _lay_out(self) -> None:
         lines = QWidget()
@@ -86,84 +86,6 @@ class MainWindow(QMainWindow):
         down.addWidget(self.status)
         self.setCentralWidget(central)
         self.inspector.setFixedWidth(WIDE)
-
-    def _connect(self) -> None:
-        """Connect everything: the session to the desk, the parts to the session, the actions to both."""
-        session, desk, scan_desk = self.session, self.desk, self.scan_desk
-        session.opened.connect(desk.show_opened)
-        session.frame_ready.connect(desk.show_frame)
-        session.design_changed.connect(desk.show_design)
-        session.failed.connect(desk.show_failure)
-        session.asked.connect(scan_desk.show_stuck)
-        session.working.connect(scan_desk.show_work)
-        session.saved.connect(desk.show_saved)
-        session.undo_stack.cleanChanged.connect(desk.show_title)
-
-        self.rail.step_chosen.connect(desk.go_to)
-        self.lines.length_previewed.connect(session.preview_line)
-        self.lines.length_committed.connect(desk.commit_line)
-        self.lines.drag_cancelled.connect(lambda _: session.cancel_preview())
-        self.lines.selected.connect(desk.select_line)
-        self.lines.visibility_changed.connect(desk.set_line_visible)
-        self.lines.reset_all.connect(session.reset_lines)
-        self.strip.control_chosen.connect(session.choose_control)
-        self.lines.add_asked.connect(self.line_maker.show_menu)
-        self.lines.removed.connect(self.line_maker.remove)
-        self.door.clicked.connect(desk.show_model)
-        self.model.left.connect(lambda: desk.go_to("lines"))
-        self.model.changed.connect(session.change)
-        self.scan.open_asked.connect(desk.open)
-        self.scan.told.connect(scan_desk.tell)
-        self.scan.front_asked.connect(scan_desk.ask)
-        self.landmarks.landmark_selected.connect(desk.select_landmark)
-        self.landmarks.reset_asked.connect(scan_desk.reset_landmarks)
-        self.landmarks.place_asked.connect(scan_desk.put_pin)
-
-        self._connect_view()
-        self._connect_actions()
-
-    def _connect_view(self) -> None:
-        desk, scan_desk, view = self.desk, self.scan_desk, self.view
-        view.viewport.band_clicked.connect(desk.select_line)
-        view.viewport.pin_pressed.connect(desk.select_landmark)
-        view.viewport.pin_moved.connect(view.drag_landmark)
-        view.viewport.pin_released.connect(scan_desk.place_landmark)
-        view.busy.cancelled.connect(scan_desk.cancel)
-        view.question.answered.connect(scan_desk.answer)
-        view.question.left.connect(scan_desk.leave_question)
-        view.tools.view_chosen.connect(view.viewport.set_view)
-        view.tools.fit_asked.connect(view.viewport.frame_all)
-        view.tools.toggled.connect(view.set_layer)
-        view.tools.picture_asked.connect(desk.save_picture)
-        view.compare.after_chosen.connect(view.set_after)
-
-    def _connect_actions(self) -> None:
-        session, desk, view, do = self.session, self.desk, self.view, self.actions_
-        do.open.triggered.connect(desk.open)
-        do.save.triggered.connect(desk.save)
-        do.save_as.triggered.connect(desk.save_as)
-        do.export.triggered.connect(desk.export)
-        do.cancel.triggered.connect(self.scan_desk.cancel)
-        do.quit.triggered.connect(self.close)
-        do.reset.triggered.connect(session.reset_lines)
-        do.flip.triggered.connect(lambda: view.set_after(not view.after))
-        do.strip.toggled.connect(lambda on: self.strip.set_folded(not on))
-        self.strip.folded.connect(lambda folded: do.strip.setChecked(not folded))
-        do.own_line.triggered.connect(self.line_maker.ask)
-        do.model.triggered.connect(desk.show_model)
-        do.about.triggered.connect(desk.about)
-        do.recent.aboutToShow.connect(lambda: fill_recent_menu(do.recent, desk.open_file))
-        for name, action in do.samples.items():
-            action.triggered.connect(lambda _=False, sample=name: desk.open_sample(sample))
-        for group, ask in (
-            (do.add_lines, self.line_maker.add),
-            (do.controls, session.choose_control),
-            (do.templates, session.choose_template),
-            (do.themes, desk.choose_theme),
-            (do.languages, desk.choose_language),
-        ):
-            for name, action in group.items():
-                action.triggered.connect(lambda _=False, ask=ask, name=name: ask(name))
 
     def is_settled(self) -> bool:
         """Tell whether the session's design is solved to the end and shown."""

@@ -1,0 +1,98 @@
+"""The one list of connections: who of the window hears whom."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from app.desks.recent import fill_recent_menu
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+
+
+def connect(window: MainWindow) -> None:
+    """Connect everything: the session to the desks, the parts to the session, the actions to both."""
+    _connect_session(window)
+    _connect_panels(window)
+    _connect_view(window)
+    _connect_actions(window)
+
+
+def _connect_session(window: MainWindow) -> None:
+    session, desk, scan_desk = window.session, window.desk, window.scan_desk
+    session.opened.connect(desk.show_opened)
+    session.frame_ready.connect(desk.show_frame)
+    session.design_changed.connect(desk.show_design)
+    session.failed.connect(desk.show_failure)
+    session.asked.connect(scan_desk.show_stuck)
+    session.working.connect(scan_desk.show_work)
+    session.saved.connect(desk.show_saved)
+    session.undo_stack.cleanChanged.connect(desk.show_title)
+
+
+def _connect_panels(window: MainWindow) -> None:
+    session, desk, scan_desk = window.session, window.desk, window.scan_desk
+    window.rail.step_chosen.connect(desk.go_to)
+    window.lines.length_previewed.connect(session.preview_line)
+    window.lines.length_committed.connect(desk.commit_line)
+    window.lines.drag_cancelled.connect(lambda _: session.cancel_preview())
+    window.lines.selected.connect(desk.select_line)
+    window.lines.visibility_changed.connect(desk.set_line_visible)
+    window.lines.reset_all.connect(session.reset_lines)
+    window.strip.control_chosen.connect(session.choose_control)
+    window.lines.add_asked.connect(window.line_maker.show_menu)
+    window.lines.removed.connect(window.line_maker.remove)
+    window.door.clicked.connect(desk.show_model)
+    window.model.left.connect(lambda: desk.go_to("lines"))
+    window.model.changed.connect(session.change)
+    window.scan.open_asked.connect(desk.open)
+    window.scan.told.connect(scan_desk.tell)
+    window.scan.front_asked.connect(scan_desk.ask)
+    window.landmarks.landmark_selected.connect(desk.select_landmark)
+    window.landmarks.reset_asked.connect(scan_desk.reset_landmarks)
+    window.landmarks.place_asked.connect(scan_desk.put_pin)
+
+
+def _connect_view(window: MainWindow) -> None:
+    desk, scan_desk, view = window.desk, window.scan_desk, window.view
+    view.viewport.band_clicked.connect(desk.select_line)
+    view.viewport.pin_pressed.connect(desk.select_landmark)
+    view.viewport.pin_moved.connect(view.drag_landmark)
+    view.viewport.pin_released.connect(scan_desk.place_landmark)
+    view.busy.cancelled.connect(scan_desk.cancel)
+    view.question.answered.connect(scan_desk.answer)
+    view.question.left.connect(scan_desk.leave_question)
+    view.tools.view_chosen.connect(view.viewport.set_view)
+    view.tools.fit_asked.connect(view.viewport.frame_all)
+    view.tools.toggled.connect(view.set_layer)
+    view.tools.picture_asked.connect(desk.save_picture)
+    view.compare.after_chosen.connect(view.set_after)
+
+
+def _connect_actions(window: MainWindow) -> None:
+    session, desk, view, do = window.session, window.desk, window.view, window.actions_
+    do.open.triggered.connect(desk.open)
+    do.save.triggered.connect(desk.save)
+    do.save_as.triggered.connect(desk.save_as)
+    do.export.triggered.connect(desk.export)
+    do.cancel.triggered.connect(window.scan_desk.cancel)
+    do.quit.triggered.connect(window.close)
+    do.reset.triggered.connect(session.reset_lines)
+    do.flip.triggered.connect(lambda: view.set_after(not view.after))
+    do.strip.toggled.connect(lambda on: window.strip.set_folded(not on))
+    window.strip.folded.connect(lambda folded: do.strip.setChecked(not folded))
+    do.own_line.triggered.connect(window.line_maker.ask)
+    do.model.triggered.connect(desk.show_model)
+    do.about.triggered.connect(desk.about)
+    do.recent.aboutToShow.connect(lambda: fill_recent_menu(do.recent, desk.open_file))
+    for name, action in do.samples.items():
+        action.triggered.connect(lambda _=False, sample=name: desk.open_sample(sample))
+    for group, ask in (
+        (do.add_lines, window.line_maker.add),
+        (do.controls, session.choose_control),
+        (do.templates, session.choose_template),
+        (do.themes, desk.choose_theme),
+        (do.languages, desk.choose_language),
+    ):
+        for name, action in group.items():
+            action.triggered.connect(lambda _=False, ask=ask, name=name: ask(name))
