@@ -95,6 +95,8 @@ class LiveSolver:
         self._comparison: Comparison | None = None
         self._seconds = 0.0
         self._held = False
+        self._pace: float | None = None
+        self._turned_at = 0.0
         self._warmer: threading.Thread | None = None
         self._thread = threading.Thread(target=self._work, name="busk-solver", daemon=True)
         self._thread.start()
@@ -141,6 +143,12 @@ class LiveSolver:
         finally:
             self._held = False
 
+    def set_pace(self, turns_per_second: float | None) -> None:
+        """Make turns no faster than this, one a frame, so that each can be seen; None: as fast as they go."""
+        with self._wake:
+            self._pace = turns_per_second
+            self._wake.notify()
+
     def stop(self) -> None:
         """Ask the thread to end and wait until it has."""
         with self._wake:
@@ -157,6 +165,8 @@ class LiveSolver:
             while True:
                 with self._wake:
                     self._wake.wait_for(self._something_to_do)
+                    while not self._called and (pause := self._pause) > 0.0:
+                        self._wake.wait(pause)
                     if self._stopping:
                         return
                     request, self._request = self._request, None
@@ -191,7 +201,17 @@ class LiveSolver:
 
     def _something_to_do(self) -> bool:
         turning = self._comparison is not None and not self._comparison.resting
-        return self._stopping or self._request is not None or turning
+        return self._called or turning
+
+    @property
+    def _called(self) -> bool:
+        return self._stopping or self._request is not None
+
+    @property
+    def _pause(self) -> float:
+        """Seconds until the next turn may be made."""
+        pace = self._pace
+        return self._turned_at + 1.0 / pace - time.perf_counter() if pace else 0.0
 
     def _take(self, request: _Request) -> None:
         self._at_work, stuck = request.revision, self._stuck
@@ -228,7 +248,10 @@ class LiveSolver:
         while not comparison.resting and (start := time.perf_counter()) < end:
             if self._held:
                 time.sleep(_NAP)
+            elif self._pause > 0.0:
+                return
             else:
+                self._turned_at = start
                 comparison.advance()
                 self._seconds += time.perf_counter() - start
 

@@ -128,6 +128,27 @@ def test_no_turn_is_made_while_a_frame_is_shown(solver: LiveSolver, built: Built
     assert second.seconds == first.seconds, "what is not worked is not counted"
 
 
+def test_at_a_pace_each_turn_is_shown_and_a_new_length_does_not_wait(
+    solver: LiveSolver, built: Built
+) -> None:
+    design = built("mannequin").design
+    settled(solver, solver.submit(design))
+    solver.set_pace(40.0)
+    start = time.monotonic()
+    revision = solver.submit(design.with_line("mid-bust", 0.95), fresh=True)
+    seen = [answer(solver, lambda frame: frame.revision == revision)]
+    while len(seen) < 6:
+        seen.append(answer(solver, lambda _: True))
+    first = len(seen[0].tracks["adaptive"])
+    assert [len(frame.tracks["adaptive"]) for frame in seen] == list(range(first, first + 6))
+    assert time.monotonic() - start >= 5 / 40.0
+    solver.set_pace(0.001)
+    revision = solver.submit(design.with_line("mid-bust", 0.94))
+    assert answer(solver, lambda frame: frame.revision == revision).at_work
+    solver.set_pace(None)
+    assert settled(solver, revision).verdict.state == "settled"
+
+
 def test_the_stages_at_work_are_named(built: Built) -> None:
     told: list[str] = []
     solver = LiveSolver(lambda what, _: told.append(what))
