@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from PySide6.QtCore import QEvent, QObject
-from PySide6.QtGui import QImage, QResizeEvent
+from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.asking.background import Background
@@ -16,6 +15,7 @@ from app.panels.busy import BusyCard
 from app.panels.question import QuestionCard
 from app.panels.view_tools import CompareTools, ViewTools
 from app.seeing.body import bake_occlusion
+from app.showing.floating import Floating
 from app.showing.overlay import Pin
 from app.showing.viewport import Viewport
 from core.body import Body
@@ -26,7 +26,6 @@ from core.lines import Line
 from core.live import Frame
 from core.mesh import Points
 
-_MARGIN = 14
 SCENE_PARTS = {"control-mesh": "control", "bands": "bands", "ghost": "ghost"}
 """Layers of the tools by what the scene calls them."""
 
@@ -55,10 +54,15 @@ class ViewArea(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.viewport)
-        for panel in (self.tools, self.compare, self.busy, self.question):
-            panel.installEventFilter(self)
-            panel.raise_()
+        self.floating = Floating(self)
+        for panel, corner in (
+            (self.tools, "bottom"),
+            (self.busy, "bottom"),
+            (self.question, "bottom"),
+            (self.compare, "top-left"),
+        ):
             panel.hide()
+            self.floating.place(panel, corner)
         self.viewport.set_view("three-quarter")
         self.tools.set_view("three-quarter")
         self.tools.set_shown("bands", True)
@@ -167,6 +171,10 @@ class ViewArea(QWidget):
         self._show_label()
         self.viewport.request_draw()
 
+    def place(self, panel: QWidget, corner: str) -> None:
+        """Let a panel float in one of ``app.showing.floating.CORNERS``, over what is there already."""
+        self.floating.place(panel, corner)
+
     def picture(self) -> QImage:
         """Return what is seen."""
         return self.viewport.picture()
@@ -176,34 +184,11 @@ class ViewArea(QWidget):
         self._background.close()
         self.viewport.close_view()
 
-    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
-        """Keep the floating tools in their places."""
-        super().resizeEvent(event)
-        self._place_tools()
-
-    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """Place the tools again once they know their size."""
-        if event.type() == QEvent.Type.Show:
-            self._place_tools()
-        return False
-
     def _show_view(self) -> None:
         """Mark the tool of the view that the camera is in; on its way there it stays marked."""
         name = self.viewport.scene.view.name
         if name is not None or not self.viewport.gliding:
             self.tools.set_view(name)
-
-    def _place_tools(self) -> None:
-        for panel in (self.tools, self.compare):
-            panel.adjustSize()
-        self.tools.move(
-            (self.width() - self.tools.width()) // 2, self.height() - self.tools.height() - _MARGIN + 10
-        )
-        self.compare.move(_MARGIN - 10, _MARGIN - 8)
-        low = self.tools.y() if self._body is not None else self.height() - _MARGIN
-        for card in (self.busy, self.question):
-            card.adjustSize()
-            card.move((self.width() - card.width()) // 2, max(low - card.height(), 0))
 
     def _show_body(self, body: Body) -> None:
         self._body = body

@@ -1,0 +1,71 @@
+"""Panels float in the corners of a view, and none lies on another."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import pytest
+from PySide6.QtCore import QRect, QSize
+from PySide6.QtWidgets import QApplication, QWidget
+
+from app.dress.parts import FloatingPanel
+from app.showing.floating import GAP, Floating
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+class Panel(FloatingPanel):
+    def __init__(self, width: int, height: int) -> None:
+        super().__init__()
+        self.wanted = QSize(width, height)
+
+    def sizeHint(self) -> QSize:  # noqa: N802
+        left, top, right, bottom = self.MARGINS
+        return self.wanted + QSize(left + right, top + bottom)
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802
+        return self.sizeHint()
+
+    def seen(self) -> QRect:
+        left, top, right, bottom = self.MARGINS
+        return self.geometry().adjusted(left, top, -right, -bottom)
+
+
+def test_panels_keep_their_corners_and_clear_each_other() -> None:
+    view = QWidget()
+    view.resize(1160, 760)
+    floating = Floating(view)
+    tools, card, legend, inset = Panel(520, 44), Panel(300, 60), Panel(104, 240), Panel(264, 302)
+    for panel, corner in (
+        (tools, "bottom"),
+        (card, "bottom"),
+        (legend, "top-right"),
+        (inset, "bottom-left"),
+    ):
+        floating.place(panel, corner)
+    view.show()
+
+    assert tools.seen().center().x() == pytest.approx(580, abs=1)
+    assert tools.seen().bottom() == inset.seen().bottom() == 759 - GAP
+    assert card.seen().bottom() < tools.seen().top()
+    assert (legend.seen().right(), legend.seen().top()) == (1159 - GAP, GAP)
+    assert inset.seen().left() == GAP
+
+    view.resize(763, 460)  # the smallest view: here the inset would reach under the tools
+    QApplication.processEvents()
+    assert inset.seen().bottom() < tools.seen().top()
+    legend.wanted = QSize(140, 240)
+    legend.updateGeometry()
+    floating.settle()
+    assert legend.seen().right() == 762 - GAP
+    for one, other in combinations((tools, card, legend, inset), 2):
+        assert not one.seen().intersects(other.seen())
+
+    card.hide()
+    floating.remove(inset)
+    before = inset.geometry()
+    view.resize(1000, 700)
+    QApplication.processEvents()
+    assert inset.geometry() == before
+    view.close()
+    view.deleteLater()
