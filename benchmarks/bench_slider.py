@@ -18,7 +18,8 @@ from pathlib import Path
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from core.design import Design, ScanSource, WornLine
+from core.design import Design, ScanSource
+from core.design_lines import WornLine
 from core.exact import solve_exact
 from core.pipeline import Stages, build
 from core.solver import Targets, at_rest, turn

@@ -19,7 +19,8 @@ from threadpoolctl import threadpool_limits
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from app.wording.samples import SAMPLES, sample_design
-from core.design import Design, WornLine
+from core.design import Design
+from core.design_lines import WornLine
 from core.exact import solve_exact
 from core.own_lines import ready_made
 from core.pipeline import Stages, build

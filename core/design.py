@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, fields, replace
-from itertools import pairwise
+from dataclasses import dataclass, field, fields, replace
+from functools import reduce
 from pathlib import Path
 from typing import Any
 
-from core.errors import LandmarkError, LineError, ProjectError, UserError
+from core.design_lines import LineTraits, OwnLine, WornLine, partner_of
+from core.errors import LandmarkError, LineError, UserError
 from core.lines import RATIO_LIMITS
 from core.mechanics import CHOICES, DEFAULT_LINE_STIFFNESS, RANGES, Mechanics
 from core.placing import PlacedMark
 from core.volume import CONTROLS
 
-FORMAT = 1
 WEIGHTS = ("smooth", "paper")
 TEMPLATES = ("168", "120")
 
@@ -42,40 +41,6 @@ class ScanSource:
 
 
 @dataclass(frozen=True)
-class WornLine:
-    """A line that is worn, and its natural length as ratio of its length at rest [1] (paper section 3)."""
-
-    name: str
-    ratio: float
-
-
-@dataclass(frozen=True)
-class OwnLine:
-    """A line of the designer's own through control points of the template, by number; "closed" goes round.
-
-    Raises LineError if it has no name or does not go from point to point.
-    """
-
-    name: str
-    points: tuple[int, ...]
-    closed: bool = False
-
-    def __post_init__(self) -> None:
-        if not self.name.strip():
-            raise LineError("A line has no name.", "Give each line a name of its own.")
-        if len(self.points) < (3 if self.closed else 2) or any(a == b for a, b in pairwise(self.path)):
-            raise LineError(
-                f"The line {self.name} does not go from point to point.",
-                "Name two control points at least, three if it is closed, and none twice in a row.",
-            )
-
-    @property
-    def path(self) -> tuple[int, ...]:
-        """The control points in order; a closed line ends with the one that it begins with."""
-        return self.points + self.points[:1] if self.closed else self.points
-
-
-@dataclass(frozen=True)
 class Design:
     """The document: what is saved, undone and solved.
 
@@ -84,8 +49,9 @@ class Design:
     force; None stands for 0.97 of the limit at which it starts to vibrate at rest. ``scaled_normals`` lets
     what stands off the control mesh grow with it; ``dense_volume`` lets the exact answer hold the volume of
     the body itself and not that of the control mesh. For the choices of the model see ``core.mechanics``.
-    ``own_lines`` are lines beside those of the template, ``placed`` the landmarks that were placed by hand.
-    ``unknown`` keeps what a later version wrote.
+    ``own_lines`` are lines beside those of the template, ``traits`` how lines are treated where that is
+    not as usual, ``placed`` the landmarks that were placed by hand. ``unknown`` keeps what a later version
+    wrote.
     """
 
     scan: ScanSource
@@ -106,6 +72,7 @@ class Design:
     firm_chest: float = 0.0
     volume_of: str = "each"
     own_lines: tuple[OwnLine, ...] = ()
+    traits: tuple[LineTraits, ...] = ()
     placed: tuple[PlacedMark, ...] = ()
     unknown: Mapping[str, Any] = field(default_factory=dict, hash=False)
 
@@ -121,6 +88,9 @@ class Design:
         twice = _twice([line.name for line in self.own_lines])
         if twice:
             raise LineError(f"There are two lines '{twice}'.", "Give each line a name of its own.")
+        twice = _twice([line.name for line in self.traits])
+        if twice:
+            raise LineError(f"The line {twice} is treated in two ways.", "Say once how.")
         twice = _twice([mark.name for mark in self.placed])
         if twice:
             raise LandmarkError(f"The landmark {twice} is placed twice.", "Place it once.")
@@ -180,9 +150,27 @@ class Design:
         return replace(self, own_lines=(*others, line))
 
     def without_own_line(self, name: str) -> Design:
-        """Return the design without an own line and its length."""
+        """Return the design without an own line and what was decided of it. Raises LineError if locked."""
+        self._check_unlocked(name)
         own = tuple(each for each in self.own_lines if each.name != name)
-        return replace(self.with_line(name, None), own_lines=own)
+        worn = tuple(line for line in self.lines if line.name != name)
+        return replace(self.with_traits(LineTraits(name)), lines=worn, own_lines=own)
+
+    def traits_of(self, name: str) -> LineTraits:
+        """Return how a line is treated."""
+        return next((traits for traits in self.traits if traits.name == name), LineTraits(name))
+
+    def with_traits(self, traits: LineTraits) -> Design:
+        """Return the design with a line treated in another way."""
+        others = [each for each in self.traits if each.name != traits.name]
+        kept = others if traits == LineTraits(traits.name) else [*others, traits]
+        return replace(self, traits=tuple(sorted(kept, key=lambda each: each.name)))
+
+    def linked(self, name: str) -> tuple[str, ...]:
+        """Return the own line ``name`` and its partner of the other side, if they share their length."""
+        partner = partner_of(name)
+        both = partner in {line.name for line in self.own_lines} and self.traits_of(name).linked
+        return (name, partner) if both else (name,)
 
     def with_placed(self, name: str, position: tuple[float, float, float] | None) -> Design:
         """Return the design with a landmark placed in the scan file's frame, or found again (None)."""
@@ -191,10 +179,25 @@ class Design:
         return replace(self, placed=tuple(sorted(placed, key=lambda mark: mark.name)))
 
     def with_line(self, name: str, ratio: float | None) -> Design:
-        """Return the design with a line at ``ratio``, or taken off (None)."""
+        """Return the design with a line at ``ratio``, or off (None). Raises LineError if it is locked."""
+        if ratio != (self.ratio(name) if name in self.worn() else None):
+            self._check_unlocked(name)
         others = [line for line in self.lines if line.name != name]
         worn = [*others, WornLine(name, ratio)] if ratio is not None else others
         return replace(self, lines=tuple(sorted(worn, key=lambda line: line.name)))
+
+    def with_linked(self, name: str, ratio: float | None) -> Design:
+        """Return the design with a line and its linked partner at ``ratio``. Raises LineError if locked."""
+        return reduce(lambda design, each: design.with_line(each, ratio), self.linked(name), self)
+
+    def at_rest(self) -> Design:
+        """Return the design with every line taken off that is not locked."""
+        kept = tuple(line for line in self.lines if self.traits_of(line.name).locked)
+        return replace(self, lines=kept)
+
+    def _check_unlocked(self, name: str) -> None:
+        if self.traits_of(name).locked:
+            raise LineError(f"The line {name} is locked.", "Unlock it first.")
 
 
 def _twice(names: list[str]) -> str:
@@ -219,47 +222,3 @@ def no_balance() -> LineError:
         "No balance was found with the lines at these lengths.",
         "Set them nearer to 100 %, or let turns hold the volume.",
     )
-
-
-def to_json(design: Design) -> str:
-    """Return the design as text, format number first."""
-    values = asdict(design)
-    unknown = values.pop("unknown")
-    return json.dumps({"format": FORMAT, "length_unit": "mm", **unknown, **values}, indent=1)
-
-
-def from_json(text: str) -> Design:
-    """Read a design; keys of later versions are kept. Raises ProjectError if it is no design."""
-    try:
-        values = dict(json.loads(text))
-        written = values.pop("format")
-        values.pop("length_unit", None)
-        if written > FORMAT:
-            raise ProjectError(
-                f"This project has format {written}; this Busk reads up to {FORMAT}.", "Update Busk."
-            )
-        scan = ScanSource(**values.pop("scan"))
-        lines = tuple(WornLine(str(line["name"]), float(line["ratio"])) for line in values.pop("lines"))
-        own = tuple(_own_line(line) for line in values.pop("own_lines", ()))
-        placed = tuple(_placed(mark) for mark in values.pop("placed", ()))
-        known = {f.name for f in fields(Design)} - {"unknown"}
-        unknown = {key: values.pop(key) for key in list(values) if key not in known}
-        return Design(scan=scan, lines=lines, own_lines=own, placed=placed, unknown=unknown, **values)
-    except UserError:
-        raise
-    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as broken:
-        raise ProjectError(
-            "The project's design cannot be read.", "Open a backup or start from the scan."
-        ) from broken
-
-
-def _own_line(values: Mapping[str, Any]) -> OwnLine:
-    points, closed = values["points"], values.get("closed", False)
-    if not isinstance(closed, bool) or not all(type(point) is int for point in points):
-        raise TypeError("points are numbers, closed is true or false")
-    return OwnLine(str(values["name"]), tuple(points), closed)
-
-
-def _placed(values: Mapping[str, Any]) -> PlacedMark:
-    x, y, z = map(float, values["position"])
-    return PlacedMark(str(values["name"]), (x, y, z))

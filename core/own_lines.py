@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from itertools import groupby
 
-from core.design import OwnLine
+from core.design_lines import OwnLine
 from core.errors import LineError
 from core.template import Template
 

@@ -13,9 +13,10 @@ import numpy as np
 
 from core.body import Body, RefusedError, body_of
 from core.control_mesh import ControlMesh, fit_control_mesh
-from core.design import Design, OwnLine, ScanSource
+from core.design import Design, ScanSource
+from core.design_lines import OwnLine
 from core.errors import FitError, LandmarkError, LineError, UserError
-from core.fitting.back_length import back_length
+from core.fitting.back_length import Back, back_of
 from core.landmark import Landmark, Landmarks
 from core.landmarks import find_landmarks
 from core.mechanics import Mechanics
@@ -43,9 +44,9 @@ Memo = Mapping[str, tuple[tuple[Any, ...], Any]]
 class Stages:
     """The results that a design leads to before any turn is made.
 
-    ``gain`` is the conventional gain in force, ``gain_limit`` the one at which it begins to vibrate at rest
-    (probe units [1]); ``seconds`` what each stage took when it was last made; ``memo`` holds each stage's
-    inputs and result for reuse.
+    ``backs`` complete the lines of the template to whole bands. ``gain`` is the conventional gain in force,
+    ``gain_limit`` the one at which it begins to vibrate at rest (probe units [1]); ``seconds`` what each
+    stage took when it was last made; ``memo`` holds each stage's inputs and result for reuse.
     """
 
     design: Design
@@ -57,6 +58,7 @@ class Stages:
     binding: Binding
     moving: MovingFaces
     watch: BodyWatch
+    backs: Mapping[str, Back]
     model: ConstrainedModel
     gain_limit: float
     seconds: Mapping[str, float]
@@ -193,7 +195,7 @@ def _stages(stage: _Stager, design: Design, scan: ScanFile, body: Body) -> Stage
     middle = float(control.mesh.vertices[control.border, 0].mean())
     moving = stage("prepare normals", moving_faces, body.mesh, binding.moving, middle)
     watch = stage("watch body", BodyWatch, binding, control, landmarks)
-    backs = stage("measure bands", _back_lengths, body, control)
+    backs = stage("measure bands", _backs, body, control)
     laid = stage("lay own lines", with_own_lines, control, design.own_lines)
     model = stage("build model", _model, laid, backs, design.worn(), design.mechanics)
     limit = stage("probe gain", gain_limit, model)
@@ -207,6 +209,7 @@ def _stages(stage: _Stager, design: Design, scan: ScanFile, body: Body) -> Stage
         binding,
         moving,
         watch,
+        backs,
         model,
         limit,
         stage.seconds,
@@ -269,14 +272,15 @@ def with_own_lines(control: ControlMesh, own: tuple[OwnLine, ...]) -> ControlMes
     return replace(control, paths=MappingProxyType(paths))
 
 
-def _back_lengths(body: Body, control: ControlMesh) -> dict[str, float]:
-    return {name: back_length(body.calm, control, name) for name in control.paths}
+def _backs(body: Body, control: ControlMesh) -> dict[str, Back]:
+    return {name: back_of(body.calm, control, name) for name in control.paths}
 
 
 def _model(
-    control: ControlMesh, backs: Mapping[str, float], worn: frozenset[str], mechanics: Mechanics
+    control: ControlMesh, backs: Mapping[str, Back], worn: frozenset[str], mechanics: Mechanics
 ) -> ConstrainedModel:
     unknown = sorted(worn - set(control.paths))
     if unknown:
         raise LineError(f"There is no line '{unknown[0]}'.", f"The lines are: {', '.join(control.paths)}.")
-    return constrained_model(control, worn=worn, back_lengths=backs, mechanics=mechanics)
+    lengths = {name: back.length for name, back in backs.items()}
+    return constrained_model(control, worn=worn, back_lengths=lengths, mechanics=mechanics)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import zipfile
@@ -11,8 +12,10 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from core.design import Design, ScanSource, from_json, to_json
-from core.errors import ProjectError
+from core.design import ScanSource
+from core.design_text import FORMAT, from_json, to_json
+from core.document import Document
+from core.errors import ProjectError, UserError
 from core.progress import Progress, quiet
 from core.reading.scan_file import scan_bytes
 
@@ -38,34 +41,65 @@ def is_project(path: str | os.PathLike[str]) -> bool:
 
 
 def save_project(
-    path: str | os.PathLike[str], design: Design, scan: ScanFile, picture: bytes | None
-) -> Design:
-    """Write the project whole or not at all, and return the design with its scan inside that file.
+    path: str | os.PathLike[str], document: Document, scan: ScanFile, picture: bytes | None
+) -> Document:
+    """Write the project whole or not at all, and return the document with its scan inside that file.
 
     Raises ProjectError if the file cannot be written; what was there before then stays.
     """
     target = Path(path).absolute()
     member = f"scan/{_safe_name(scan.name)}"
     # The project may move to another place: inside it the scan needs no path.
-    inside = replace(design, scan=replace(design.scan, path="", member=member))
+    inside = _with_scan(document, "", member)
     with whole_file(target) as partial, zipfile.ZipFile(partial, "w", zipfile.ZIP_STORED) as archive:
-        archive.writestr("design.json", to_json(inside))
+        for name, text in _texts(inside).items():
+            archive.writestr(name, text)
         archive.writestr(member, scan.data)
         if picture:
             archive.writestr("preview.png", picture)
-    return replace(inside, scan=replace(inside.scan, path=str(target)))
+    return _with_scan(inside, str(target), member)
 
 
-def open_project(path: str | os.PathLike[str]) -> Design:
-    """Read the design of a project; its scan is read from the same file. Raises ProjectError."""
+def open_project(path: str | os.PathLike[str]) -> Document:
+    """Read the document of a project; its scan is read from the same file. Raises ProjectError."""
     source = Path(path).absolute()
     with _archive(source) as archive:
-        design = from_json(_member(archive, "design.json", _LARGEST_DESIGN).decode("utf-8", errors="replace"))
-        if design.scan.member not in archive.namelist():
+        document = _document(archive)
+        member = document.design.scan.member
+        if member not in archive.namelist():
             raise ProjectError(
                 f"{source.name} holds no scan.", "Open a backup, or start again from the scan."
             )
-    return replace(design, scan=replace(design.scan, path=str(source)))
+    return _with_scan(document, str(source), member)
+
+
+def _texts(document: Document) -> dict[str, str]:
+    """Return what is written of a document, by member."""
+    others = {name: json.loads(to_json(each)) for name, each in document.designs if name != document.shown}
+    if document == Document.of(document.design):
+        return {"design.json": to_json(document.design)}
+    # An older program would drop the variants at its next save: it must not read this.
+    variants = {"shown": document.shown, "others": others}
+    return {"design.json": to_json(document.design, FORMAT), "variants.json": json.dumps(variants, indent=1)}
+
+
+def _document(archive: zipfile.ZipFile) -> Document:
+    design = from_json(_text(archive, "design.json"))
+    if "variants.json" not in archive.namelist():
+        return Document.of(design)
+    try:
+        told = json.loads(_text(archive, "variants.json"))
+        others = {str(name): from_json(json.dumps(each)) for name, each in told["others"].items()}
+        designs = others | {str(told["shown"]): design}
+        return Document(tuple(sorted(designs.items())), str(told["shown"])).with_design(design)
+    except (UserError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as broken:
+        raise ProjectError("The project's variants cannot be read.", "Open a backup.") from broken
+
+
+def _with_scan(document: Document, path: str, member: str) -> Document:
+    """Return the document with its scan in a file, for every variant."""
+    scan = replace(document.design.scan, path=path, member=member)
+    return document.with_design(replace(document.design, scan=scan))
 
 
 def read_scan_file(source: ScanSource, progress: Progress = quiet) -> ScanFile:
@@ -119,6 +153,10 @@ def _archive(path: Path) -> Iterator[zipfile.ZipFile]:
         raise ProjectError(
             f"{path.name} is not a whole Busk project.", "Open a backup, or start again from the scan."
         ) from problem
+
+
+def _text(archive: zipfile.ZipFile, name: str) -> str:
+    return _member(archive, name, _LARGEST_DESIGN).decode("utf-8", errors="replace")
 
 
 def _member(archive: zipfile.ZipFile, name: str, largest: int) -> bytes:

@@ -14,7 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from core import __version__
-from core.design import WornLine, to_json
+from core.design_lines import WornLine
+from core.design_text import to_json
 from core.export import write_control_points, write_mesh
 from core.lines import Line
 from core.pipeline import Stages

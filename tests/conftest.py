@@ -19,7 +19,8 @@ from threadpoolctl import threadpool_limits
 
 import core.body
 from core import pipeline
-from core.design import Design, ScanSource, WornLine
+from core.design import Design, ScanSource
+from core.design_lines import WornLine
 from core.pipeline import Stages, build
 
 SAMPLES = Path(__file__).parent.parent / "resources" / "samples"
@@ -65,7 +66,7 @@ def one_blas_thread() -> Iterator[None]:
 def stages_made_once() -> Iterator[None]:
     """Of the way from a file to a fitted model each stage is made once for equal inputs: they are frozen."""
     with pytest.MonkeyPatch.context() as patch:
-        for name in ("body_of", "find", "read_template", "fit_control_mesh", "patch_fade", "_back_lengths"):
+        for name in ("body_of", "find", "read_template", "fit_control_mesh", "patch_fade", "_backs"):
             patch.setattr(pipeline, name, remembered(getattr(pipeline, name)))
         yield
 

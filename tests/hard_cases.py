@@ -10,7 +10,7 @@ from shapes import fitted, torso
 
 from core.comparison import judge_balance, shape_of
 from core.control_mesh import ControlMesh
-from core.design import OwnLine
+from core.design_lines import OwnLine
 from core.exact import solve_exact
 from core.mechanics import CONTACTS, HOLDS, LAWS, VOLUMES, Mechanics
 from core.model import ConstrainedModel, constrained_model

@@ -1,6 +1,7 @@
 """A small project file, whole and known to the last byte, for the tests of files."""
 
 from core.design import Design, ScanSource
+from core.document import Document
 from core.project import ScanFile, save_project
 
 SCAN = ScanFile("body.ply", b"ply\nformat ascii 1.0\nend_header\n" + bytes(range(256)))
@@ -10,5 +11,5 @@ PICTURE = b"\x89PNG not really"
 
 def write_project(folder):
     path = folder / "anna.busk"
-    save_project(path, DESIGN, SCAN, PICTURE)
+    save_project(path, Document.of(DESIGN), SCAN, PICTURE)
     return path

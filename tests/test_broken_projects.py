@@ -10,7 +10,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from small_project import DESIGN, PICTURE, SCAN
 
-from core.design import ScanSource, to_json
+from core.design import ScanSource
+from core.design_text import to_json
+from core.document import Document
 from core.errors import ProjectError, UserError
 from core.project import open_project, read_scan_file, save_project
 
@@ -20,7 +22,7 @@ def test_every_truncation_is_refused_in_a_sentence(project):
     for length in range(0, len(whole), 7):
         project.write_bytes(whole[:length])
         with pytest.raises(ProjectError) as refused:
-            read_scan_file(open_project(project).scan)
+            read_scan_file(open_project(project).design.scan)
         assert refused.value.hint
 
 
@@ -28,14 +30,14 @@ def test_every_truncation_is_refused_in_a_sentence(project):
 @given(changes=st.lists(st.tuples(st.integers(0, 10**6), st.integers(0, 255)), min_size=1, max_size=4))
 def test_no_flipped_byte_does_worse_than_a_refusal(tmp_path, changes):
     path = tmp_path / "anna.busk"
-    save_project(path, DESIGN, SCAN, PICTURE)
+    save_project(path, Document.of(DESIGN), SCAN, PICTURE)
     broken = bytearray(path.read_bytes())
     for place, value in changes:
         broken[place % len(broken)] = value
     path.write_bytes(bytes(broken))
     # Any other error than a refusal fails this test, and so does a scan that is not the one that was saved.
     with suppress(UserError):
-        assert read_scan_file(open_project(path).scan).data == SCAN.data
+        assert read_scan_file(open_project(path).design.scan).data == SCAN.data
 
 
 def test_no_flipped_bit_in_the_table_of_contents_does_worse_than_a_refusal(project):
@@ -46,7 +48,7 @@ def test_no_flipped_bit_in_the_table_of_contents_does_worse_than_a_refusal(proje
         for bit in (0, 5, 6):
             project.write_bytes(whole[:place] + bytes([whole[place] ^ 1 << bit]) + whole[place + 1 :])
             try:
-                read_scan_file(open_project(project).scan)
+                read_scan_file(open_project(project).design.scan)
             except ProjectError as problem:
                 refused.add(type(problem.__cause__))
     assert {RuntimeError, NotImplementedError, zipfile.BadZipFile} <= refused
@@ -100,10 +102,10 @@ def test_a_scan_with_a_hostile_name_gets_a_harmless_one(tmp_path, member):
             to_json(replace(DESIGN, scan=ScanSource("", member=member))),
             **{member: b"ply"},
         )
-    )
+    ).design
     scan = read_scan_file(design.scan)
     assert scan.data == b"ply"
-    save_project(tmp_path / "again.busk", design, scan, None)
+    save_project(tmp_path / "again.busk", Document.of(design), scan, None)
     with zipfile.ZipFile(tmp_path / "again.busk") as archive:
         _, kept = archive.namelist()
     assert kept.startswith("scan/")

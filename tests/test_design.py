@@ -8,18 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.design import (
-    FORMAT,
-    TEMPLATES,
-    WEIGHTS,
-    Design,
-    OwnLine,
-    ScanSource,
-    WornLine,
-    cannot_hold,
-    from_json,
-    to_json,
-)
+from core.design import TEMPLATES, WEIGHTS, Design, ScanSource, cannot_hold
+from core.design_lines import LineTraits, OwnLine, WornLine
+from core.design_text import FORMAT, from_json, to_json
 from core.errors import LineError, ProjectError, UserError
 from core.lines import RATIO_LIMITS
 from core.mechanics import CHOICES, RANGES
@@ -82,7 +73,7 @@ def test_text_brings_back_the_same_design(design):
 def test_what_is_written():
     values = json.loads(to_json(PLAIN.with_line("mid-bust", 0.97)))
     assert next(iter(values)) == "format"
-    assert values["format"] == FORMAT
+    assert values["format"] == 1, "what has no variants, older programs can read"
     assert values["length_unit"] == "mm"
     assert values["lines"] == [{"name": "mid-bust", "ratio": 0.97}]
     assert values["scan"]["path"] == "/scans/body.ply"
@@ -250,3 +241,34 @@ def test_a_length_that_cannot_be_held_comes_with_the_advice_that_helps(force, ad
     refusal = cannot_hold(design)
     assert "mid-bust cannot be held at 70.0 %" in refusal.message
     assert advice in refusal.hint
+
+
+def test_a_locked_line_keeps_its_length_and_stays():
+    own = PLAIN.with_own_line(OwnLine("strap left", (35, 48))).with_line("strap left", 0.9)
+    locked = own.with_traits(LineTraits("strap left", locked=True))
+    with pytest.raises(LineError, match="locked"):
+        locked.with_line("strap left", 0.8)
+    with pytest.raises(LineError, match="locked"):
+        locked.without_own_line("strap left")
+    assert locked.at_rest().worn() == {"strap left"}
+    assert not own.at_rest().lines
+    assert from_json(to_json(locked)) == locked
+    assert locked.with_traits(LineTraits("strap left")) == own
+
+
+def test_a_linked_line_shares_its_length():
+    both = PLAIN.with_own_line(OwnLine("strap left", (35, 48))).with_own_line(
+        OwnLine("strap right", (36, 49))
+    )
+    assert both.with_linked("strap right", 0.9).worn() == {"strap left", "strap right"}
+    alone = both.with_traits(LineTraits("strap right", linked=False))
+    assert alone.with_linked("strap right", 0.9).worn() == {"strap right"}
+    assert PLAIN.with_linked("mid-bust", 0.9).worn() == {"mid-bust"}
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"colour": "red"}, {"title": "a\nb"}, {"title": "x" * 61}, {"stiffness": 0.0}]
+)
+def test_traits_that_cannot_be_are_refused(wrong):
+    with pytest.raises(LineError):
+        LineTraits("mid-bust", **wrong)

@@ -15,7 +15,7 @@ from window_tools import Script, points, run_main, settled
 from app.desks import line_maker
 from app.desks.line_dialog import LineDialog
 from app.main_window import MainWindow
-from core.design import OwnLine
+from core.design_lines import OwnLine
 from core.own_lines import own_line, ready_made
 from core.pipeline import build
 from core.template import read_template

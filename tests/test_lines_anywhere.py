@@ -7,7 +7,7 @@ import pytest
 from models import cable_force, line_force, small, volume_slopes
 from shapes import fitted, run, torso
 
-from core.design import OwnLine
+from core.design_lines import OwnLine
 from core.exact import solve_exact
 from core.mechanics import CONTACTS, HOLDS, LAWS, VOLUMES, Mechanics
 from core.model import constrained_model

@@ -12,7 +12,8 @@ from app.desks.present import kept_volume
 from app.main_window import MainWindow
 from app.panels.setting_field import AmountField, MenuField, SegmentField
 from app.wording.model_choices import consequences, defaults, groups, summary
-from core.design import Design, OwnLine, ScanSource
+from core.design import Design, ScanSource
+from core.design_lines import OwnLine
 from core.live import Frame
 
 pytestmark = pytest.mark.usefixtures("empty_house")

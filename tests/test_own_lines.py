@@ -8,7 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.design import Design, OwnLine, ScanSource, from_json, to_json
+from core.design import Design, ScanSource
+from core.design_lines import OwnLine
+from core.design_text import from_json, to_json
 from core.errors import LineError
 from core.exact import solve_exact
 from core.own_lines import own_line, place_of

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from core import pipeline
-from core.design import Design, ScanSource, WornLine
+from core.design import Design, ScanSource
+from core.design_lines import WornLine
 from core.errors import LandmarkError, LineError, ScanError, UserError
 from core.pipeline import Stages, StuckError, build, targets_of
 

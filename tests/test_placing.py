@@ -14,7 +14,8 @@ import trimesh
 
 from app.cli import main
 from app.wording.words import say, use_language
-from core.design import Design, ScanSource, from_json, to_json
+from core.design import Design, ScanSource
+from core.design_text import from_json, to_json
 from core.errors import LandmarkError, ProjectError
 from core.pipeline import Stages, build, find
 from core.placing import PlacedMark, in_file, in_mm, placed_mark

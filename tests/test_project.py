@@ -11,6 +11,7 @@ import pytest
 from small_project import DESIGN, PICTURE, SCAN
 
 from core.design import ScanSource
+from core.document import Document
 from core.errors import ProjectError, ScanError
 from core.project import (
     ScanFile,
@@ -27,7 +28,7 @@ def left_over(folder):
 
 
 def test_what_is_saved_is_opened_again(project):
-    design = open_project(project)
+    design = open_project(project).design
     assert replace(design, scan=DESIGN.scan) == DESIGN
     assert design.scan.unit == "cm"
     assert design.scan.path == str(project)
@@ -37,7 +38,30 @@ def test_what_is_saved_is_opened_again(project):
 
 def test_saving_returns_what_opening_returns(tmp_path):
     path = tmp_path / "anna.busk"
-    assert save_project(path, DESIGN, SCAN, None) == open_project(path)
+    assert save_project(path, Document.of(DESIGN), SCAN, None) == open_project(path)
+
+
+def test_variants_are_kept_on_one_body(tmp_path):
+    path = tmp_path / "anna.busk"
+    short = Document.of(DESIGN).showing("B").with_design(DESIGN.with_line("mid-bust", 0.8))
+    assert save_project(path, short, SCAN, None) == open_project(path)
+    again = open_project(path)
+    assert (again.shown, again.variants["A"].lines) == ("B", DESIGN.lines)
+    assert again.variants["A"].scan == again.design.scan
+    told = again.with_design(replace(again.design, scan=replace(again.design.scan, unit="mm")))
+    assert [each.scan.unit for each in told.variants.values()] == ["mm", "mm"]
+    with zipfile.ZipFile(path) as archive:
+        assert json.loads(archive.read("design.json"))["format"] == 2, "an older program must not drop them"
+
+
+@pytest.mark.parametrize(
+    "variants", ["[]", "{", '{"shown": "Z", "others": {}}', '{"shown": "A", "others": {"A": {}}}']
+)
+def test_broken_variants_are_told(project, variants):
+    with zipfile.ZipFile(project, "a") as archive:
+        archive.writestr("variants.json", variants)
+    with pytest.raises(ProjectError, match="variants"):
+        open_project(project)
 
 
 def test_other_programs_can_look_inside(project):
@@ -52,23 +76,23 @@ def test_a_moved_project_still_opens(project, tmp_path):
     other = tmp_path / "elsewhere"
     other.mkdir()
     moved = project.rename(other / "renamed.busk")
-    design = open_project(moved)
+    design = open_project(moved).design
     assert read_scan_file(design.scan).data == SCAN.data
 
 
 def test_a_project_opens_by_a_relative_path(project, monkeypatch):
     monkeypatch.chdir(project.parent)
-    design = open_project("anna.busk")
+    design = open_project("anna.busk").design
     monkeypatch.chdir("/")
     assert read_scan_file(design.scan).data == SCAN.data
 
 
 def test_a_project_is_saved_over_itself(project):
-    design = open_project(project)
+    design = open_project(project).design
     scan = read_scan_file(design.scan)
     for ratio in (0.95, 0.9):
-        design = save_project(project, design.with_line("mid-bust", ratio), scan, None)
-    again = open_project(project)
+        design = save_project(project, Document.of(design.with_line("mid-bust", ratio)), scan, None).design
+    again = open_project(project).design
     assert again == design
     assert again.ratio("mid-bust") == 0.9
     assert read_scan_file(again.scan).data == SCAN.data
@@ -88,7 +112,7 @@ def test_a_failure_at_the_end_leaves_the_old_file_whole(project, monkeypatch, st
     before = project.read_bytes()
     monkeypatch.setattr(os, step, failure)
     with pytest.raises(ProjectError, match="cannot be written"):
-        save_project(project, DESIGN.with_line("mid-bust", 0.8), SCAN, PICTURE)
+        save_project(project, Document.of(DESIGN.with_line("mid-bust", 0.8)), SCAN, PICTURE)
     assert project.read_bytes() == before
     assert left_over(project.parent) == ["anna.busk"]
 
@@ -105,7 +129,7 @@ def test_a_disk_that_fills_up_leaves_the_old_file_whole(project, monkeypatch, me
 
     monkeypatch.setattr(zipfile.ZipFile, "writestr", full)
     with pytest.raises(ProjectError, match=r"No space left.*make room"):
-        save_project(project, DESIGN, SCAN, PICTURE)
+        save_project(project, Document.of(DESIGN), SCAN, PICTURE)
     assert project.read_bytes() == before
     assert left_over(project.parent) == ["anna.busk"]
 
@@ -116,7 +140,7 @@ def test_a_really_full_device(tmp_path, monkeypatch):
     monkeypatch.setattr(Path, "with_name", lambda self, name: Path("/dev/full"))
     monkeypatch.setattr(Path, "unlink", lambda self, missing_ok: None)
     with pytest.raises(ProjectError, match="No space left"):
-        save_project(target, DESIGN, SCAN, None)
+        save_project(target, Document.of(DESIGN), SCAN, None)
     assert not target.exists()
 
 
@@ -128,7 +152,7 @@ def test_an_interruption_leaves_the_old_file_whole(project, monkeypatch):
 
     monkeypatch.setattr(os, "fsync", interrupt)
     with pytest.raises(KeyboardInterrupt):
-        save_project(project, DESIGN.with_line("mid-bust", 0.8), SCAN, None)
+        save_project(project, Document.of(DESIGN.with_line("mid-bust", 0.8)), SCAN, None)
     assert project.read_bytes() == before
     assert left_over(project.parent) == ["anna.busk"]
 
@@ -149,15 +173,15 @@ def test_a_place_that_cannot_be_written_to_is_named(tmp_path, place):
     (tmp_path / "file").write_text("a file, no folder")
     (tmp_path / "folder").mkdir()
     with pytest.raises(ProjectError, match=r"cannot be written.*Choose another folder"):
-        save_project(tmp_path / place, DESIGN, SCAN, None)
+        save_project(tmp_path / place, Document.of(DESIGN), SCAN, None)
     assert left_over(tmp_path) == ["file", "folder"]
 
 
 @pytest.mark.parametrize("name", ["体.ply", "K\udcf6rper.ply", "a:b|c?.ply", "x" * 200 + ".ply", "..."])
 def test_scans_with_odd_names_are_saved_and_come_back(tmp_path, name):
     path = tmp_path / "anna.busk"
-    save_project(path, DESIGN, ScanFile(name, b"ply"), None)
-    design = open_project(path)
+    save_project(path, Document.of(DESIGN), ScanFile(name, b"ply"), None)
+    design = open_project(path).design
     scan = read_scan_file(design.scan)
     assert scan.data == b"ply"
     assert Path(scan.name).suffix == Path(name).suffix

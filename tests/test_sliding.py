@@ -9,7 +9,7 @@ from hard_cases import hard_case
 from models import LAWS, cable_force, law_of, line_force, settled, small, volume_slopes
 from shapes import central_difference, fitted, mid_bust, mirrored, torso
 
-from core.design import OwnLine
+from core.design_lines import OwnLine
 from core.exact import NEWTON_LIMIT, newton, solve_exact
 from core.mechanics import HOLDS, Mechanics
 from core.model import constrained_model

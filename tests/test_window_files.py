@@ -107,7 +107,7 @@ def test_closing_asks_about_changes(last: str, tmp_path: Path, monkeypatch: pyte
     run_main([], script)
     assert not answers
     if last == "save":
-        assert open_project(path).ratio("mid-bust") < 0.95
+        assert open_project(path).design.ratio("mid-bust") < 0.95
 
 
 def test_the_question_offers_three_ways(qapp: QApplication, monkeypatch: pytest.MonkeyPatch) -> None:

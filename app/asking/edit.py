@@ -1,4 +1,4 @@
-"""One edit of the design, as the undo stack keeps it."""
+"""One edit of the document, as the undo stack keeps it."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtGui import QUndoCommand
 
-from core.design import Design
+from core.document import Document
 
 if TYPE_CHECKING:
-    from app.asking.session import Session
+    from app.asking.editing import Editing
 
 
 class Edit(QUndoCommand):
-    """One edit: the design before and after. The first redo after a drag keeps the run that the preview
+    """One edit: the document before and after. The first redo after a drag keeps the run that the preview
     began.
     """
 
-    def __init__(self, session: Session, before: Design, after: Design, text: str, shown: bool) -> None:
+    def __init__(self, session: Editing, before: Document, after: Document, text: str, shown: bool) -> None:
         super().__init__(text)
         self._session = session
         self.before = before

@@ -14,6 +14,7 @@ import numpy as np
 from app.commands.picture import draw_picture
 from app.wording.samples import sample_design
 from core.design import Design
+from core.document import Document
 from core.errors import UserError
 from core.live import Failure, Frame, LiveSolver
 from core.project import open_project, save_project
@@ -34,8 +35,8 @@ def run_self_test() -> int:
         _check(abs(moved.error_ml) < 1.0, f"the volume is off by {moved.error_ml:.2f} ml")
         _check(bool(np.abs(moved.points - opened.points).max() > 1.0), "the body did not follow the line")
         path = Path(folder) / "self-test.busk"
-        _part("saves", lambda: save_project(path, moved_design, moved.stages.scan, None))
-        again_design = _part("reopens", lambda: open_project(path))
+        _part("saves", lambda: save_project(path, Document.of(moved_design), moved.stages.scan, None))
+        again_design = _part("reopens", lambda: open_project(path).design)
         again = _part("solves again", lambda: _fresh_answer(again_design))
         apart = float(np.abs(again.points - moved.points).max())
         # Both runs have settled, on different ways: one from rest, one from the sample's length.

@@ -21,7 +21,7 @@ from app.desks.present import OWN_COLOURS
 from app.dress.parts import Segment, sentence
 from app.dress.theme import font, tokens_of
 from app.wording.words import say, tr
-from core.design import OwnLine
+from core.design_lines import OwnLine
 from core.errors import UserError
 from core.own_lines import own_line, place_of
 from core.template import Template

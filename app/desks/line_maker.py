@@ -9,7 +9,7 @@ from PySide6.QtCore import QObject, QPoint
 from app.desks.line_dialog import ask_own_line
 from app.desks.present import LINE_COLOURS, line_title
 from app.wording.words import tr
-from core.design import OwnLine
+from core.design_lines import OwnLine
 from core.own_lines import ready_made
 from core.template import read_template
 

@@ -8,7 +8,7 @@ from app.printing.bodies import AZIMUTH, ELEVATION
 from app.printing.scene import body_picture, view_of
 from app.printing.study import BODIES, CONTROLS, TURNS, Study, bust_heights, curve
 from app.printing.style import COLOURS, Figure, sheet, show, trimmed
-from core.design import OwnLine
+from core.design_lines import OwnLine
 from core.studies.search import routes
 
 RATIOS = (0.97, 0.6)

@@ -10,7 +10,7 @@ import numpy as np
 
 from app.seeing.body import bake_occlusion
 from app.wording.samples import sample_design
-from core.design import WornLine
+from core.design_lines import WornLine
 from core.exact import newton, solve_exact
 from core.mesh import Floats, Points
 from core.pipeline import Stages, build, targets_of

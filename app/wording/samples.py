@@ -5,7 +5,8 @@ from __future__ import annotations
 from importlib import resources
 from pathlib import Path
 
-from core.design import Design, ScanSource, WornLine
+from core.design import Design, ScanSource
+from core.design_lines import WornLine
 
 SAMPLES = {"mannequin": "Mannequin", "person": "Person"}
 """The sample bodies by file name, each with what it is called in the window."""

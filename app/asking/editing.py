@@ -1,0 +1,176 @@
+"""Editing: the document and its undo stack. Nothing else changes them; every edit has a name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import reduce
+from typing import Any
+
+from PySide6.QtCore import QObject, Signal
+from PySide6.QtGui import QUndoStack
+
+from app.asking.edit import Edit
+from app.wording.model_choices import control_words
+from app.wording.words import number, tr
+from core.design import Design
+from core.design_lines import OwnLine
+from core.document import Document
+from core.errors import UserError
+
+
+class Editing(QObject):
+    """The part of a session that edits.
+
+    ``document`` is what is committed, ``design`` its shown variant; while something is dragged the solver
+    works on a preview that no one else sees. ``failed`` carries why an edit was refused.
+    """
+
+    design_changed = Signal(object)
+    failed = Signal(object)
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.undo_stack = QUndoStack(self)
+        self.document: Document | None = None
+        self._preview: Design | None = None
+        self._told = False
+
+    @property
+    def design(self) -> Design | None:
+        """The variant that is shown, if a document is open."""
+        return self.document.design if self.document is not None else None
+
+    def preview_line(self, name: str, ratio: float) -> None:
+        """Show a length while it is dragged; nothing is committed."""
+        # As when it is let go: at its rest length a line is off.
+        worn = None if at_rest_length(ratio) else ratio
+        if self.design is not None:
+            self.preview(self.design.with_linked(name, worn))
+
+    def preview(self, design: Design) -> None:
+        """Show what would be while something is dragged; nothing is committed."""
+        fresh = self._preview is None
+        if self.design is not None and self._try(design, fresh):
+            self._told = self._told and not fresh
+            self._preview = design
+
+    def cancel_preview(self) -> None:
+        """Go back to the committed lengths."""
+        if self.design is not None and self._preview is not None:
+            self._preview = None
+            self._submit(self.design)
+
+    def commit_line(self, name: str, title: str, ratio: float) -> None:
+        """Set a line's length as one undo step; at its rest length it is off: it does not pull."""
+        if self.design is None:
+            return
+        worn = None if at_rest_length(ratio) else ratio
+        text = tr("{line} off") if worn is None else tr("{line} {percent} %")
+        self._commit(
+            self.design.with_linked(name, worn), text.format(line=title, percent=number(100.0 * ratio, 1))
+        )
+
+    def reset_lines(self) -> None:
+        """Take every line off: the body as scanned."""
+        self.edit(Design.at_rest, tr("Reset to scan"))
+
+    def choose_control(self, control: str) -> None:
+        """Choose the volume control."""
+        self.change({"volume": control}, control_words(control))
+
+    def choose_template(self, template: str) -> None:
+        """Choose the control mesh by its number of polygons."""
+        self.edit(
+            lambda design: design.with_template(template), tr("Control mesh {count}").format(count=template)
+        )
+
+    def change(self, changes: Mapping[str, Any], text: str) -> None:
+        """Change fields of the design as one undo step."""
+        self.edit(lambda design: replace(design, **changes), text)
+
+    def add_own_lines(self, lines: Sequence[OwnLine], text: str) -> None:
+        """Add lines of the designer's own."""
+        self.edit(lambda design: reduce(Design.with_own_line, lines, design), text)
+
+    def remove_own_line(self, name: str, title: str) -> None:
+        """Remove a line of the designer's own."""
+        self.edit(lambda design: design.without_own_line(name), tr("{line} removed").format(line=title))
+
+    def reset_landmarks(self, names: Sequence[str], text: str) -> None:
+        """Let landmarks that were placed by hand be found again, as one undo step."""
+        self.edit(lambda design: reduce(lambda d, name: d.with_placed(name, None), names, design), text)
+
+    def take(self, document: Document) -> None:
+        """Make ``document`` the present one, as the undo stack asks."""
+        self._preview = None
+        self.document = document
+        self._submit(document.design, fresh=True)
+        self.design_changed.emit(document.design)
+
+    def settle_preview(self, document: Document) -> None:
+        """Commit what the preview already shows: its run goes on without a break."""
+        self.document = document
+        self._submit(document.design)
+        self.design_changed.emit(document.design)
+
+    def edit(self, edit: Callable[[Design], Design], text: str) -> None:
+        """Make an edit that the design may refuse: then all that is shown goes back to what is."""
+        if self.design is None:
+            return
+        try:
+            after = edit(self.design)
+        except UserError as error:
+            self.failed.emit(error)
+            self.design_changed.emit(self.design)
+        else:
+            self._commit(after, text)
+
+    def show_variant(self, name: str) -> None:
+        """Show another variant of the design; one that is not there yet begins as the shown one is."""
+        if self.document is not None and name != self.document.shown:
+            self._push(self.document.showing(name), tr("Variant {name}").format(name=name))
+
+    def remove_variant(self, name: str) -> None:
+        """Remove a variant of the design; the last one stays."""
+        if self.document is not None:
+            self._push(self.document.without(name), tr("Variant {name} removed").format(name=name))
+
+    def _take_back(self) -> bool:
+        """Let an edit that cannot be carried out leave the history as if it had not been made."""
+        edit = self.undo_stack.command(self.undo_stack.index() - 1) if self.undo_stack.canUndo() else None
+        if not isinstance(edit, Edit) or edit.after is not self.document:
+            return False
+        before = edit.before
+        edit.setObsolete(True)
+        # Qt drops an obsolete command without undoing it.
+        self.undo_stack.undo()
+        self.take(before)
+        return True
+
+    def _commit(self, after: Design, text: str) -> None:
+        if self.document is None:
+            return
+        if after != self.document.design:
+            self._push(self.document.with_design(after), text)
+        elif self._preview is not None:
+            self._preview = None
+            self._submit(self.document.design)
+
+    def _push(self, after: Document, text: str) -> None:
+        previewing, self._preview = self._preview is not None, None
+        if self.document is not None and after != self.document:
+            self.undo_stack.push(Edit(self, self.document, after, text, shown=previewing))
+
+    def _submit(self, design: Design, fresh: bool = False) -> None:
+        """Have a committed design solved."""
+        raise NotImplementedError
+
+    def _try(self, design: Design, fresh: bool) -> bool:
+        """Have a preview solved; returns whether this is the moment for it."""
+        raise NotImplementedError
+
+
+def at_rest_length(ratio: float) -> bool:
+    """Tell whether a ratio is 100 % as it is shown: a line there is off."""
+    return abs(ratio - 1.0) < 5e-6

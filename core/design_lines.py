@@ -1,0 +1,87 @@
+"""What the designer decides of lines: which are worn and how long, lines of her own, how each is treated."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from itertools import pairwise
+
+from core.errors import LineError
+from core.mechanics import RANGES
+
+LONGEST_TITLE = 60
+"""Letters of a line's title."""
+
+
+@dataclass(frozen=True)
+class WornLine:
+    """A line that is worn, and its natural length as ratio of its length at rest [1] (paper section 3)."""
+
+    name: str
+    ratio: float
+
+
+@dataclass(frozen=True)
+class OwnLine:
+    """A line of the designer's own through control points of the template, by number; "closed" goes round.
+
+    Raises LineError if it has no name or does not go from point to point.
+    """
+
+    name: str
+    points: tuple[int, ...]
+    closed: bool = False
+
+    def __post_init__(self) -> None:
+        if not self.name.strip():
+            raise LineError("A line has no name.", "Give each line a name of its own.")
+        if len(self.points) < (3 if self.closed else 2) or any(a == b for a, b in pairwise(self.path)):
+            raise LineError(
+                f"The line {self.name} does not go from point to point.",
+                "Name two control points at least, three if it is closed, and none twice in a row.",
+            )
+
+    @property
+    def path(self) -> tuple[int, ...]:
+        """The control points in order; a closed line ends with the one that it begins with."""
+        return self.points + self.points[:1] if self.closed else self.points
+
+
+@dataclass(frozen=True)
+class LineTraits:
+    """How the designer treats a line, whether it is worn or not.
+
+    ``title`` and ``colour`` ("#rrggbb") are empty where the usual ones stand. A ``locked`` line keeps its
+    length and cannot be removed; a ``linked`` one shares its length with its partner of the other side.
+    ``stiffness`` [1] is its own in place of the design's, or None. Raises LineError for what cannot be.
+    """
+
+    name: str
+    title: str = ""
+    colour: str = ""
+    locked: bool = False
+    linked: bool = True
+    stiffness: float | None = None
+
+    def __post_init__(self) -> None:
+        if len(self.title) > LONGEST_TITLE or not all(letter.isprintable() for letter in self.title):
+            raise LineError(
+                f"The title of the line {self.name} is too long or cannot be printed.",
+                f"Use up to {LONGEST_TITLE} letters.",
+            )
+        if self.colour and not re.fullmatch("#[0-9a-fA-F]{6}", self.colour):
+            raise LineError(f"'{self.colour}' is no colour.", "Write it like #e5536b.")
+        low, high = RANGES["line_stiffness"]
+        if self.stiffness is not None and not low <= self.stiffness <= high:
+            raise LineError(
+                f"The stiffness {self.stiffness:g} of the line {self.name} is out of range.",
+                f"It goes from {low:g} to {high:g}.",
+            )
+
+
+def partner_of(name: str) -> str:
+    """Return what a line's partner on the other side is called, or an empty text if it has no side."""
+    for side, other in ((" left", " right"), (" right", " left")):
+        if name.endswith(side):
+            return name.removesuffix(side) + other
+    return ""
