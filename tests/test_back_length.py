@@ -7,7 +7,7 @@ from fit_bodies import RADIUS, analytic_body, landmarks_at, sample_of
 from core.cleaning.calm import calmed
 from core.control_mesh import ControlMesh, fit_control_mesh
 from core.errors import FitError
-from core.fitting.back_length import back_length
+from core.fitting.back_length import back_of
 from core.mesh import Mesh
 from core.template import read_template
 
@@ -26,14 +26,27 @@ def tube_ends(degrees, z):
 
 @pytest.mark.parametrize("degrees", [60.0, 80.0, 97.0])
 def test_back_of_a_round_trunk_is_the_rest_of_the_circle(degrees):
-    length = back_length(analytic_body(), tube_ends(degrees, 200.0), "band")
+    length = back_of(analytic_body(), tube_ends(degrees, 200.0), "band").length
     assert length == pytest.approx(RADIUS * 2.0 * np.radians(180.0 - degrees), rel=1e-3)
+
+
+def test_the_drawn_back_goes_from_the_left_end_round_to_the_right():
+    ends = tube_ends(80.0, 200.0)
+    ends = ends_only(ends.mesh.vertices + np.array([[0.0, 0.0, -4.0], [0.0, 0.0, 4.0]]))
+    path = back_of(analytic_body(), ends, "band").path
+    right, left = ends.mesh.vertices
+    assert np.array_equal(path[0], left)
+    assert np.array_equal(path[-1], right)
+    assert np.hypot(*path[:, :2].T) == pytest.approx(RADIUS, rel=2e-3)
+    assert path[:, 1].max() == pytest.approx(RADIUS, rel=2e-3)
+    assert (np.diff(path[:, 2]) < 0.0).all()  # level, but for the few mm between its ends
+    assert np.linalg.norm(np.diff(path, axis=0), axis=1).max() < 6.0
 
 
 def test_noise_of_the_scanner_does_not_lengthen_the_back():
     mesh = analytic_body()
     noise = np.random.default_rng(3).normal(scale=1.0, size=mesh.vertices.shape)
-    length = back_length(calmed(mesh.moved(mesh.vertices + noise)), tube_ends(80.0, 200.0), "band")
+    length = back_of(calmed(mesh.moved(mesh.vertices + noise)), tube_ends(80.0, 200.0), "band").length
     assert length == pytest.approx(RADIUS * np.radians(200.0), rel=0.01)
 
 
@@ -42,7 +55,7 @@ def test_hole_in_the_back_is_bridged_straight():
     a = np.degrees(np.arctan2(mesh.vertices[:, 0], mesh.vertices[:, 1]))
     hole = (np.abs(a) < 20.5) & (mesh.vertices[:, 2] > 150.0) & (mesh.vertices[:, 2] < 250.0)
     holed = Mesh(mesh.vertices, mesh.faces[~hole[mesh.faces].any(axis=1)])
-    length = back_length(holed, tube_ends(80.0, 200.0), "band")
+    length = back_of(holed, tube_ends(80.0, 200.0), "band").length
     chord = 2.0 * RADIUS * (np.sin(np.radians(22.0)))
     assert length == pytest.approx(RADIUS * np.radians(200.0 - 44.0) + chord, rel=1e-3)
 
@@ -54,9 +67,9 @@ def test_line_and_back_make_the_girth_of_the_bust(name, girth):
     control = fit_control_mesh(read_template("168"), body, landmarks_at(places))
     at = control.mesh.vertices[list(control.paths["full-bust"])]
     front = np.linalg.norm(np.diff(at, axis=0), axis=1).sum()
-    assert front + back_length(body.mesh, control, "full-bust") == pytest.approx(girth, rel=0.02)
+    assert front + back_of(body.mesh, control, "full-bust").length == pytest.approx(girth, rel=0.02)
 
 
 def test_back_where_the_scan_has_ended_is_refused():
     with pytest.raises(FitError, match="no back"):
-        back_length(analytic_body(), tube_ends(80.0, 900.0), "band")
+        back_of(analytic_body(), tube_ends(80.0, 900.0), "band")

@@ -2,16 +2,32 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from core.control_mesh import ControlMesh
 from core.errors import FitError
-from core.mesh import Floats, Mesh, Points
-from core.trunk import trunk_levels
+from core.mesh import Floats, Mesh, Points, frozen
+from core.trunk import Level, trunk_levels
+
+_BEARING = np.radians(2.0)
+"""How far apart, seen from the axis of the trunk, the points lie through which a back is drawn [rad]."""
 
 
-def back_length(calm: Mesh, control: ControlMesh, path_name: str) -> float:
-    """Return the way round the back from one end of a line to the other, along the skin [mm].
+@dataclass(frozen=True, eq=False)
+class Back:
+    """The back part of a band: its ``length`` along the skin [mm], and its ``path`` to be drawn.
+
+    The path goes from the left end of the line round the back to the right one, shape (k, 3) [mm].
+    """
+
+    length: float
+    path: Points
+
+
+def back_of(calm: Mesh, control: ControlMesh, path_name: str) -> Back:
+    """Find the way round the back from one end of a line to the other, along the skin.
 
     It lies level on the ``calm`` body at the mean height of both ends, without the arms; a hole of the scan
     is bridged straight. With the front part it makes the whole band. Raises FitError if there is no torso at
@@ -30,7 +46,28 @@ def back_length(calm: Mesh, control: ControlMesh, path_name: str) -> float:
     # The ends take part as segments without length, so that a hole next to them is bridged too.
     segments = np.concatenate([level.segments[:, :, :2] - axis, np.repeat(ends[:, None], 2, axis=1)])
     start, end = _behind(ends).tolist()
-    return _length_between(segments, start, end)
+    return Back(_length_between(segments, start, end), _path(level, axis, right, left))
+
+
+def _path(level: Level, axis: Floats, right: Floats, left: Floats) -> Points:
+    """Return a path round the outermost skin of a level behind two ends, each (3,), from left to right.
+
+    Its height goes evenly from that of one end to that of the other.
+    """
+    points = level.points[:, :2] - axis
+    bearing, reach = _behind(points), np.linalg.norm(points, axis=1)
+    start, end = _behind(np.array([right[:2], left[:2]]) - axis).tolist()
+    count = max(int((end - start) / _BEARING), 2)
+    cell = np.floor((bearing - start) / (end - start) * count).astype(np.int64)
+    inside = (cell >= 0) & (cell < count)
+    far = np.zeros(count)
+    np.maximum.at(far, cell[inside], reach[inside])
+    middle = start + (np.arange(count) + 0.5) * (end - start) / count
+    seen = far > 0.0
+    skin = axis + far[seen, None] * np.stack([np.sin(middle[seen]), np.cos(middle[seen])], axis=1)
+    part = (middle[seen] - start) / (end - start)
+    path = np.column_stack([skin, right[2] + part * (left[2] - right[2])])
+    return frozen(np.concatenate([left[None], path[::-1], right[None]]))
 
 
 def _behind(places: Points) -> Floats:
