@@ -132,6 +132,11 @@ class Design:
         """Return the names of the lines that are worn."""
         return frozenset(line.name for line in self.lines)
 
+    def own_stiffness(self) -> dict[str, float]:
+        """Return the stiffness [1] of each worn line that has its own."""
+        own = {each.name: each.stiffness for each in self.traits if each.name in self.worn()}
+        return {name: stiffness for name, stiffness in own.items() if stiffness is not None}
+
     def with_template(self, template: str) -> Design:
         """Return the design with another template. Raises LineError if there are own lines.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from types import MappingProxyType
 
 import numpy as np
 from scipy import sparse
@@ -128,11 +129,12 @@ def constrained_model(
     worn: Collection[str] | None = None,
     back_lengths: Mapping[str, float] | None = None,
     mechanics: Mechanics | None = None,
+    own_stiffness: Mapping[str, float] | None = None,
 ) -> ConstrainedModel:
     """Build the model of a control mesh with a line on each of its paths.
 
     ``worn`` names the lines that act (all of them if None), the others are only measured; ``back_lengths``
-    [mm] see ``Line``.
+    [mm] see ``Line``, ``own_stiffness`` [1] see ``assemble``.
     """
     tensegric = tensegric_model(control.mesh, control.fixed, mechanics)
     backs = back_lengths or {}
@@ -142,21 +144,30 @@ def constrained_model(
     )
     columns = control.column[control.mesh.faces].sum(axis=1)
     volume = volume_measure(control.mesh, tensegric.free, columns > 0)
-    return assemble(tensegric, lines, volume, control.paths if worn is None else worn)
+    worn = control.paths if worn is None else worn
+    return assemble(tensegric, lines, volume, worn, own_stiffness or {})
 
 
 def assemble(
-    tensegric: TensegricModel, lines: tuple[Line, ...], volume: VolumeMeasure, worn: Collection[str]
+    tensegric: TensegricModel,
+    lines: tuple[Line, ...],
+    volume: VolumeMeasure,
+    worn: Collection[str],
+    own_stiffness: Mapping[str, float] = MappingProxyType({}),
 ) -> ConstrainedModel:
     """Join the parts of a model.
 
     A line that is not worn, or lies on fixed points alone, is measured but does not pull. Its stiffness per
-    mm is the same all along; its segments have the mechanics' ``line_stiffness`` on the mean (ours).
+    mm is the same all along; its segments have the mechanics' ``line_stiffness`` on the mean, or that of
+    ``own_stiffness`` [1] if it names the line (ours).
     """
-    unit = tensegric.mechanics.line_stiffness * tensegric.mean_stiffness
+    usual, unit = tensegric.mechanics.line_stiffness, tensegric.mean_stiffness
     pulling = [(index, line) for index, line in enumerate(lines) if line.constrains and line.name in worn]
     pairs = np.concatenate([np.empty((0, 2), dtype=np.int64), *(line.pairs for _, line in pulling)])
     owner = np.repeat([i for i, _ in pulling], [len(line.pairs) for _, line in pulling]).astype(np.int64)
-    tape = [unit * line.rest_lengths.mean() / line.rest_lengths for _, line in pulling]
+    tape = [
+        own_stiffness.get(line.name, usual) * unit * line.rest_lengths.mean() / line.rest_lengths
+        for _, line in pulling
+    ]
     segments = springs(tensegric.rest, tensegric.place, pairs, np.concatenate([np.empty(0), *tape]))
     return ConstrainedModel(tensegric, lines, volume, segments, owner)

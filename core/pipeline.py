@@ -197,7 +197,7 @@ def _stages(stage: _Stager, design: Design, scan: ScanFile, body: Body) -> Stage
     watch = stage("watch body", BodyWatch, binding, control, landmarks)
     backs = stage("measure bands", _backs, body, control)
     laid = stage("lay own lines", with_own_lines, control, design.own_lines)
-    model = stage("build model", _model, laid, backs, design.worn(), design.mechanics)
+    model = stage("build model", _model, laid, backs, design.worn(), design.mechanics, design.own_stiffness())
     limit = stage("probe gain", gain_limit, model)
     return Stages(
         design,
@@ -277,10 +277,16 @@ def _backs(body: Body, control: ControlMesh) -> dict[str, Back]:
 
 
 def _model(
-    control: ControlMesh, backs: Mapping[str, Back], worn: frozenset[str], mechanics: Mechanics
+    control: ControlMesh,
+    backs: Mapping[str, Back],
+    worn: frozenset[str],
+    mechanics: Mechanics,
+    own_stiffness: Mapping[str, float],
 ) -> ConstrainedModel:
     unknown = sorted(worn - set(control.paths))
     if unknown:
         raise LineError(f"There is no line '{unknown[0]}'.", f"The lines are: {', '.join(control.paths)}.")
     lengths = {name: back.length for name, back in backs.items()}
-    return constrained_model(control, worn=worn, back_lengths=lengths, mechanics=mechanics)
+    return constrained_model(
+        control, worn=worn, back_lengths=lengths, mechanics=mechanics, own_stiffness=own_stiffness
+    )
