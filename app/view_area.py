@@ -21,6 +21,7 @@ from app.showing.viewport import Viewport
 from core.body import Body
 from core.control_mesh import ControlMesh
 from core.design import Design
+from core.fitting.back_length import Back
 from core.landmark import Landmark
 from core.lines import Line
 from core.live import Frame
@@ -47,6 +48,7 @@ class ViewArea(QWidget):
         self._control: ControlMesh | None = None
         self._landmarks: Mapping[str, Landmark] = {}
         self._lines: tuple[Line, ...] = ()
+        self._backs: Mapping[str, Back] = {}
         self._landmark = ""
         self._dragged: tuple[str, Points] | None = None
         self._labels: dict[str, tuple[str, str]] = {}
@@ -86,7 +88,7 @@ class ViewArea(QWidget):
             if fresh:
                 self.viewport.frame_bust()
         if _paths(stages.model.lines) != _paths(self._lines):
-            self._lines = stages.model.lines
+            self._lines, self._backs = stages.model.lines, stages.backs
             self.show_bands()
         scene.move_body(stages.moving.vertices, frame.points, frame.normals)
         scene.move_control_mesh(frame.control_points)
@@ -107,7 +109,7 @@ class ViewArea(QWidget):
         """Lay the lines that are not hidden on the body."""
         if self._control is not None:
             rest = self._control.mesh.vertices
-            self.viewport.scene.show_bands(bands(self._lines, rest, self.hidden_lines))
+            self.viewport.scene.show_bands(bands(self._lines, rest, self.hidden_lines, self._backs))
         self.select_line(self.selected_line)
 
     def select_line(self, name: str) -> None:

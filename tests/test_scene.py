@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.seeing.bands import Band, Surface, build_casing, build_ribbon
+from app.seeing.bands import Band
 from app.seeing.body import Sight, split_plates
 from app.seeing.camera import VIEWS
+from app.seeing.ribbon import Surface, build_casing, build_ribbon, centre_line
 from app.seeing.scene import Scene
 from app.seeing.stage import LOOKS, rgb
 from core.mesh import Mesh
@@ -96,8 +97,12 @@ def test_a_ribbon_lies_on_the_skin(name: str, request: pytest.FixtureRequest) ->
     surface = Surface(body)
     for z in (UNDERBUST, BUST, BUST + 50.0):
         path = across_front(body, z)
-        for ribbon in (build_ribbon(path, surface, 12.0), build_casing(path, surface, 12.0)):
-            assert distance_to(body, ribbon.mesh.vertices).max() < 4.0
+        bridged = centre_line(path, surface).lift  # there it stands off, as a taut band does
+        for ribbon, off in (
+            (build_ribbon(path, surface, 12.0), bridged),
+            (build_casing(path, surface, 12.0), np.pad(bridged, 2, "edge")),
+        ):
+            assert (distance_to(body, ribbon.mesh.vertices) - np.repeat(off, 8)).max() < 4.0
 
 
 def test_a_ribbon_has_its_width_and_looks_outward(mannequin: Mesh) -> None:

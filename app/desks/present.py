@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,10 +10,12 @@ import numpy as np
 from app.panels.line_row import LineView
 from app.panels.result import MeasureView
 from app.seeing.bands import Band
+from app.seeing.ribbon import NO_BACK
 from app.showing.convergence import Exact, Track
 from app.showing.verdict_chip import state_title
 from app.wording.words import number, say, tr
 from core.design import Design
+from core.fitting.back_length import Back
 from core.lines import Line
 from core.live import Frame
 from core.mesh import Points
@@ -68,11 +70,22 @@ def _kind(name: str) -> str:
     return name.removesuffix(" left").removesuffix(" right")
 
 
-def bands(lines: Sequence[Line], rest: Points, hidden: Collection[str]) -> list[Band]:
-    """Return what is drawn of the lines on the body; ``rest`` are all control points at rest, (n, 3) [mm]."""
+def bands(
+    lines: Sequence[Line], rest: Points, hidden: Collection[str], backs: Mapping[str, Back]
+) -> list[Band]:
+    """Return what is drawn of the lines on the body; ``rest`` are all control points at rest, (n, 3) [mm].
+
+    ``backs`` complete lines to whole bands; the others end where they end.
+    """
     paths = {line.name: line.path for line in lines}
     return [
-        Band(name, rest[paths[name]], colour, BAND_WIDTHS.get(name, OWN_WIDTH))
+        Band(
+            name,
+            rest[paths[name]],
+            colour,
+            BAND_WIDTHS.get(name, OWN_WIDTH),
+            backs[name].path if name in backs else NO_BACK,
+        )
         for name, colour in line_colours(paths).items()
         if name not in hidden
     ]

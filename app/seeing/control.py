@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pyvista as pv
 
-from app.seeing.bands import Surface
+from app.seeing.ribbon import Surface
 from app.seeing.stage import Look
 from core.mesh import Flags, Floats, Mesh, Points
 

@@ -8,10 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pyvista as pv
 
-from app.seeing.bands import Band, Bands, Surface
+from app.seeing.bands import Band, Bands
 from app.seeing.body import BodyActor, Ghost
 from app.seeing.camera import LENS, View
 from app.seeing.control import ControlActor
+from app.seeing.ribbon import Surface
 from app.seeing.stage import LOOKS, Stage
 from app.seeing.trace import Trace
 from core.mesh import Flags, Floats, Indices, Mesh, Points

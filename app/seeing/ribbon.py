@@ -1,0 +1,176 @@
+"""Ribbons of real width that lie on the skin, whole bands round the body or parts of one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+from scipy.interpolate import CubicSpline
+from scipy.ndimage import convolve1d
+from scipy.spatial import cKDTree
+
+from core.mesh import Faces, Floats, Indices, Mesh, Points, unit
+from core.sections import arc_length, resample
+
+STEP = 4.0
+"""Distance between cross-sections along a ribbon [mm]."""
+
+CASING = 7.0
+"""How much wider the white casing of the selected ribbon is [mm]."""
+
+ACROSS = np.array([-1.0, -1.0, -0.86, -0.4, 0.4, 0.86, 1.0, 1.0])
+"""Where the points of a cross-section lie, in half widths."""
+
+_PUFF = np.array([-1.2, 0.55, 1.0, 1.0, 1.0, 1.0, 0.55, -1.2])
+_TOUCH = 1.5  # a taut band that stands off the skin by less than this lies on it [mm]
+NO_BACK = np.empty((0, 3))
+
+
+@dataclass(frozen=True, eq=False)
+class Ribbon:
+    """A ribbon at rest, rows of eight points across, and the matrix that moves it with the body.
+
+    ``follow`` averages body displacements, shape (r, n), so that points = vertices + follow @ displacement.
+    ``part`` (rows,) is the segment of the line's path that each row lies on, -1 on the back.
+    """
+
+    mesh: Mesh
+    follow: sparse.csr_array
+    part: Indices
+
+    @property
+    def rows(self) -> int:
+        """Number of cross-sections."""
+        return len(self.mesh.vertices) // len(ACROSS)
+
+
+class Surface:
+    """Smooth local planes of a body, on which paths are laid."""
+
+    def __init__(self, mesh: Mesh) -> None:
+        self.mesh = mesh
+        self._tree = cKDTree(mesh.vertices)
+
+    def near(self, points: Points, count: int = 5) -> tuple[Indices, Floats]:
+        """Return the nearest vertices and their weights, both (k, count); weights sum to 1 and fade out."""
+        distance, index = map(np.asarray, self._tree.query(points, count + 1))
+        weight = (1.0 - (distance / distance[:, -1:]) ** 2)[:, :count] ** 2 + 1e-9
+        return index[:, :count], weight / weight.sum(axis=1, keepdims=True)
+
+    def lay(self, points: Points) -> tuple[Points, Points]:
+        """Return ``points`` moved onto the skin and the normals there, both (k, 3)."""
+        for _ in range(2):
+            index, weight = self.near(points)
+            centre = np.einsum("kc,kcx->kx", weight, self.mesh.vertices[index])
+            normal = unit(np.einsum("kc,kcx->kx", weight, self.mesh.vertex_normals[index]))
+            points = points - np.einsum("kx,kx->k", points - centre, normal)[:, None] * normal
+        return points, normal
+
+    def follow(self, points: Points) -> sparse.csr_array:
+        """Return the matrix that averages vertex displacements at ``points``, shape (k, n)."""
+        index, weight = self.near(points)
+        start = np.arange(0, index.size + 1, index.shape[1])
+        return sparse.csr_array(
+            (weight.ravel(), index.ravel(), start), shape=(len(points), len(self.mesh.vertices))
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class CentreLine:
+    """The middle of a ribbon: places on the skin and normals there, both (k, 3), and ``lift`` (k,) [mm].
+
+    ``lift`` is how far a taut band stands off the skin where it bridges a hollow; ``part`` as in ``Ribbon``.
+    """
+
+    points: Points
+    normals: Points
+    lift: Floats
+    part: Indices
+    closed: bool
+
+
+def centre_line(path: Points, surface: Surface, back: Points = NO_BACK) -> CentreLine:
+    """Return a smooth curve every ``STEP`` through ``path`` and, if it is given, round the ``back`` of it.
+
+    Both have shape (k, 3) [mm]; the back goes from the end of the path to its beginning.
+    """
+    path = path[np.r_[True, np.linalg.norm(np.diff(path, axis=0), axis=1) > 1e-6]]
+    whole = np.concatenate([path, back[1:]])
+    closed = len(whole) > 3 and np.linalg.norm(whole[-1] - whole[0]) < 1e-6
+    s = arc_length(whole)
+    if closed:
+        whole[-1] = whole[0]
+    spline = CubicSpline(s, whole, bc_type="periodic" if closed else "not-a-knot")
+    at = np.linspace(0.0, s[-1], max(2, round(s[-1]) + 1))
+    laid, _ = surface.lay(_evenly(spline(at), closed))
+    points, normals = surface.lay(_evenly(_smooth(laid, 4, closed), closed, around=closed))
+    normals = unit(_smooth(normals, 4, closed))
+    taut = np.stack([np.interp(at, s, axis) for axis in whole.T], axis=1)
+    _, nearest = cKDTree(taut).query(points)
+    off = np.einsum("kx,kx->k", taut[nearest] - points, normals)
+    lift = _smooth(np.maximum(off - _TOUCH, 0.0), 6, closed)
+    part = np.searchsorted(s, at[nearest], side="right") - 1
+    part = np.where(part < len(path) - 1, part, -1 if len(back) else len(path) - 2)
+    return CentreLine(points, normals, lift, part, bool(closed))
+
+
+def build_ribbon(path: Points, surface: Surface, width: float, back: Points = NO_BACK) -> Ribbon:
+    """Return the ribbon ``width`` [mm] wide along ``path`` and round its ``back``, see ``centre_line``."""
+    return _puffed(centre_line(path, surface, back), surface, width, sink=0.0)
+
+
+def build_casing(path: Points, surface: Surface, width: float, back: Points = NO_BACK) -> Ribbon:
+    """Return the ribbon that looks out all round the one ``width`` [mm] wide along ``path``."""
+    line = centre_line(path, surface, back)
+    if not line.closed:
+        first, last = unit(line.points[[0, -1]] - line.points[[1, -2]]) * CASING
+        # Two rows beyond each end: the outer one dips under the skin, the inner one is seen.
+        steps = np.array([[1.0], [0.6]])
+        ends = line.points[0] + steps * first, line.points[-1] + steps[::-1] * last
+        laid = surface.lay(np.concatenate([ends[0], line.points, ends[1]]))
+        line = CentreLine(*laid, np.pad(line.lift, 2, "edge"), np.pad(line.part, 2, "edge"), False)
+    return _puffed(line, surface, width + CASING, sink=1.2)
+
+
+def _puffed(line: CentreLine, surface: Surface, width: float, sink: float) -> Ribbon:
+    """Return the ribbon about a centre line, pressed ``sink`` [mm] towards the skin."""
+    points, closed = line.points, line.closed
+    ahead = np.roll(points, -1, 0) - np.roll(points, 1, 0) if closed else np.gradient(points, axis=0)
+    side = unit(np.cross(line.normals, ahead))
+    reach = (0.5 * width * ACROSS)[None, :, None]
+    flat = points[:, None] + reach * side[:, None]
+    laid, up = (each.reshape(flat.shape) for each in surface.lay(flat.reshape(-1, 3)))
+    puff = np.tile(_PUFF, (len(points), 1))
+    if not closed:
+        puff[[0, -1]] = _PUFF.min()
+        puff[[1, -2]] = np.minimum(puff[[1, -2]], 0.55)
+    lift = 0.9 + 1.7 * puff - sink
+    raised = _smooth(laid, 3, closed) + lift[..., None] * unit(_smooth(up, 3, closed))
+    raised += (line.lift[:, None] * line.normals)[:, None]
+    vertices = raised.reshape(-1, 3)
+    return Ribbon(Mesh(vertices, _grid_faces(len(points), closed)), surface.follow(vertices), line.part)
+
+
+def _evenly(curve: Points, closed: bool, around: bool = False) -> Points:
+    """Return points every ``STEP`` along a curve; of a closed one the last, which is the first, is left out.
+
+    ``around``: the curve is closed and comes without its last point.
+    """
+    even = resample(np.concatenate([curve, curve[:1]]) if around else curve, STEP)
+    return even[:-1] if closed else even
+
+
+def _smooth(rows: Floats, passes: int, closed: bool) -> Floats:
+    """Return ``rows``, shape (k, ...), averaged along the line; the ends of an open line stay."""
+    for _ in range(passes):
+        middle = convolve1d(rows, [0.25, 0.5, 0.25], axis=0, mode="wrap" if closed else "nearest")
+        rows = middle if closed else np.concatenate([rows[:1], middle[1:-1], rows[-1:]])
+    return rows
+
+
+def _grid_faces(rows: int, closed: bool) -> Faces:
+    width = len(ACROSS)
+    a = (np.arange(rows if closed else rows - 1)[:, None] * width + np.arange(width - 1)).ravel()
+    b = (a + width) % (rows * width)
+    return np.concatenate([np.stack([a, b, b + 1], axis=1), np.stack([a, b + 1, a + 1], axis=1)])

@@ -1,0 +1,100 @@
+"""Whole bands: they close round the body, stay off hollows that a taut band bridges, and tell their parts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from app.desks.present import bands
+from app.seeing.ribbon import NO_BACK, Surface, build_casing, build_ribbon, centre_line
+from core.mesh import Mesh
+from core.pipeline import Stages
+
+RADIUS = 120.0
+
+
+def tube(radius: Callable[[np.ndarray], np.ndarray]) -> Mesh:
+    """A trunk 200 mm high; ``radius`` is given for azimuths from the front, positive the subject's left."""
+    turn, z = np.meshgrid(np.arange(240) * np.pi / 120.0, np.arange(0.0, 204.0, 4.0), indexing="ij")
+    far = radius((turn + np.pi) % (2.0 * np.pi) - np.pi)
+    points = np.stack([far * np.sin(turn), -far * np.cos(turn), z], axis=2).reshape(-1, 3)
+    count = z.shape[1]
+    a = (np.arange(240)[:, None] * count + np.arange(count - 1)).ravel()
+    b = (a + count) % len(points)
+    faces = np.concatenate([np.stack([a, b, b + 1], axis=1), np.stack([a, b + 1, a + 1], axis=1)])
+    return Mesh(points, faces)
+
+
+def arc(start: float, end: float, step: float, radius: float = RADIUS) -> np.ndarray:
+    turn = np.radians(np.arange(start, end + 0.5 * step, step))
+    return np.stack([radius * np.sin(turn), -radius * np.cos(turn), np.full(len(turn), 100.0)], axis=1)
+
+
+def test_a_band_with_a_back_closes_round_the_body() -> None:
+    front, back = arc(-80.0, 80.0, 20.0), arc(80.0, 280.0, 4.0)
+    surface = Surface(tube(lambda turn: np.full_like(turn, RADIUS)))
+    ribbon = build_ribbon(front, surface, 12.0, back)
+    middle = ribbon.mesh.vertices.reshape(ribbon.rows, 8, 3)[:, 3:5].mean(axis=1)
+    steps = np.linalg.norm(np.roll(middle, -1, axis=0) - middle, axis=1)
+    assert steps.max() < 5.0  # no gap, not even where the rows begin
+    assert np.hypot(middle[:, 0], middle[:, 1]) == pytest.approx(RADIUS + 2.6, abs=0.3)
+    assert (np.bincount(ribbon.mesh.edges.ravel(), minlength=8 * ribbon.rows) > 0).all()
+    assert len(ribbon.mesh.boundary_loops) == 2  # an upper and a lower rim
+    bearing = np.degrees(np.arctan2(middle[:, 0], -middle[:, 1]))
+    assert (np.abs(bearing[ribbon.part >= 0]) < 82.0).all()
+    assert (np.abs(bearing[ribbon.part < 0]) > 78.0).all()
+    inside = np.abs(bearing + 70.0) < 8.0
+    assert set(ribbon.part[inside].tolist()) == {0}  # the first segment, from -80 to -60 degrees
+    assert len(build_casing(front, surface, 12.0, back).mesh.boundary_loops) == 2
+
+
+def test_a_line_without_a_back_ends_where_it_ends() -> None:
+    surface = Surface(tube(lambda turn: np.full_like(turn, RADIUS)))
+    ribbon = build_ribbon(arc(-40.0, 40.0, 20.0), surface, 12.0)
+    assert len(ribbon.mesh.boundary_loops) == 1
+    assert (ribbon.part >= 0).all()
+    ends = ribbon.mesh.vertices.reshape(ribbon.rows, 8, 3)[[0, -1]]
+    assert (np.hypot(ends[..., 0], ends[..., 1]) < RADIUS).all()  # lowered into the skin: closed
+
+
+def test_a_ring_closes_by_itself() -> None:
+    surface = Surface(tube(lambda turn: np.full_like(turn, RADIUS)))
+    turn = np.radians(np.arange(0.0, 361.0, 30.0))
+    ring = np.stack([30.0 * np.sin(turn), np.full(13, -RADIUS), 100.0 + 30.0 * np.cos(turn)], axis=1)
+    line = centre_line(ring, surface)
+    assert line.closed
+    assert np.linalg.norm(line.points[0] - line.points[-1]) < 6.0
+
+
+def test_a_taut_band_bridges_a_hollow_and_lies_on_the_rest() -> None:
+    def cleft(turn: np.ndarray) -> np.ndarray:
+        return RADIUS - 25.0 * np.exp(-((turn / 0.12) ** 2))
+
+    surface = Surface(tube(cleft))
+    places = arc(-72.0, 72.0, 24.0)
+    line = centre_line(places[np.abs(places[:, 0]) > 1.0], surface, NO_BACK)
+    middle = np.abs(line.points[:, 0]) < 3.0
+    taut = RADIUS * np.cos(np.radians(24.0))  # the chord between the two points beside the cleft
+    stands = -(line.points + line.lift[:, None] * line.normals)[middle, 1]
+    assert stands == pytest.approx(taut, abs=3.0)
+    assert line.lift[np.abs(line.points[:, 0]) > 60.0].max() < 0.5
+
+
+@pytest.mark.parametrize("name", ["mannequin", "person"])
+def test_bands_of_the_template_go_round_a_body(name: str, built: Callable[[str], Stages]) -> None:
+    stages = built(name)
+    surface = Surface(stages.body.mesh)
+    drawn = bands(stages.model.lines, stages.control.mesh.vertices, (), stages.backs)
+    assert {band.name for band in drawn} == {"full-bust", "mid-bust", "under-bust"}
+    for band in drawn:
+        ribbon = build_ribbon(band.path, surface, band.width, band.back)
+        rows = ribbon.mesh.vertices.reshape(ribbon.rows, 8, 3)
+        middle = rows[:, 3:5].mean(axis=1)
+        steps = np.linalg.norm(np.roll(middle, -1, axis=0) - middle, axis=1)
+        assert steps.max() < 8.0
+        whole = next(line.whole_length for line in stages.model.lines if line.name == band.name)
+        assert steps.sum() == pytest.approx(whole, rel=0.03)
+        width = np.linalg.norm(rows[:, 1] - rows[:, -2], axis=1)
+        assert np.median(width) == pytest.approx(band.width, rel=0.05)
