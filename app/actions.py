@@ -1,135 +1,131 @@
-"""The window's actions and the menus that hold them."""
+"""All that can be asked of the window by menu or key; a desk adds what is its own with ``add``."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-from PySide6.QtGui import QAction, QActionGroup, QKeySequence, QUndoStack
-from PySide6.QtWidgets import QMenu, QMenuBar, QWidget
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QAction, QKeySequence, QUndoStack
+from PySide6.QtWidgets import QWidget
 
+from app.menus import Menus
 from app.wording.samples import SAMPLES
 from app.wording.words import LANGUAGES, tr
 
 CONTROLS = ("adaptive", "conventional", "accumulating", "exact", "none")
 
+_KEYS = QKeySequence.StandardKey
 
-class Actions:
-    """All that can be asked of the window, by name; the roof connects them."""
 
-    def __init__(self, parent: QWidget, undo_stack: QUndoStack) -> None:
-        self._parent = parent
-        keys = QKeySequence.StandardKey
-        self.open = self._make(tr("Open…"), keys.Open)
-        self.save = self._make(tr("Save"), keys.Save)
-        self.save_as = self._make(tr("Save as…"), "Ctrl+Shift+S")
-        self.export = self._make(
-            tr("Export body…"), "Ctrl+E", tr("Write the body as it is shown: PLY, OBJ or STL")
-        )
-        self.cancel = self._make(tr("Cancel the work in hand"), "Esc")
-        self.quit = self._make(tr("Quit"), "Ctrl+Q")
-        self.undo = undo_stack.createUndoAction(parent, tr("Undo"))
-        self.undo.setShortcut(keys.Undo)
-        self.redo = undo_stack.createRedoAction(parent, tr("Redo"))
+class Actions(Menus):
+    """The actions that the window itself knows, by name; ``app.wiring`` connects them."""
+
+    def __init__(self, parent: QWidget, undo_stack: QUndoStack, view: Mapping[str, QAction]) -> None:
+        super().__init__(parent)
+        self._fill_file()
+        self._fill_edit(undo_stack)
+        self._fill_view(view)
+        self._fill_lines()
+        self._fill_solve()
+        self._fill_window()
+        self._fill_help()
+
+    def _fill_file(self) -> None:
+        self.open = self.add("file", tr("Open…"), _KEYS.Open)
+        self.recent = self.submenu("file", "recent", tr("Open recent"))
+        self.submenu("file", "samples", tr("Open sample"))
+        self.samples = {name: self.add("samples", tr(title)) for name, title in SAMPLES.items()}
+        self.rule("file")
+        self.save = self.add("file", tr("Save"), _KEYS.Save, of_document=True)
+        self.save_as = self.add("file", tr("Save as…"), "Ctrl+Shift+S", of_document=True)
+        said = tr("Write the body as it is shown: PLY, OBJ or STL")
+        self.export = self.add("file", tr("Export body…"), "Ctrl+E", said, of_document=True)
+        self.rule("file")
+        self.cancel = self.add("file", tr("Cancel the work in hand"), "Esc")
+        self.cancel.setEnabled(False)
+        self.rule("file")
+        self.quit = self.add("file", tr("Quit"), "Ctrl+Q")
+        self.quit.setMenuRole(QAction.MenuRole.QuitRole)
+        self.end("file", 4)
+
+    def _fill_edit(self, undo_stack: QUndoStack) -> None:
+        self.undo = undo_stack.createUndoAction(self._parent, tr("Undo"))
+        self.undo.setShortcut(_KEYS.Undo)
+        self.redo = undo_stack.createRedoAction(self._parent, tr("Redo"))
         self.redo.setShortcuts([QKeySequence("Ctrl+Shift+Z"), QKeySequence("Ctrl+Y")])
-        self.reset = self._make(
-            tr("Reset to scan"), "Ctrl+R", tr("Take all lines off: the body as it was scanned")
-        )
-        self.flip = self._make(tr("Before / after"), "Space", tr("Show the body at rest, or reshaped"))
-        self.strip = self._make(tr("Live plot"), "Ctrl+J", checkable=True)
-        self.model = self._make(
-            tr("How the model works…"), "Ctrl+M", tr("Choose how lines, skin and volume act")
-        )
-        self.about = self._make(tr("About Busk"))
-        self.add_lines = {name: self._make(title) for name, title in self._line_titles().items()}
-        self.own_line = self._make(tr("Draw a line…"))
-        self.samples = {name: self._make(tr(title)) for name, title in SAMPLES.items()}
-        self.controls = self._group({name: self._control_title(name) for name in CONTROLS})
-        self.templates = self._group(
-            {name: tr("{count} polygons").format(count=name) for name in ("168", "120")}
-        )
-        self.themes = self._group({"system": tr("As the system"), "light": tr("Light"), "dark": tr("Dark")})
-        self.languages = self._group(dict(LANGUAGES))
-        for action in (*self._of_document(), self.cancel):
-            action.setEnabled(False)
+        for action in (self.undo, self.redo):
+            self.place("edit", action)
+        self.rule("edit")
+        said = tr("Take all lines off: the body as it was scanned")
+        self.reset = self.add("edit", tr("Reset to scan"), "Ctrl+R", said, of_document=True)
 
-    def menu_bar(self, view: Mapping[str, QAction]) -> QMenuBar:
-        """Return the menus; ``view`` are the actions of the floating tools."""
-        bar = QMenuBar(self._parent)
-        file = bar.addMenu(tr("File"))
-        file.addAction(self.open)
-        self.recent = file.addMenu(tr("Open recent"))
-        self._fill(file.addMenu(tr("Open sample")), *self.samples.values())
-        self._fill(file, None, self.save, self.save_as, self.export, None, self.cancel, None, self.quit)
-        self._fill(bar.addMenu(tr("Edit")), self.undo, self.redo, None, self.reset)
-        look = bar.addMenu(tr("View"))
-        self._fill(look, self.flip, None, *view.values(), None, self.strip)
-        self._fill(look.addMenu(tr("Theme")), *self.themes.values())
-        self._fill(look.addMenu(tr("Language")), *self.languages.values())
-        self.add_menu = bar.addMenu(tr("Lines"))
-        self._fill(self.add_menu, *self.add_lines.values(), None, self.own_line)
-        solve = bar.addMenu(tr("Solve"))
-        self._fill(solve, *self.controls.values(), None)
-        self._fill(solve.addMenu(tr("Control mesh")), *self.templates.values())
-        self._fill(solve, None, self.model)
-        self._fill(bar.addMenu(tr("Help")), self.about)
-        return bar
+    def _fill_view(self, view: Mapping[str, QAction]) -> None:
+        said = tr("Show the body at rest, or reshaped")
+        self.flip = self.add("view", tr("Before / after"), "Space", said, of_document=True)
+        self.rule("view")
+        for action in view.values():
+            self.place("view", action)
+        self.rule("view")
+        self.submenu("view", "theme", tr("Theme"))
+        titles = {"system": tr("As the system"), "light": tr("Light"), "dark": tr("Dark")}
+        self.themes = self.group("theme", titles)
+        self.submenu("view", "language", tr("Language"))
+        self.languages = self.group("language", dict(LANGUAGES))
+        self.end("view", 3)
 
-    def enable_document(self) -> None:
-        """Allow what needs an open body."""
-        for action in self._of_document():
-            action.setEnabled(True)
-
-    def _of_document(self) -> tuple[QAction, ...]:
-        document = (self.save, self.save_as, self.export, self.reset, self.flip, self.model)
-        return (*document, *self.add_lines.values(), self.own_line)
-
-    def _make(
-        self,
-        text: str,
-        key: str | QKeySequence.StandardKey | None = None,
-        tip: str = "",
-        checkable: bool = False,
-    ) -> QAction:
-        action = QAction(text, self._parent)
-        if key is not None:
-            action.setShortcut(QKeySequence(key))
-        if tip:
-            action.setToolTip(tip)
-            action.setStatusTip(tip)
-        action.setCheckable(checkable)
-        return action
-
-    def _group(self, titles: Mapping[str, str]) -> dict[str, QAction]:
-        group = QActionGroup(self._parent)
-        actions = {name: self._make(title, checkable=True) for name, title in titles.items()}
-        for name, action in actions.items():
-            action.setData(name)
-            group.addAction(action)
-        return actions
-
-    @staticmethod
-    def _control_title(name: str) -> str:
-        return {
-            "adaptive": tr("Adaptive volume force"),
-            "conventional": tr("Conventional volume force"),
-            "accumulating": tr("Accumulating volume force"),
-            "exact": tr("Exact answer"),
-            "none": tr("No volume control"),
-        }[name]
-
-    @staticmethod
-    def _line_titles() -> dict[str, str]:
-        return {
+    def _fill_lines(self) -> None:
+        titles = {
             "straps": tr("Add straps over the bust points"),
             "slings": tr("Add slings round the breasts"),
             "obliques": tr("Add oblique lines from the sides"),
             "rings": tr("Add closed rings round the bust points"),
         }
+        self.add_menu = self.menus["lines"]
+        self.add_lines = {name: self.add("lines", title, of_document=True) for name, title in titles.items()}
+        self.rule("lines")
+        self.own_line = self.add("lines", tr("Draw a line…"), of_document=True)
 
-    @staticmethod
-    def _fill(menu: QMenu, *actions: QAction | None) -> None:
-        for action in actions:
-            if action is None:
-                menu.addSeparator()
-            else:
-                menu.addAction(action)
+    def _fill_solve(self) -> None:
+        titles = {
+            "adaptive": tr("Adaptive volume force"),
+            "conventional": tr("Conventional volume force"),
+            "accumulating": tr("Accumulating volume force"),
+            "exact": tr("Exact answer"),
+            "none": tr("No volume control"),
+        }
+        self.controls = self.group("solve", {name: titles[name] for name in CONTROLS})
+        self.rule("solve")
+        self.submenu("solve", "templates", tr("Control mesh"))
+        counts = {name: tr("{count} polygons").format(count=name) for name in ("168", "120")}
+        self.templates = self.group("templates", counts)
+        self.rule("solve")
+        said = tr("Choose how lines, skin and volume act")
+        self.model = self.add("solve", tr("How the model works…"), "Ctrl+M", said, of_document=True)
+
+    def _fill_window(self) -> None:
+        titles = {
+            "scan": tr("Scan"),
+            "landmarks": tr("Landmarks"),
+            "lines": tr("Lines"),
+            "result": tr("Result"),
+        }
+        self.steps = self.group("window", titles)
+        for number, action in enumerate(self.steps.values(), start=1):
+            action.setShortcut(f"Ctrl+{number}")
+        self.rule("window")
+        self.inspector = self.add("window", tr("Inspector"), "Ctrl+I", checkable=True)
+        self.strip = self.add("window", tr("Live plot"), "Ctrl+J", checkable=True)
+        said = tr("Hide all but the 3D view; Tab in the view brings the rest back")
+        self.alone = self.add("window", tr("View alone"), "Tab", said, checkable=True)
+        # Elsewhere Tab goes on to the next field: the layout gives this action to the view alone.
+        self.alone.setShortcutContext(Qt.ShortcutContext.WidgetShortcut)
+        self.full_screen = self.add("window", tr("Full screen"), "F11", checkable=True)
+        self.next_pane = self.add("window", tr("Next pane"), "F6", tr("Go on with the keyboard elsewhere"))
+        self.rule("window")
+        said = tr("Give inspector and live plot their first sizes again")
+        self.reset_layout = self.add("window", tr("Reset layout"), tip=said)
+
+    def _fill_help(self) -> None:
+        self.about = self.add("help", tr("About Busk"))
+        self.about.setMenuRole(QAction.MenuRole.AboutRole)
+        self.end("help", 1)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QResizeEvent
-from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
+from PySide6.QtWidgets import QMainWindow, QVBoxLayout, QWidget
 
 from app.actions import Actions
 from app.asking.housekeeping import Housekeeping
@@ -12,7 +12,8 @@ from app.asking.session import Session
 from app.desks.desk import Desk
 from app.desks.line_maker import LineMaker
 from app.desks.scan_desk import ScanDesk
-from app.dress.parts import hairline
+from app.layout import Layout
+from app.panels.inspector import Inspector
 from app.panels.landmarks import LandmarksPanel
 from app.panels.lines import LinesPanel
 from app.panels.model import ModelDoor, ModelPanel
@@ -25,9 +26,7 @@ from app.panels.top_bar import TopBar
 from app.showing.convergence import Strip
 from app.view_area import ViewArea
 from app.wiring import connect
-
-NARROW, WIDE = 340, 364
-"""Width of the inspector in windows narrower and wider than 1400 pixels."""
+from app.wording.words import tr
 
 
 class MainWindow(QMainWindow):
@@ -43,59 +42,39 @@ class MainWindow(QMainWindow):
         self.setAcceptDrops(True)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.view = ViewArea()
-        self.actions_ = Actions(self, session.undo_stack)
-        self.menus = self.actions_.menu_bar(self.view.tools.actions_by_name)
-        self.top = TopBar(self.menus, self.actions_.undo, self.actions_.redo, self.actions_.export)
+        do = self.actions_ = Actions(self, session.undo_stack, self.view.tools.actions_by_name)
+        self.top = TopBar(do.bar, do.undo, do.redo, do.export)
         self.rail, self.notices, self.strip, self.status = Rail(), NoticeBar(), Strip(), StatusBar()
         self.scan, self.landmarks = ScanPanel(), LandmarksPanel()
         self.lines, self.result = LinesPanel(), ResultPanel()
         self.model, self.door = ModelPanel(), ModelDoor()
-        self.inspector = QStackedWidget()
-        self._lay_out()
+        self.inspector = Inspector()
+        self._fill_inspector()
+        self.layout_ = Layout(self)
+        self.pages = self.layout_.pages
         self.scan_desk = ScanDesk(self)
         self.desk = Desk(self)
         self.line_maker = LineMaker(self)
         self.housekeeping = Housekeeping(self)
         connect(self)
 
-    def _lay_out(self) -> None:
+    def _fill_inspector(self) -> None:
         lines = QWidget()
         column = QVBoxLayout(lines)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
         column.addWidget(self.lines, 1)
         column.addWidget(self.door)
-        for panel in (self.scan, self.landmarks, lines, self.result, self.model):
-            self.inspector.addWidget(panel)
-        middle = QVBoxLayout()
-        middle.setSpacing(0)
-        for part, stretch in ((self.notices, 0), (self.view, 1), (self.strip, 0)):
-            middle.addWidget(part, stretch)
-        across = QHBoxLayout()
-        across.setSpacing(0)
-        across.addWidget(self.rail)
-        across.addLayout(middle, 1)
-        across.addWidget(hairline(vertical=True))
-        across.addWidget(self.inspector)
-        central = QWidget()
-        down = QVBoxLayout(central)
-        down.setContentsMargins(0, 0, 0, 0)
-        down.setSpacing(0)
-        down.addWidget(self.top)
-        down.addLayout(across, 1)
-        down.addWidget(self.status)
-        self.setCentralWidget(central)
-        self.inspector.setFixedWidth(WIDE)
+        self.inspector.add("scan", self.scan)
+        self.inspector.add("landmarks", self.landmarks)
+        self.inspector.add("lines", lines, tr("Lines"))
+        self.inspector.add("result", self.result, tr("Measures"))
+        self.inspector.add("model", self.model)
 
     def is_settled(self) -> bool:
         """Tell whether the session's design is solved to the end and shown."""
         frame, design = self.session.frame, self.session.design
         return frame is not None and frame.stages.design is design and not frame.at_work
-
-    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
-        """Give the view more room in a narrow window."""
-        super().resizeEvent(event)
-        self.inspector.setFixedWidth(WIDE if self.width() >= 1400 else NARROW)
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:  # noqa: N802
         """Take files that are dragged onto the window."""
@@ -115,6 +94,7 @@ class MainWindow(QMainWindow):
         if not self.desk.may_leave():
             event.ignore()
             return
+        self.layout_.keep()
         # The solver may be in the middle of reading a scan: nobody has to watch the window wait for it.
         self.hide()
         self.desk.close()

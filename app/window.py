@@ -28,6 +28,7 @@ def run_window(file: str | None = None) -> int:
     app = application()
     with log_kept():
         window = open_window(file if file is not None else sample_design())
+        window.layout_.restore()
         window.show()
         code = app.exec()
     # What the window leaves is taken away here, in the thread that it belongs to.

@@ -79,6 +79,7 @@ def _connect_actions(window: MainWindow) -> None:
     do.quit.triggered.connect(window.close)
     do.reset.triggered.connect(session.reset_lines)
     do.flip.triggered.connect(lambda: view.set_after(not view.after))
+    _connect_layout(window)
     do.strip.toggled.connect(lambda on: window.strip.set_folded(not on))
     window.strip.folded.connect(lambda folded: do.strip.setChecked(not folded))
     do.own_line.triggered.connect(window.line_maker.ask)
@@ -96,3 +97,14 @@ def _connect_actions(window: MainWindow) -> None:
     ):
         for name, action in group.items():
             action.triggered.connect(lambda _=False, ask=ask, name=name: ask(name))
+
+
+def _connect_layout(window: MainWindow) -> None:
+    do, layout = window.actions_, window.layout_
+    do.inspector.triggered.connect(layout.show_inspector)
+    do.alone.triggered.connect(layout.show_alone)
+    do.full_screen.triggered.connect(layout.show_full_screen)
+    do.next_pane.triggered.connect(layout.next_pane)
+    do.reset_layout.triggered.connect(layout.reset)
+    for step, action in do.steps.items():
+        action.triggered.connect(lambda _=False, step=step: window.desk.go_to(step))

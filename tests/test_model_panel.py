@@ -49,7 +49,7 @@ def test_a_sliding_line_lifts_the_bust_points_and_undo_brings_the_old_result_bac
     def script(window: MainWindow) -> Script:
         yield settled(window)
         window.actions_.model.trigger()
-        assert window.inspector.currentWidget() is window.model
+        assert window.inspector.panel() is window.model
         choose(window, "volume", "exact")
         yield settled(window)
         at_start, glued = points(window).copy(), bust_points(window)

@@ -39,8 +39,6 @@ if TYPE_CHECKING:
 PLOT_INTERVAL = 200
 """Milliseconds between two pictures of the live plot: it costs more than the figures beside it."""
 
-STEPS = ("scan", "landmarks", "lines", "result")
-
 
 class Desk(QObject):
     """Brings answers of the session to the parts of the window, and requests with a dialog to the session."""
@@ -61,6 +59,7 @@ class Desk(QObject):
         themes.get(str(settings.value("theme")), themes["system"]).setChecked(True)
         languages.get(str(settings.value("language")), languages["en"]).setChecked(True)
         window.actions_.strip.setChecked(True)
+        window.actions_.inspector.setChecked(True)
         self.go_to("lines")
         self.show_title()
 
@@ -143,8 +142,10 @@ class Desk(QObject):
 
     def go_to(self, step: str) -> None:
         """Show a step: scan and landmarks on the body at rest, lines and result on the reshaped one."""
+        self._window.layout_.show_work()
         self._window.rail.set_current(step)
-        self._window.inspector.setCurrentIndex(STEPS.index(step))
+        self._window.actions_.steps[step].setChecked(True)
+        self._window.inspector.open(step)
         view, worn = self._window.view, step in ("lines", "result")
         view.set_after(worn)
         view.set_layer("bands", worn)
@@ -153,7 +154,7 @@ class Desk(QObject):
     def show_model(self) -> None:
         """Show how the model works in the place of the lines; what it does is seen beside it."""
         self.go_to("lines")
-        self._window.inspector.setCurrentWidget(self._window.model)
+        self._window.inspector.open("model")
 
     def select_line(self, name: str) -> None:
         """Select a line in the list and on the body."""

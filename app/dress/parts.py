@@ -120,26 +120,40 @@ class Segment(QFrame):
 
     chosen = Signal(str)
 
-    def __init__(self, choices: Sequence[tuple[str, str]], small: bool = False) -> None:
+    def __init__(
+        self, choices: Sequence[tuple[str, str]], small: bool = False, *, wide: bool = False
+    ) -> None:
         super().__init__()
         self.setProperty("kind", "segment")
-        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(2, 2, 2, 2)
-        row.setSpacing(0)
+        fixed = QSizePolicy.Policy.Fixed
+        self.setSizePolicy(QSizePolicy.Policy.Expanding if wide else fixed, fixed)
+        self._row = QHBoxLayout(self)
+        self._row.setContentsMargins(2, 2, 2, 2)
+        self._row.setSpacing(0)
+        self._small, self._wide = small, wide
         self._group = QButtonGroup(self)
         self._buttons: dict[str, QPushButton] = {}
         for name, title in choices:
-            each = button(title, "segment")
-            each.setCheckable(True)
-            each.setFont(font("title" if small else "name"))
-            each.setFixedSize(each.fontMetrics().horizontalAdvance(title) + (20 if small else 24), 24)
-            each.toggled.connect(lambda on, b=each: b.setFont(_segment_font(on, small)))
-            each.setFont(_segment_font(False, small))
-            each.clicked.connect(lambda _=False, chosen=name: self.chosen.emit(chosen))
-            self._group.addButton(each)
-            row.addWidget(each)
-            self._buttons[name] = each
+            self.add(name, title)
+
+    def add(self, name: str, title: str) -> None:
+        """Take in one more choice."""
+        small, each = self._small, button(title, "segment")
+        each.setCheckable(True)
+        each.setFont(font("title" if small else "name"))
+        room = each.fontMetrics().horizontalAdvance(title) + (20 if small or self._wide else 24)
+        each.setFixedHeight(24)
+        each.setMinimumWidth(room)
+        if self._wide:
+            each.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        else:
+            each.setFixedWidth(room)
+        each.toggled.connect(lambda on: each.setFont(_segment_font(on, small)))
+        each.setFont(_segment_font(False, small))
+        each.clicked.connect(lambda: self.chosen.emit(name))
+        self._group.addButton(each)
+        self._row.addWidget(each)
+        self._buttons[name] = each
 
     def set_choice(self, name: str) -> None:
         """Show ``name`` as the choice that is on, or that it is none of these; nothing is emitted."""

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QKeySequence, QPainter, QPaintEvent, QPen, QPolygonF
+from PySide6.QtGui import QAction, QColor, QKeySequence, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QAbstractButton, QButtonGroup, QVBoxLayout, QWidget
 
 from app.dress.icons import paint_icon
-from app.dress.parts import paint_card
+from app.dress.parts import ToolButton, paint_card
 from app.dress.theme import font, tokens_of
 from app.wording.words import tr
 
@@ -41,6 +41,11 @@ class Rail(QWidget):
             self.items[step] = item
         self._column.addStretch(1)
 
+    def add_tool(self, drawing: str, action: QAction) -> None:
+        """Put a small button at the foot, for what is no step."""
+        tool = ToolButton(drawing, size=20, room=36, action=action)
+        self._column.addWidget(tool, alignment=Qt.AlignmentFlag.AlignHCenter)
+
     def set_current(self, step: str) -> None:
         """Show which step the window is in; nothing is emitted."""
         self.items[step].setChecked(True)
@@ -62,7 +67,6 @@ class RailItem(QAbstractButton):
         self._drawing, self._state, self._count = STEP_ICONS[step], "missing", 0
         self.setText(title)
         self.setCheckable(True)
-        self.setShortcut(key)
         self.setToolTip(f"{title}  {key.toString(QKeySequence.SequenceFormat.NativeText)}")
         self.setAccessibleName(title)
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)

@@ -85,7 +85,7 @@ class Strip(QWidget):
         self._build_body()
         self._build_line()
         outer = QVBoxLayout(self)
-        outer.setContentsMargins(0, 1, 0, 0)
+        outer.setContentsMargins(0, 0, 0, 0)
         outer.setSpacing(0)
         outer.addWidget(self._body)
         outer.addWidget(self._line)
@@ -146,9 +146,6 @@ class Strip(QWidget):
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         self._legend.setVisible(self.width() >= _LEGEND_FROM)
-
-    def paintEvent(self, event: QPaintEvent) -> None:
-        QPainter(self).fillRect(0, 0, self.width(), 1, QColor(tokens_of(self).line))
 
     def _build_body(self) -> None:
         row = QHBoxLayout(self._body)

@@ -1,0 +1,206 @@
+"""Where the parts of the window stand: splitters, what is folded away, and sizes kept between sessions."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QByteArray, QEvent, QObject, QSettings, Qt
+from PySide6.QtWidgets import QApplication, QHBoxLayout, QSplitter, QStackedWidget, QVBoxLayout, QWidget
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+
+NARROW, WIDE = 340, 364
+"""First width of the inspector in windows narrower and wider than 1400 pixels."""
+
+LOW, HIGH = 156, 172
+"""First height of the strip in windows lower and higher than 850 pixels."""
+
+
+class Layout(QObject):
+    """Places the parts: top bar, rail, the work beside it, status bar.
+
+    ``pages`` holds the work (view, strip and inspector) and whatever may take its place, such as the start.
+    """
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._width: int | None = None  # of the inspector and
+        self._height: int | None = None  # of the strip, once the user has chosen them
+        self._keeps = False
+        self.pages = QStackedWidget()
+        self._across, self._down = QSplitter(Qt.Orientation.Horizontal), QSplitter(Qt.Orientation.Vertical)
+        self._middle, self._right = QVBoxLayout(), QVBoxLayout()
+        self._build()
+        self._across.splitterMoved.connect(self._note_width)
+        self._down.splitterMoved.connect(self._note_height)
+        self.pages.currentChanged.connect(self._carry_notices)
+        window.strip.folded.connect(self._fit_strip)
+        window.view.viewport.addAction(window.actions_.alone)
+        window.installEventFilter(self)
+
+    def _build(self) -> None:
+        window, work, right, central = self._window, QWidget(), QWidget(), QWidget()
+        for column, holder in ((self._middle, work), (self._right, right)):
+            column.setContentsMargins(0, 0, 0, 0)
+            column.setSpacing(0)
+            holder.setLayout(column)
+        window.view.setMinimumSize(480, 300)
+        for splitter, parts in (
+            (self._down, (window.view, window.strip)),
+            (self._across, (work, window.inspector)),
+        ):
+            splitter.setHandleWidth(1)
+            splitter.setChildrenCollapsible(False)
+            for stretch, part in zip((1, 0), parts, strict=True):
+                splitter.addWidget(part)
+                splitter.setStretchFactor(splitter.count() - 1, stretch)
+        self._middle.addWidget(window.notices)
+        self._middle.addWidget(self._down, 1)
+        self.pages.addWidget(self._across)
+        self._right.addWidget(self.pages, 1)
+        across, down = QHBoxLayout(), QVBoxLayout(central)
+        for row in (across, down):
+            row.setContentsMargins(0, 0, 0, 0)
+            row.setSpacing(0)
+        across.addWidget(window.rail)
+        across.addWidget(right, 1)
+        down.addWidget(window.top)
+        down.addLayout(across, 1)
+        down.addWidget(window.status)
+        window.setCentralWidget(central)
+
+    # -- what is shown
+
+    def show_work(self) -> None:
+        """Bring view, strip and inspector back, if another page has taken their place."""
+        self.pages.setCurrentWidget(self._across)
+
+    def show_inspector(self, shown: bool) -> None:
+        """Show or hide the inspector."""
+        self._window.inspector.setVisible(shown)
+        self._window.actions_.inspector.setChecked(shown)
+
+    def show_alone(self, alone: bool) -> None:
+        """Hide all but the view, or bring the rest back as it was."""
+        window = self._window
+        self.show_work()
+        for part in (window.rail, window.strip):
+            part.setVisible(not alone)
+        window.inspector.setVisible(not alone and window.actions_.inspector.isChecked())
+        window.actions_.alone.setChecked(alone)
+        window.view.viewport.setFocus()
+
+    def show_full_screen(self, full: bool) -> None:
+        """Let the window fill the screen, or let it be as it was."""
+        state, flag = self._window.windowState(), Qt.WindowState.WindowFullScreen
+        self._window.setWindowState(state | flag if full else state & ~flag)
+
+    def reset(self) -> None:
+        """Give everything its first size and place again."""
+        self._width = self._height = None
+        self.show_alone(False)
+        self.show_inspector(True)
+        self._window.strip.set_folded(False)
+        self.fit()
+
+    def next_pane(self) -> None:
+        """Let the keyboard go on in the next part of the window: menus, steps, view, strip, inspector."""
+        window = self._window
+        panes: list[QWidget] = [
+            window.top,
+            window.rail,
+            window.notices,
+            window.view,
+            window.strip,
+            window.inspector,
+        ]
+        page = self.pages.currentWidget()
+        if page is not None and page is not self._across:
+            panes[3:] = [page]
+        has = QApplication.focusWidget()
+        at = next((place for place, pane in enumerate(panes) if has and pane.isAncestorOf(has)), -1)
+        turned = [panes[(at + place) % len(panes)] for place in range(1, len(panes) + 1)]
+        for pane in turned:
+            target = window.view.viewport if pane is window.view else _first_of(pane)
+            if target is not None:
+                target.setFocus(Qt.FocusReason.TabFocusReason)
+                return
+
+    # -- sizes
+
+    def fit(self) -> None:
+        """Give inspector and strip the sizes that the user chose, or those that suit the window's."""
+        window = self._window
+        width = self._width or (WIDE if window.width() >= 1400 else NARROW)
+        self._across.setSizes([max(sum(self._across.sizes()) - width, 1), width])
+        self._fit_strip(window.strip.is_folded())
+
+    def _fit_strip(self, folded: bool) -> None:
+        if not folded:
+            height = self._height or (HIGH if self._window.height() >= 850 else LOW)
+            self._down.setSizes([max(sum(self._down.sizes()) - height, 1), height])
+
+    def _note_width(self) -> None:
+        self._width = self._window.inspector.width()
+
+    def _note_height(self) -> None:
+        if not self._window.strip.is_folded():
+            self._height = self._window.strip.height()
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+        """Follow the size of the window; a low one opens with its plots folded away."""
+        if watched is self._window and event.type() == QEvent.Type.Resize:
+            self.fit()
+        elif watched is self._window and event.type() == QEvent.Type.Show and not event.spontaneous():
+            if self._window.height() < 740 and self._height is None:
+                self._window.strip.set_folded(True)
+            self.fit()
+        return False
+
+    def _carry_notices(self) -> None:
+        """Keep the notices over what is shown: over the view alone, so that no slider moves under a hand."""
+        at_work = self.pages.currentWidget() is self._across
+        (self._middle if at_work else self._right).insertWidget(0, self._window.notices)
+
+    # -- between sessions
+
+    def restore(self) -> None:
+        """Put the window where it stood last, as far as its screen is still there; ``keep`` is then due."""
+        settings, self._keeps = QSettings(), True
+        place = settings.value("window/geometry")
+        if isinstance(place, QByteArray):
+            self._window.restoreGeometry(place)
+        self._width = _number(settings.value("window/inspector"))
+        self._height = _number(settings.value("window/strip"))
+        if settings.value("window/folded") == "true":
+            self._window.strip.set_folded(True)
+        self.show_inspector(settings.value("window/inspector_shown") != "false")
+
+    def keep(self) -> None:
+        """Remember where the window stands, if it was put there from memory: pictures leave no trace."""
+        if not self._keeps:
+            return
+        settings, do = QSettings(), self._window.actions_
+        settings.setValue("window/geometry", self._window.saveGeometry())
+        settings.setValue("window/folded", str(self._window.strip.is_folded()).lower())
+        settings.setValue("window/inspector_shown", str(do.inspector.isChecked()).lower())
+        for name, size in (("inspector", self._width), ("strip", self._height)):
+            if size is None:
+                settings.remove(f"window/{name}")
+            else:
+                settings.setValue(f"window/{name}", size)
+
+
+def _number(value: object) -> int | None:
+    text = str(value)
+    return int(text) if text.isdecimal() and 0 < int(text) < 2000 else None
+
+
+def _first_of(pane: QWidget) -> QWidget | None:
+    """Return what of a pane takes the keyboard first, if anything does."""
+    for each in pane.findChildren(QWidget):
+        if each.isVisible() and each.isEnabled() and each.focusPolicy() & Qt.FocusPolicy.TabFocus:
+            return each
+    return None
