@@ -3,24 +3,43 @@
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
 
-from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QPolygonF, QWheelEvent
-from PySide6.QtWidgets import QAbstractSlider, QSizePolicy, QWidget
+from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import (
+    QColor,
+    QHelpEvent,
+    QKeyEvent,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QPen,
+    QPolygonF,
+    QWheelEvent,
+)
+from PySide6.QtWidgets import QAbstractSlider, QSizePolicy, QToolTip, QWidget
 
 from app.dress.theme import tokens_of
+from app.panels.length_groove import GROOVE_HEIGHT, GROOVE_Y, Feasible, paint_groove
 from app.wording.tokens import LINE_COLORS
+from app.wording.words import tr
+
+__all__ = ["LONGEST", "RESISTANCE", "SHORTEST", "STEPS_TO_ONE", "Feasible", "LengthSlider"]
 
 SHORTEST, LONGEST = 0.80, 1.12
 """Range of a line's length as a share of its length at rest [1]."""
 
 STEPS_TO_ONE = 100_000  # one step of the slider is 1/1000 %
 
-_GROOVE_Y, _GROOVE_HEIGHT, _END_ROOM, _HANDLE_RADIUS = 11.0, 6.0, 13.0, 8.0
+RESISTANCE = 24.0
+"""How much further a hand must pull to get a handle into the red [px]."""
+
+_END_ROOM, _HANDLE_RADIUS = 13.0, 8.0
 _SMALLEST_WEDGE = 0.0005  # a reached length nearer to the set one shows no wedge
 
 
 class LengthSlider(QAbstractSlider):
     """A slider from 80 to 112 % with a wedge under the groove at the reached length.
+
+    The groove shows how short the line may become; a hand meets resistance where that ends.
 
     ``previewed`` (share of the rest length) while the handle is dragged; ``committed`` once on release or at
     a key; ``cancelled`` when Esc ends a drag and the old value is back.
@@ -34,8 +53,11 @@ class LengthSlider(QAbstractSlider):
         super().__init__(parent)
         self._color = color
         self._reached: float | None = None
+        self._feasible: Feasible | None = None
+        self._strong = False
         self._before_drag = 0
         self._grip = 0.0
+        self._wall: float | None = None
         self._previewed = False
         self.setOrientation(Qt.Orientation.Horizontal)
         self.setRange(round(SHORTEST * STEPS_TO_ONE), round(LONGEST * STEPS_TO_ONE))
@@ -66,12 +88,35 @@ class LengthSlider(QAbstractSlider):
         self._reached = ratio
         self.update()
 
+    def set_color(self, color: str) -> None:
+        """Give the handle the colour of its line."""
+        self._color = color
+        self.update()
+
+    def set_feasible(self, feasible: Feasible | None) -> None:
+        """Show how short the line may become, or that this is not known."""
+        self._feasible = feasible
+        self.update()
+
+    def set_strong(self, strong: bool) -> None:
+        """Show the zones at full strength, as for the selected line."""
+        self._strong = strong
+        self.update()
+
+    def event(self, event: QEvent) -> bool:
+        if isinstance(event, QHelpEvent) and self._feasible is not None and self._is_red(event.pos().x()):
+            why = tr("Not this short: {reason}.").format(reason=self._feasible.reason())
+            QToolTip.showText(event.globalPos(), why, self)
+            return True
+        return super().event(event)
+
     def mousePressEvent(self, event: QMouseEvent) -> None:
         if event.button() != Qt.MouseButton.LeftButton:
             event.ignore()
             return
         self._before_drag, self._previewed = self.value(), False
         self._grip = event.position().x() - self._x_of(self.ratio())
+        self._wall = self._wall_of(self.ratio())
         self.setSliderDown(True)
         if abs(self._grip) > _HANDLE_RADIUS + 3:
             self._grip = 0.0
@@ -113,14 +158,18 @@ class LengthSlider(QAbstractSlider):
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setPen(Qt.PenStyle.NoPen)
-        self._paint_groove(painter)
+        strong = self._strong or self.underMouse() or self.isSliderDown()
+        paint_groove(painter, tokens_of(self), self._x_of, (SHORTEST, LONGEST), self._feasible, strong)
+        if self._feasible is None:
+            self._paint_way(painter)
         if self._reached is not None and abs(self._reached - self.ratio()) > _SMALLEST_WEDGE:
             self._paint_wedge(painter, self._x_of(min(max(self._reached, SHORTEST), LONGEST)))
-        self._paint_handle(painter, QPointF(self._x_of(self.ratio()), _GROOVE_Y))
+        self._paint_handle(painter, QPointF(self._x_of(self.ratio()), GROOVE_Y))
 
     def _drag_to(self, x: float) -> None:
-        share = (x - _END_ROOM) / max(self.width() - 2 * _END_ROOM, 1.0)
-        ratio = SHORTEST + share * (LONGEST - SHORTEST)
+        if self._wall is not None and x < self._wall:
+            x = min(x + RESISTANCE, self._wall)
+        ratio = self._ratio_at(x)
         before = self.value()
         self.setValue(round(round(ratio * 1000) * STEPS_TO_ONE / 1000))
         if self.value() != before:
@@ -150,23 +199,30 @@ class LengthSlider(QAbstractSlider):
         share = (ratio - SHORTEST) / (LONGEST - SHORTEST)
         return _END_ROOM + share * (self.width() - 2 * _END_ROOM)
 
-    def _paint_groove(self, painter: QPainter) -> None:
-        tokens = tokens_of(self)
-        top = _GROOVE_Y - _GROOVE_HEIGHT / 2
-        groove = QRectF(_END_ROOM, top, self.width() - 2 * _END_ROOM, _GROOVE_HEIGHT)
-        painter.setBrush(QColor(tokens.groove))
-        painter.drawRoundedRect(groove, 3, 3)
+    def _ratio_at(self, x: float) -> float:
+        share = (x - _END_ROOM) / max(self.width() - 2 * _END_ROOM, 1.0)
+        return SHORTEST + share * (LONGEST - SHORTEST)
+
+    def _wall_of(self, ratio: float) -> float | None:
+        """Return where a drag that begins at ``ratio`` meets the red [px], if it does."""
+        red = self._feasible.impossible if self._feasible is not None else None
+        return self._x_of(red) if red is not None and SHORTEST < red <= ratio else None
+
+    def _is_red(self, x: float) -> bool:
+        red = self._feasible.impossible if self._feasible is not None else None
+        return red is not None and self._ratio_at(x) < red
+
+    def _paint_way(self, painter: QPainter) -> None:
+        """Darken the groove between the length at rest and the set one."""
         rest, here = self._x_of(1.0), self._x_of(self.ratio())
-        filled = QRectF(min(rest, here), top, abs(rest - here), _GROOVE_HEIGHT)
-        color = QColor(tokens.text_caption)
+        color = QColor(tokens_of(self).text_caption)
         color.setAlpha(90)
         painter.setBrush(color)
-        painter.drawRect(filled)
-        painter.setBrush(QColor(tokens.control))
-        painter.drawRect(QRectF(rest - 0.5, top - 3, 1, _GROOVE_HEIGHT + 6))
+        top = GROOVE_Y - GROOVE_HEIGHT / 2
+        painter.drawRect(QRectF(min(rest, here), top, abs(rest - here), GROOVE_HEIGHT))
 
     def _paint_wedge(self, painter: QPainter, x: float) -> None:
-        y = _GROOVE_Y + _GROOVE_HEIGHT / 2 + 5
+        y = GROOVE_Y + GROOVE_HEIGHT / 2 + 5
         painter.setBrush(QColor(tokens_of(self).text))
         painter.drawPolygon(QPolygonF([QPointF(x, y), QPointF(x + 4, y + 5), QPointF(x - 4, y + 5)]))
 

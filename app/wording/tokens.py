@@ -34,6 +34,9 @@ class Tokens:
     warn_mark: str  # amber of curves and marks, not of text
     bad: str
     bad_fill: str
+    zone_ok: str  # lengths of a line in the groove of its slider
+    zone_warn: str
+    zone_bad: str
     groove: str
     ghost_curve: str
     exact_curve: str
@@ -71,6 +74,9 @@ LIGHT = Tokens(
     warn_mark="#C47B00",
     bad="#B3261E",
     bad_fill="#FCE6E3",
+    zone_ok="#8FC9AC",
+    zone_warn="#EBC263",
+    zone_bad="#DE8F86",
     groove="#DAD6D1",
     ghost_curve="#A39D95",
     exact_curve="#57534E",
@@ -108,6 +114,9 @@ DARK = Tokens(
     warn_mark="#E8B44C",
     bad="#FF8B80",
     bad_fill="#3F1B18",
+    zone_ok="#3E7D5E",
+    zone_warn="#9A7522",
+    zone_bad="#96483F",
     groove="#3A3C42",
     ghost_curve="#6E6F72",
     exact_curve="#B3B1AE",
