@@ -41,7 +41,7 @@ class Frame:
     ``points`` and ``normals`` (r, 3) belong to the body's vertices ``stages.moving.vertices``;
     ``control_points`` (n, 3) [mm]; ``lengths`` [mm] of the lines' front parts; ``tracks`` the records of each
     run so far; ``exact_marks`` what the exact answer ends at; ``at_work`` whether turns are still being made;
-    ``seconds`` spent on them since the design last changed.
+    ``seconds`` spent on them since the design last changed, at turn ``changed_at``.
     """
 
     revision: int
@@ -57,6 +57,7 @@ class Frame:
     marks: Marks
     at_work: bool
     seconds: float
+    changed_at: int
 
 
 @dataclass(frozen=True)
@@ -279,16 +280,14 @@ class LiveSolver:
 def make_frame(revision: int, stages: Stages, comparison: Comparison, seconds: float = 0.0) -> Frame:
     """Shape the body after the comparison's shown state and read everything off it."""
     control_points = stages.model.tensegric.expand(comparison.shown.moved)
-    points, normals = stages.shape(control_points)
-    lines = stages.model.lines
     change = stages.model.volume.volume(control_points) - stages.model.volume.rest_volume
+    shown = comparison.main or max(comparison.runs.values(), key=lambda run: run.changed_at)
     return Frame(
         revision,
         stages,
-        points,
-        normals,
+        *stages.shape(control_points),
         control_points,
-        {line.name: line.length(control_points) for line in lines},
+        {line.name: line.length(control_points) for line in stages.model.lines},
         {control: tuple(run.records) for control, run in comparison.runs.items()},
         stages.watch(stages.model.tensegric.expand(comparison.exact.state.moved)),
         comparison.verdict,
@@ -296,4 +295,5 @@ def make_frame(revision: int, stages: Stages, comparison: Comparison, seconds: f
         stages.watch(control_points),
         not comparison.resting,
         seconds,
+        shown.changed_at,
     )
