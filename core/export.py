@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import csv
 import os
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from core.control_mesh import ControlMesh
 from core.errors import UserError
 from core.live import Frame
 from core.mesh import Mesh
+from core.profile import Curve, Plane
 from core.project import whole_file
 from core.tffd import deform
 
@@ -50,3 +52,18 @@ def write_control_points(path: str | os.PathLike[str], control: ControlMesh) -> 
             figures = (f"{value:.3f}" for value in place)
             at = control.row[number], control.column[number]
             writer.writerow([number, *at, *figures, "no" if fixed else "yes"])
+
+
+def write_profile(path: str | os.PathLike[str], plane: Plane, bodies: Mapping[str, Sequence[Curve]]) -> None:
+    """Write the curves in which a plane cuts ``bodies``, named before, after .., as CSV [mm].
+
+    Raises UserError if the place cannot be written to.
+    """
+    target = Path(path).absolute()
+    with whole_file(target) as partial, open(partial, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["body", "curve", "x_mm", "y_mm", "z_mm"])
+        for body, curves in bodies.items():
+            for number, curve in enumerate(curves, start=1):
+                for place in plane.in_space(curve.places):
+                    writer.writerow([body, number, *(f"{value:.3f}" for value in place)])

@@ -52,12 +52,19 @@ def cut(mesh: Mesh, origin: npt.ArrayLike, normal: npt.ArrayLike) -> Section:
 
 def chains(section: Section) -> list[tuple[Points, bool]]:
     """Join the segments into curves: a list of (points (k, 3) [mm], closed), longest first."""
+    return [(section.points[rows], bool(rows[0] == rows[-1])) for rows in ordered(section)]
+
+
+def ordered(section: Section) -> list[Indices]:
+    """Join the segments into curves: the rows of ``section.points`` in order, the longest curve first.
+
+    A closed curve ends with the row that it begins with.
+    """
     ends = section.edge_ids
     _, first, node = np.unique(ends, return_index=True, return_inverse=True)
     node = node.reshape(ends.shape)
     order = np.argsort(node.ravel(), kind="stable")
     count = np.bincount(node.ravel(), minlength=len(first))
-    place = section.points[first]
     # Plain lists from here: the walk goes from node to node, which arrays are slow at.
     segment, bound = (order // 2).tolist(), np.concatenate([[0], np.cumsum(count)]).tolist()
     both, used = node.sum(axis=1).tolist(), [False] * len(ends)
@@ -79,8 +86,8 @@ def chains(section: Section) -> list[tuple[Points, bool]]:
     for start in np.concatenate([seen[count[seen] == 1], seen]).tolist():
         path = walk(start)
         if len(path) > 1:
-            curves.append((place[path], path[0] == path[-1]))
-    return sorted(curves, key=lambda curve: arc_length(curve[0])[-1], reverse=True)
+            curves.append(first[path])
+    return sorted(curves, key=lambda rows: arc_length(section.points[rows])[-1], reverse=True)
 
 
 def arc_length(curve: Points) -> Floats:
