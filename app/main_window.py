@@ -10,6 +10,7 @@ from app.actions import Actions
 from app.asking.housekeeping import Housekeeping
 from app.asking.session import Session
 from app.desks.desk import Desk
+from app.desks.flip_key import FlipKey
 from app.desks.line_maker import LineMaker
 from app.desks.scan_desk import ScanDesk
 from app.layout import Layout
@@ -42,7 +43,7 @@ class MainWindow(QMainWindow):
         self.setAcceptDrops(True)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.view = ViewArea()
-        do = self.actions_ = Actions(self, session.undo_stack, self.view.tools.actions_by_name)
+        do = self.actions_ = Actions(self, session.undo_stack, self.view.tool_actions)
         self.top = TopBar(do.bar, do.undo, do.redo, do.export)
         self.rail, self.notices, self.strip, self.status = Rail(), NoticeBar(), Strip(), StatusBar()
         self.scan, self.landmarks = ScanPanel(), LandmarksPanel()
@@ -55,6 +56,7 @@ class MainWindow(QMainWindow):
         self.scan_desk = ScanDesk(self)
         self.desk = Desk(self)
         self.line_maker = LineMaker(self)
+        self.flip_key = FlipKey(self, self.actions_.flip, self.view)
         self.housekeeping = Housekeeping(self)
         connect(self)
 

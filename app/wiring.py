@@ -57,7 +57,7 @@ def _connect_view(window: MainWindow) -> None:
     desk, scan_desk, view = window.desk, window.scan_desk, window.view
     view.viewport.band_clicked.connect(desk.select_line)
     view.viewport.pin_pressed.connect(desk.select_landmark)
-    view.viewport.pin_moved.connect(view.drag_landmark)
+    view.viewport.pin_moved.connect(view.pins.drag)
     view.viewport.pin_released.connect(scan_desk.place_landmark)
     view.busy.cancelled.connect(scan_desk.cancel)
     view.question.answered.connect(scan_desk.answer)
@@ -66,11 +66,12 @@ def _connect_view(window: MainWindow) -> None:
     view.tools.fit_asked.connect(view.viewport.frame_all)
     view.tools.toggled.connect(view.set_layer)
     view.tools.picture_asked.connect(desk.save_picture)
-    view.compare.after_chosen.connect(view.set_after)
+    view.compare.way_chosen.connect(view.compare_by)
+    view.compare.toggled.connect(view.set_layer)
 
 
 def _connect_actions(window: MainWindow) -> None:
-    session, desk, view, do = window.session, window.desk, window.view, window.actions_
+    session, desk, do = window.session, window.desk, window.actions_
     do.open.triggered.connect(desk.open)
     do.save.triggered.connect(desk.save)
     do.save_as.triggered.connect(desk.save_as)
@@ -78,7 +79,6 @@ def _connect_actions(window: MainWindow) -> None:
     do.cancel.triggered.connect(window.scan_desk.cancel)
     do.quit.triggered.connect(window.close)
     do.reset.triggered.connect(session.reset_lines)
-    do.flip.triggered.connect(lambda: view.set_after(not view.after))
     _connect_layout(window)
     do.strip.toggled.connect(lambda on: window.strip.set_folded(not on))
     window.strip.folded.connect(lambda folded: do.strip.setChecked(not folded))

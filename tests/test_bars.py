@@ -62,7 +62,7 @@ def test_the_rail_says_what_is_chosen_not_what_is_set(qtbot: QtBot) -> None:
 def test_every_view_tool_has_name_tip_and_key(qtbot: QtBot) -> None:
     tools = ViewTools()
     qtbot.addWidget(tools)
-    assert len({action.shortcut().toString() for action in tools.actions_by_name.values()}) == 13
+    assert len({action.shortcut().toString() for action in tools.actions_by_name.values()}) == 12
     assert all(action.text() and action.toolTip() for action in tools.actions_by_name.values())
     with qtbot.waitSignal(tools.view_chosen) as said:
         tools.actions_by_name["back"].trigger()
@@ -90,11 +90,20 @@ def test_the_status_bar_shows_a_job_only_while_it_runs(qtbot: QtBot) -> None:
 def test_before_and_after_are_asked_for(qtbot: QtBot) -> None:
     tools = CompareTools()
     qtbot.addWidget(tools)
-    with qtbot.assertNotEmitted(tools.after_chosen):
-        tools.set_after(False)
-    with qtbot.waitSignal(tools.after_chosen) as said:
-        next(each for each in tools.findChildren(QPushButton) if each.text() == "After").click()
-    assert said.args == [True]
+    actions = tools.actions_by_name
+    assert {action.shortcut().toString() for action in actions.values()} == {"G", "W", "D"}
+    assert all(action.text() and action.toolTip() for action in actions.values())
+    with qtbot.assertNotEmitted(tools.way_chosen):
+        tools.set_way("wipe")
+    assert [name for name in actions if actions[name].isChecked()] == ["wipe"]
+    for press, wanted in (
+        (next(each for each in tools.findChildren(QPushButton) if each.text() == "Before").click, "before"),
+        (actions["side"].trigger, "side"),
+        (actions["side"].trigger, "after"),
+    ):
+        with qtbot.waitSignal(tools.way_chosen) as said:
+            press()
+        assert said.args == [wanted]
 
 
 def test_a_chip_does_not_flicker(qtbot: QtBot) -> None:

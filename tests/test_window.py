@@ -123,7 +123,7 @@ def control_mesh_and_lines_can_be_hidden(window: MainWindow) -> None:
     assert scene.is_visible("control")
     tools["bands"].trigger()
     assert not scene.is_visible("bands")
-    tools["ghost"].trigger()
+    window.view.compare.actions_by_name["ghost"].trigger()
     assert scene.is_visible("ghost")
     window.lines.visibility_changed.emit("mid-bust", False)
     assert "mid-bust" not in scene.bands.names

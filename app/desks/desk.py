@@ -91,7 +91,7 @@ class Desk(QObject):
             self._window.scan_desk.show_found(frame.stages)
         self._frame = frame
         self._window.model.set_gain(frame.stages.gain, frame.stages.gain_limit)
-        self._window.view.show_frame(frame, design)
+        self._window.view.show_frame(frame)
         self._window.lines.set_lines(line_views(design, frame, self._window.view.hidden_lines))
         self._window.status.set_volume(*kept_volume(frame))
         self._window.status.set_facts(facts(frame))
@@ -164,7 +164,7 @@ class Desk(QObject):
     def select_landmark(self, name: str) -> None:
         """Select a landmark in the list and on the body."""
         self._window.landmarks.select(name)
-        self._window.view.select_landmark(name)
+        self._window.view.pins.select(name)
 
     def set_line_visible(self, name: str, visible: bool) -> None:
         """Show or hide a line's band."""
@@ -249,7 +249,7 @@ class Desk(QObject):
 
     def _preview(self) -> bytes:
         """Return a small picture of the view, for the project file."""
-        return png_of(self._window.view.picture().scaledToWidth(480))
+        return png_of(self._window.view.viewport.picture().scaledToWidth(480))
 
     def plot_now(self) -> None:
         """Bring the live plot up to date, if there is a frame that it has not shown."""

@@ -60,7 +60,7 @@ class ScanDesk(QObject):
         said = landmark_doubts(landmarks)
         window.landmarks.set_landmarks(landmark_views(landmarks.points), said)
         window.scan.set_scan(scan_view(stages.design.scan, stages.body))
-        window.view.drop_back()
+        window.view.pins.drop_back()
         weak = sum(len(weak_sides(landmarks, kind)) for kind in ESSENTIAL)
         window.rail.set_state("scan", "done" if stages.body.pose.sure else "look", 1)
         window.rail.set_state("landmarks", "look" if weak or said else "done", weak or len(said))
@@ -192,11 +192,11 @@ class ScanDesk(QObject):
 
     def put_pin(self, name: str) -> None:
         """Give a landmark that was not found a pin to drag."""
-        self._window.view.put_pin(name)
+        self._window.view.pins.put(name)
 
     def place_landmark(self, name: str) -> None:
         """Keep where a landmark's pin was let go, as one undo step; a stuck scan is tried again with it."""
-        dropped = self._window.view.dropped()
+        dropped = self._window.view.pins.dropped()
         if dropped is None or dropped[0] != name:
             return
         if self.stuck:

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from app.dress.theme import tokens_of
 from app.seeing.camera import View
 from app.seeing.scene import Scene
-from app.showing.canvas import PaintedCanvas, draw, make_canvas
+from app.showing.canvas import draw, make_canvas
 from app.showing.overlay import BandLabel, Overlay, Pin
 from app.showing.pointer import Pointer
 from core.mesh import Floats
@@ -23,6 +23,8 @@ GLIDE = 220
 
 REST = 250
 """Stillness after which the picture is drawn smooth [ms]."""
+
+_HEARD = ("band_clicked", "band_hovered", "pin_pressed", "pin_moved", "pin_released")
 
 
 class Viewport(QWidget):
@@ -72,8 +74,13 @@ class Viewport(QWidget):
         pointer.shifted.connect(self._shift)
         pointer.centred.connect(self._centre)
         pointer.band_hovered.connect(self.hover_band)
-        for name in ("band_clicked", "band_hovered", "pin_pressed", "pin_moved", "pin_released"):
+        for name in _HEARD:
             getattr(pointer, name).connect(getattr(self, name))
+
+    def forward_to(self, other: Viewport) -> None:
+        """Let what the pointer does here be heard as if it were done on another viewport."""
+        for name in _HEARD:
+            getattr(self, name).connect(getattr(other, name))
 
     # -- drawing
 
@@ -97,8 +104,8 @@ class Viewport(QWidget):
 
     def _refine(self) -> None:
         """Draw once more without stairs at the outlines, which is too slow while things move."""
-        # FXAA looks nearly as good for a third of the time, but VTK has none without a window.
-        self._smooth("ssaa" if isinstance(self._canvas, PaintedCanvas) else "fxaa")
+        # FXAA looks nearly as good for a third of the time, but VTK has none where it draws by EGL.
+        self._smooth("ssaa" if self._plotter.ren_win.IsA("vtkEGLRenderWindow") else "fxaa")
         draw(self._canvas)
 
     def _smooth(self, kind: str) -> None:
@@ -183,6 +190,14 @@ class Viewport(QWidget):
         """Switch between parallel and perspective projection."""
         self.scene.set_parallel(parallel)
         self._moved()
+
+    def look_from(self, view: View) -> None:
+        """See from where another viewport sees."""
+        here = self.scene.view
+        if view != here:
+            if (view.focus, view.distance) != (here.focus, here.distance):
+                self._fit = None
+            self._turn(view)
 
     def frame_all(self) -> None:
         """Glide to where the whole body is in the picture, and keep it there when the size changes."""

@@ -1,0 +1,115 @@
+"""One body with its lines and its control mesh on one viewport, kept up with the frames."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from app.desks.present import band_label, bands
+from app.showing.viewport import Viewport
+from core.body import Body
+from core.control_mesh import ControlMesh
+from core.fitting.back_length import Back
+from core.lines import Line
+from core.live import Frame
+from core.mesh import Floats
+
+SCENE_PARTS = {"control-mesh": "control", "bands": "bands", "ghost": "ghost"}
+"""Layers of the tools by what the scene calls them."""
+
+
+class BodyView:
+    """What is new is built, what moved is moved; ``after`` says whether the reshaped body is seen."""
+
+    def __init__(self, viewport: Viewport, after: bool = True) -> None:
+        self.viewport = viewport
+        self.after = after
+        self.body: Body | None = None
+        self.frame: Frame | None = None
+        self.hidden_lines: frozenset[str] = frozenset()
+        self.selected_line = "mid-bust"
+        self._control: ControlMesh | None = None
+        self._lines: tuple[Line, ...] = ()
+        self._backs: Mapping[str, Back] = {}
+
+    def show_frame(self, frame: Frame) -> None:
+        """Bring the view up to date; of a body that is seen at rest only what is new is drawn again."""
+        stages, scene = frame.stages, self.viewport.scene
+        fresh = stages.body is not self.body
+        laid = stages.control is not self._control
+        if fresh:
+            self.show_body(stages.body)
+        if laid:
+            self._control = stages.control
+            scene.show_control_mesh(stages.control.mesh, stages.control.fixed)
+            self._lines = ()
+        redrawn = _paths(stages.model.lines) != _paths(self._lines)
+        if redrawn:
+            self._lines, self._backs = stages.model.lines, stages.backs
+            self.show_bands()
+        scene.move_body(stages.moving.vertices, frame.points, frame.normals)
+        scene.move_control_mesh(frame.control_points)
+        self.frame = frame
+        self._show_label()
+        if self.after or fresh or laid or redrawn:
+            self.viewport.request_draw()
+
+    def show_body(self, body: Body) -> None:
+        """Show a body on which nothing lies yet."""
+        self.body, self.frame = body, None
+        self.viewport.scene.show_body(body.mesh)
+        if not self.after:
+            self.viewport.scene.before(True)
+
+    def shade(self, body: Body, occlusion: Floats) -> bool:
+        """Darken the folds of ``body``, if it is the one shown; see ``bake_occlusion``."""
+        if body is not self.body:
+            return False
+        self.viewport.scene.set_occlusion(occlusion)
+        self.viewport.request_draw()
+        return True
+
+    def set_after(self, after: bool) -> None:
+        """Show the reshaped body, or the body at rest."""
+        self.after = after
+        if self.body is not None:
+            self.viewport.scene.before(not after)
+            self._show_label()
+            self.viewport.request_draw()
+
+    def set_layer(self, layer: str, shown: bool) -> None:
+        """Show or hide one of ``SCENE_PARTS``."""
+        self.viewport.scene.set_visible(SCENE_PARTS[layer], shown)
+        self._show_label()
+        self.viewport.request_draw()
+
+    def hide_lines(self, names: frozenset[str]) -> None:
+        """Show the bands of all lines but these."""
+        self.hidden_lines = names
+        self.show_bands()
+
+    def show_bands(self) -> None:
+        """Lay the lines that are not hidden on the body."""
+        if self._control is not None:
+            rest = self._control.mesh.vertices
+            self.viewport.scene.show_bands(bands(self._lines, rest, self.hidden_lines, self._backs))
+        self.select_line(self.selected_line)
+
+    def select_line(self, name: str) -> None:
+        """Put a casing round one line."""
+        self.selected_line = name
+        shown = name in {line.name for line in self._lines} - self.hidden_lines
+        self.viewport.select_band(name if shown else None)
+        self._show_label()
+
+    def _show_label(self) -> None:
+        """Write beside the selected line, if it can be seen."""
+        name, frame = self.selected_line, self.frame
+        seen = self.after and name not in self.hidden_lines and self.viewport.scene.is_visible("bands")
+        if seen and frame is not None and name in frame.lengths:
+            self.viewport.label_band(name, *band_label(frame.stages.design, frame, name))
+        else:
+            self.viewport.label_band(None)
+
+
+def _paths(lines: tuple[Line, ...]) -> list[tuple[str, list[int]]]:
+    return [(line.name, line.path.tolist()) for line in lines]

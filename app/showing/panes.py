@@ -1,0 +1,158 @@
+"""Views of several bodies through one camera: side by side, or one wiped away from the other."""
+
+# ruff: noqa: N802 - Qt names its events
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import QRect, QRectF, QSize, Qt
+from PySide6.QtGui import QColor, QFontMetricsF, QImage, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtWidgets import QWidget
+
+from app.dress.theme import font, tokens_of
+from app.showing.floating import GAP
+from app.showing.viewport import Viewport
+from app.showing.wipe import WipeHandle
+
+
+class Panes(QWidget):
+    """Holds the ``main`` viewport for good, and others beside it or under it for as long as they are wanted.
+
+    ``obstacle`` is a sibling that floats over the panes: no title is hidden under it.
+    """
+
+    def __init__(self, main: Viewport, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.main = main
+        self.viewports: tuple[Viewport, ...] = ()
+        self.titles: tuple[PaneTitle, ...] = ()
+        self.obstacle: QWidget | None = None
+        self._wiped = QWidget(self)
+        self.handle = WipeHandle(self)
+        self.handle.valueChanged.connect(self._lay_out)
+        self._take((main,), (), wiped=False)
+
+    def show_alone(self) -> None:
+        """Show the main viewport and close all others."""
+        self._take((self.main,), (), wiped=False)
+
+    def show_row(self, panes: Sequence[tuple[str, Viewport]]) -> None:
+        """Show viewports with their titles beside each other; the main one is among them."""
+        self._take(tuple(viewport for _, viewport in panes), [title for title, _ in panes], wiped=False)
+
+    def show_wipe(self, left: tuple[str, Viewport], title: str) -> None:
+        """Show another viewport left of a line that can be dragged, and the main one right of it."""
+        self._take((left[1], self.main), (left[0], title), wiped=True)
+
+    @property
+    def is_wiped(self) -> bool:
+        """Whether a wipe is shown."""
+        return not self._wiped.isHidden()
+
+    def picture(self) -> QImage:
+        """Return all that is seen at its best, in device pixels."""
+        pictures = [viewport.picture() for viewport in self.viewports]
+        return pictures[0] if len(pictures) == 1 else self.grab().toImage()
+
+    def close_views(self) -> None:
+        """Give all 3D objects back."""
+        self.show_alone()
+        self.main.close_view()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Share the room anew."""
+        super().resizeEvent(event)
+        self._lay_out()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Draw what shows between two panes: a hairline."""
+        QPainter(self).fillRect(self.rect(), QColor(tokens_of(self).outline))
+
+    def _take(self, viewports: tuple[Viewport, ...], titles: Sequence[str], *, wiped: bool) -> None:
+        for old in {*self.viewports} - {*viewports, self.main}:
+            old.close_view()
+            old.hide()
+            old.deleteLater()
+        for title in self.titles:
+            title.hide()
+            title.deleteLater()
+        fresh = [viewport for viewport in viewports if viewport not in self.viewports]
+        self.viewports = viewports
+        self.titles = tuple(PaneTitle(title, self) for title in titles)
+        self._wiped.setVisible(wiped)
+        self.handle.setVisible(wiped)
+        for viewport in viewports:
+            viewport.setParent(self._wiped if wiped and viewport is not self.main else self)
+        self._lay_out()
+        for viewport in viewports:
+            viewport.show()
+        for part in (self._wiped, self.handle, *self.titles):
+            part.raise_()
+        for title in self.titles:
+            title.show()
+        for viewport in fresh:
+            viewport.view_changed.connect(lambda viewport=viewport: self._share(viewport))
+
+    def _share(self, viewport: Viewport) -> None:
+        """Let all see from where one sees."""
+        for other in self.viewports:
+            if other is not viewport:
+                other.look_from(viewport.scene.view)
+
+    def _lay_out(self) -> None:
+        edges = [round(self.width() * self.handle.share())]
+        if self.is_wiped:
+            for viewport in self.viewports:
+                viewport.setGeometry(self.rect())
+            self._wiped.setGeometry(0, 0, edges[0], self.height())
+            self.handle.setGeometry(edges[0] - self.handle.width() // 2, 0, 0, self.height())
+        else:
+            count = len(self.viewports)
+            edges = [round(k * (self.width() + 1) / count) for k in range(1, count)]
+            ends = [*edges, self.width() + 1]
+            for viewport, left, end in zip(self.viewports, [0, *edges], ends, strict=True):
+                viewport.setGeometry(left, 0, end - left - 1, self.height())
+        self._share(self.main)
+        self._place_titles([0, *edges, self.width()])
+
+    def _place_titles(self, edges: Sequence[int]) -> None:
+        """Put each title at the border to the next pane, the last one at the border before it."""
+        taken = QRect()
+        if self.obstacle is not None and self.obstacle.isVisible():
+            taken = self.obstacle.geometry()
+        for place, title in enumerate(self.titles):
+            title.resize(title.sizeHint())
+            left, end = edges[place], edges[place + 1]
+            last = place == len(self.titles) - 1
+            title.move(left + GAP if last else end - GAP - title.width(), GAP)
+            if title.geometry().intersects(taken):
+                title.move(title.x(), taken.bottom())
+            title.setHidden(end - left < title.width() + 2 * GAP)
+
+
+class PaneTitle(QWidget):
+    """What a pane shows, in a small pill; the pointer goes through it."""
+
+    def __init__(self, text: str, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.text = text
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self.setAccessibleName(text)
+
+    def sizeHint(self) -> QSize:
+        """Return room for the text."""
+        return QSize(round(QFontMetricsF(font("title")).horizontalAdvance(self.text)) + 22, 26)
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Draw the pill."""
+        tokens = tokens_of(self)
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        fill = QColor(tokens.floating)
+        fill.setAlpha(tokens.floating_alpha)
+        painter.setBrush(fill)
+        painter.setPen(QColor(tokens.line))
+        painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 13.0, 13.0)
+        painter.setFont(font("title"))
+        painter.setPen(QColor(tokens.text))
+        painter.drawText(self.rect(), Qt.AlignmentFlag.AlignCenter, self.text)
