@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.seeing.body import bake_occlusion, clay_colours, plate_faces, split_plates
+from app.seeing.body import bake_occlusion, plate_faces, split_plates
+from app.seeing.paint import clay_colours
 from app.seeing.stage import LOOKS, rgb
 from core.mesh import Mesh
 

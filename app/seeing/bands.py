@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 import pyvista as pv
 
-from app.seeing.body import Sight
 from app.seeing.ribbon import ACROSS, NO_BACK, Ribbon, Surface, build_casing, build_ribbon
+from app.seeing.sight import Sight
 from app.seeing.stage import rgb
 from core.mesh import Floats, Points, area_vectors, incidence, unit
 
@@ -70,6 +70,10 @@ class RibbonActor:
         rows = rgb(colour) + _QUIET * back[:, None] * (rgb(_CLOTH) - rgb(colour))
         self._paint_rows(np.where(seam[:, None], _SEAM * rgb(colour), rows))
 
+    def paint_parts(self, colours: Floats, back: str) -> None:
+        """Give each segment of the line's path a colour of its own, shape (k, 3) 0..255, and the back one."""
+        self._paint_rows(np.where(self.ribbon.part[:, None] < 0, rgb(back), colours[self.ribbon.part]))
+
     def _paint_rows(self, rows: Floats) -> None:
         colours = _SHADE[None, :, None] * rows[:, None]
         self.data.point_data["Colour"][:] = np.round(colours.reshape(-1, 3))
@@ -117,6 +121,18 @@ class Bands:
         for drawn in (*self._ribbons.values(), *self._casings.values()):
             self._plotter.remove_actor(drawn.actor, reset_camera=False, render=False)
         self._bands, self._ribbons, self._casings = {}, {}, {}
+
+    def paint(self, colours: Mapping[str, Floats] | None, blank: str = "") -> None:
+        """Colour each segment of the lines' paths, shape (k, 3) 0..255, and ``blank`` what has no colours.
+
+        None gives the lines their own colours back.
+        """
+        for name, ribbon in self._ribbons.items():
+            if colours is None:
+                ribbon.paint(self._bands[name].colour)
+            else:
+                plain = np.tile(rgb(blank), (len(self._bands[name].path), 1))
+                ribbon.paint_parts(colours.get(name, plain), blank)
 
     def move(self, displacement: Points) -> None:
         """Follow the body: displacement of each body vertex, shape (n, 3) [mm]."""

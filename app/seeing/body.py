@@ -10,14 +10,14 @@ import numpy.typing as npt
 import pyvista as pv
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
 from app.seeing.camera import View
-from app.seeing.stage import Look, rgb
+from app.seeing.paint import clay_colours, map_colours
+from app.seeing.sight import Sight
+from app.seeing.stage import Look
 from core.mesh import Flags, Floats, Indices, Mesh, Points, area_vectors, incidence, unit
+from core.progress import Progress, quiet
 
-Colours = npt.NDArray[np.uint8]
 Singles = npt.NDArray[np.float32]
 
 _DIM_INSIDE = """//VTK::Color::Impl
@@ -76,18 +76,19 @@ def plate_faces(mesh: Mesh) -> Flags:
     return np.asarray(((area > PLATE_AREA) & straight)[label])
 
 
-def bake_occlusion(mesh: Mesh, directions: int = 32, cell: float = 7.0) -> Floats:
+def bake_occlusion(mesh: Mesh, directions: int = 32, cell: float = 7.0, progress: Progress = quiet) -> Floats:
     """Return how open the sky above each vertex is, shape (n,) [1]: 1 free, small in folds.
 
     Each direction keeps the surface nearest to the sky on a grid of ``cell`` [mm]; a vertex loses its sky
-    between 5 and 17 mm under it. Runs in any thread.
+    between 5 and 17 mm under it. Runs in any thread; raises Cancelled.
     """
     sky = _sphere(directions)
     samples = _samples(mesh, cell).astype(np.float32)
     normals = mesh.vertex_normals
     count = len(mesh.vertices)
     seen, possible = np.zeros(count), np.full(count, 1e-6)
-    for towards in sky:
+    for number, towards in enumerate(sky):
+        progress("soft shadows", number / directions)
         facing = normals @ towards
         depth = samples @ towards.astype(np.float32)
         under = _shaded(samples, depth, towards, cell)[:count] - depth[:count]
@@ -142,36 +143,6 @@ def _smoothed(values: Floats, mesh: Mesh, passes: int) -> Floats:
     return np.asarray(values)
 
 
-def clay_colours(occlusion: Floats, plate: Flags, look: Look) -> Colours:
-    """Return the colour of each vertex, (n, 3) uint8: clay in the open, deep in folds, plaster plates."""
-    open_sky = np.clip((occlusion - 0.36) / 0.50, 0.0, 1.0)[:, None]
-    colours = rgb(look.deep) + (rgb(look.clay) - rgb(look.deep)) * open_sky
-    colours[plate] = rgb(look.plaster)
-    return np.asarray(np.round(colours), dtype=np.uint8)
-
-
-class Sight:
-    """Where a straight sight first meets drawn triangles; looks them up anew after they moved."""
-
-    def __init__(self, data: pv.PolyData) -> None:
-        self._data = data
-        self._locator: vtkStaticCellLocator | None = None
-
-    def forget(self) -> None:
-        """Say that the triangles have moved."""
-        self._locator = None
-
-    def hit(self, start: Floats, end: Floats) -> Floats | None:
-        """Return where the segment between two points, each (3,) [mm], first meets the triangles, or None."""
-        if self._locator is None:
-            self._locator = vtkStaticCellLocator()
-            self._locator.SetDataSet(self._data)
-            self._locator.BuildLocator()
-        places = vtkPoints()
-        self._locator.IntersectWithLine(start.tolist(), end.tolist(), places, None)
-        return np.array(places.GetPoint(0)) if places.GetNumberOfPoints() else None
-
-
 class BodyActor:
     """The body on one plotter: shown once, then moved in place.
 
@@ -184,6 +155,7 @@ class BodyActor:
         self._skin = split_plates(mesh)
         self._look = look
         self._occlusion = np.ones(len(mesh.vertices))
+        self._map: Floats | None = None
         self._before = False
         rest = self._skin.mesh
         self._data = pv.PolyData.from_regular_faces(rest.vertices.astype(np.float32), rest.faces)
@@ -218,14 +190,23 @@ class BodyActor:
         """Repaint for one theme."""
         self._look = look
         self.actor.prop.ambient = look.ambient
-        sky = self._occlusion[self._skin.source]
-        self._data.point_data["Colour"][:] = clay_colours(sky, self._skin.plate, look)
-        self._data.GetPointData().GetArray("Colour").Modified()
+        self._paint(np.arange(len(self._skin.source)))
 
     def set_occlusion(self, occlusion: Floats) -> None:
         """Darken folds: openness to the sky of each body vertex, shape (n,) [1]."""
         self._occlusion = np.asarray(occlusion)
         self.set_look(self._look)
+
+    def show_map(self, colours: Floats | None) -> None:
+        """Lay a map over the clay: the colour of each body vertex, shape (n, 3) 0..255; None takes it off."""
+        self._map = None if colours is None else np.array(colours)
+        self._paint(np.arange(len(self._skin.source)))
+
+    def recolour(self, indices: Indices, colours: Floats) -> None:
+        """Change the map at some body vertices, shapes (k,) and (k, 3) 0..255."""
+        if self._map is not None:
+            self._map[indices] = colours
+            self._paint(indices)  # their doubles lie on plates, which no map colours
 
     def move(self, indices: Indices, points: Points, normals: Points | None = None) -> None:
         """Move body vertices: indices (k,), positions (k, 3) [mm], unit normals (k, 3), else worked out."""
@@ -247,6 +228,17 @@ class BodyActor:
     def shown_points(self) -> Points:
         """The positions on the screen, shape (n, 3) [mm]."""
         return self.rest.vertices if self._before else self.points
+
+    def _paint(self, rows: Indices) -> None:
+        """Colour some of the drawn vertices anew."""
+        source, plate = self._skin.source[rows], self._skin.plate[rows]
+        sky = self._occlusion[source]
+        if self._map is None:
+            colours = clay_colours(sky, plate, self._look)
+        else:
+            colours = map_colours(self._map[source], sky, plate, self._look)
+        self._data.point_data["Colour"][rows] = colours
+        self._data.GetPointData().GetArray("Colour").Modified()
 
     def _work_out_normals(self) -> Singles:
         vertices = self.points[self._skin.source]

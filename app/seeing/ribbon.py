@@ -97,7 +97,7 @@ def centre_line(path: Points, surface: Surface, back: Points = NO_BACK) -> Centr
     """
     path = path[np.r_[True, np.linalg.norm(np.diff(path, axis=0), axis=1) > 1e-6]]
     whole = np.concatenate([path, back[1:]])
-    closed = len(whole) > 3 and np.linalg.norm(whole[-1] - whole[0]) < 1e-6
+    closed = len(whole) > 3 and bool(np.linalg.norm(whole[-1] - whole[0]) < 1e-6)
     s = arc_length(whole)
     if closed:
         whole[-1] = whole[0]
@@ -112,7 +112,7 @@ def centre_line(path: Points, surface: Surface, back: Points = NO_BACK) -> Centr
     lift = _smooth(np.maximum(off - _TOUCH, 0.0), 6, closed)
     part = np.searchsorted(s, at[nearest], side="right") - 1
     part = np.where(part < len(path) - 1, part, -1 if len(back) else len(path) - 2)
-    return CentreLine(points, normals, lift, part, bool(closed))
+    return CentreLine(points, normals, lift, part, closed)
 
 
 def build_ribbon(path: Points, surface: Surface, width: float, back: Points = NO_BACK) -> Ribbon:

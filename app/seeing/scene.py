@@ -13,6 +13,7 @@ from app.seeing.body import BodyActor, Ghost
 from app.seeing.camera import LENS, View
 from app.seeing.control import ControlActor
 from app.seeing.ribbon import Surface
+from app.seeing.section import SectionSheet
 from app.seeing.stage import LOOKS, Stage
 from app.seeing.trace import Trace
 from core.mesh import Flags, Floats, Indices, Mesh, Points
@@ -39,6 +40,7 @@ class Scene:
         self._stage = Stage(plotter)
         self.bands = Bands(plotter)
         self._trace = Trace(plotter)
+        self.section = SectionSheet(plotter, pixel_ratio)
         self._surface: Surface | None = None
         self._ghost: Ghost | None = None
         self._control: ControlActor | None = None
@@ -144,6 +146,7 @@ class Scene:
         look = LOOKS[dark]
         self._stage.set_look(look)
         self._trace.set_dark(dark)
+        self.section.set_dark(dark)
         if self.body is not None:
             self.body.set_look(look)
         if self._control is not None:

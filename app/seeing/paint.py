@@ -1,0 +1,52 @@
+"""The colours of skin: clay that is darker in folds, or a map of values in which the folds still show."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from app.seeing.stage import Look, rgb
+from core.mesh import Flags, Floats
+
+Colours = npt.NDArray[np.uint8]
+
+FOLDS = 0.16
+"""How much of its light a map loses in the deepest folds [1]."""
+
+
+@dataclass(frozen=True)
+class Ramp:
+    """Colours of values: ``stops``, "#rrggbb", spread evenly from ``low`` to ``high``; the ends go on.
+
+    Where there is no value the colour is ``blank``.
+    """
+
+    stops: tuple[str, ...]
+    low: float
+    high: float
+    blank: str
+
+    def __call__(self, values: Floats) -> Floats:
+        """Return the colours of values, shapes (k,) and (k, 3) 0..255."""
+        at = np.linspace(self.low, self.high, len(self.stops))
+        table = np.stack([rgb(stop) for stop in self.stops])
+        colours = np.stack([np.interp(values, at, channel) for channel in table.T], axis=1)
+        colours[np.isnan(values)] = rgb(self.blank)
+        return colours
+
+
+def clay_colours(occlusion: Floats, plate: Flags, look: Look) -> Colours:
+    """Return the colour of each vertex, (n, 3) uint8: clay in the open, deep in folds, plaster plates."""
+    open_sky = np.clip((occlusion - 0.36) / 0.50, 0.0, 1.0)[:, None]
+    colours = rgb(look.deep) + (rgb(look.clay) - rgb(look.deep)) * open_sky
+    colours[plate] = rgb(look.plaster)
+    return np.asarray(np.round(colours), dtype=np.uint8)
+
+
+def map_colours(colours: Floats, occlusion: Floats, plate: Flags, look: Look) -> Colours:
+    """Return the colours of a map, (n, 3) 0..255, a little darker in folds; plates stay plaster."""
+    shaded = colours * (1.0 - FOLDS + FOLDS * np.clip(occlusion, 0.0, 1.0))[:, None]
+    shaded[plate] = rgb(look.plaster)
+    return np.asarray(np.round(shaded), dtype=np.uint8)
