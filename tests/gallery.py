@@ -34,7 +34,8 @@ from app.panels.scan import ScanPanel, ScanView
 from app.panels.status import StatusBar
 from app.panels.top_bar import TopBar
 from app.panels.view_tools import CompareTools, ViewTools
-from app.showing.convergence import Exact, Strip, Track
+from app.showing.convergence import Strip
+from app.showing.tracks import Exact, Track
 from app.wording import words
 from app.wording.model_choices import defaults
 from app.wording.tokens import LINE_COLORS
@@ -74,8 +75,8 @@ def invented_tracks() -> dict[str, Track]:
     wild = 1.6 + (-1.0) ** turns * (0.9 + 0.008 * turns) * (1 - np.exp(-turns / 9))
     rise = 24 * (1 - np.exp(-turns / 16))
     return {
-        "adaptive": Track(turns, calm, calm * 46, rise),
-        "conventional": Track(turns, wild, wild * 46, 0.8 * rise + 2 * (wild - 1.6)),
+        "adaptive": Track(turns, calm, calm * 46, rise, rise),
+        "conventional": Track(turns, wild, wild * 46, *[0.8 * rise + 2 * (wild - 1.6)] * 2),
     }
 
 
@@ -211,7 +212,7 @@ class Mock(QWidget):
         self.strip.set_verdict(Said("vibrating" if vibrating else "settled", numbers, "120 turns · 0.9 s"))
         main = "conventional" if vibrating else "adaptive"
         self.strip.set_control(main)
-        self.strip.set_run(invented_tracks(), main, Exact(0.0, 24.3))
+        self.strip.set_run(invented_tracks(), main, Exact(0.0, 0.0, 24.3, 24.3))
 
 
 def main(folder: Path) -> None:

@@ -7,8 +7,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import pytest
-from pyqtgraph import PlotWidget
-from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLabel, QPushButton
 from pytestqt.qtbot import QtBot
 
@@ -17,8 +15,8 @@ from app.panels.notice import NoticeBar
 from app.panels.rail import Rail
 from app.panels.status import StatusBar
 from app.panels.view_tools import VIEWS, CompareTools, ViewTools
-from app.showing.convergence import Exact, Strip, Track
-from app.showing.live_plot import Curve, LivePlot, envelope, flips_every_turn, round_ticks
+from app.showing.convergence import Strip
+from app.showing.tracks import Exact, Track
 from app.showing.verdict_chip import SHORTEST_SHOW_MS, TONES, VerdictChip
 from core.verdict import STATES
 
@@ -131,72 +129,6 @@ def test_a_chip_turns_only_while_it_settles_and_is_seen(qtbot: QtBot) -> None:
     assert not chip.spinning()
 
 
-@pytest.mark.parametrize(
-    ("low", "high", "ticks"),
-    [
-        (0.0, 4.0, [0, 1, 2, 3, 4]),
-        (-0.1, 1.4, [0.0, 0.5, 1.0]),
-        (-15.2, -0.6, [-15.0, -10.0, -5.0]),
-        (3.0, 3.0, [3.0]),
-    ],
-)
-def test_ticks_are_round(low: float, high: float, ticks: list[float]) -> None:
-    assert round_ticks(low, high) == pytest.approx(ticks)
-
-
-def test_the_envelope_of_a_flip_flop_is_its_two_branches() -> None:
-    turns = np.arange(60.0)
-    values = 2.0 + 0.01 * turns + (-1.0) ** turns * 0.5
-    lower, upper = envelope(values)
-    assert upper[1:-1] == pytest.approx(2.5 + 0.01 * turns[1:-1])
-    assert lower[1:-1] == pytest.approx(1.5 + 0.01 * turns[1:-1])
-    assert (lower <= values).all()
-    assert (values <= upper).all()
-
-
-def test_only_what_flips_every_turn_flips() -> None:
-    turns = np.arange(60.0)
-    assert flips_every_turn((-1.0) ** turns)
-    assert not flips_every_turn(np.exp(-turns / 8))
-    assert not flips_every_turn(np.sin(turns / 5)), "a slow swing is no flip-flop"
-    assert not flips_every_turn(np.exp(-turns) + 1e-6 * (-1.0) ** turns), "nobody sees the ripple"
-    assert not flips_every_turn(np.array([1.0, -1.0, 1.0]))
-
-
-def test_a_zigzag_is_drawn_as_an_envelope_once_it_is_dense(qtbot: QtBot) -> None:
-    plot = LivePlot("Volume error", "%", 0.4)
-    qtbot.addWidget(plot)
-    plot.resize(400, 160)
-    plot.show()
-    few, many = np.arange(20.0), np.arange(200.0)
-    wide, dense = (Curve(turns, (-1.0) ** turns, "warning") for turns in (few, many))
-    plot.set_curves([wide])
-    assert not plot.drawn_as_envelope(wide)
-    plot.set_curves([dense])
-    assert plot.drawn_as_envelope(dense)
-
-
-def test_the_range_only_grows_while_a_line_is_dragged(qtbot: QtBot) -> None:
-    plot = LivePlot("Volume error", "%", 0.4, tolerance=0.1)
-    qtbot.addWidget(plot)
-    turns = np.arange(10.0)
-    plot.set_curves([Curve(turns, np.full(10, 3.0), "main")])
-    plot.set_curves([Curve(turns, np.full(10, 0.2), "main")], refit=False)
-    assert plot.value_range() == (-0.1, 3.0)
-    plot.set_curves([Curve(turns, np.full(10, 0.2), "main")])
-    assert plot.value_range() == pytest.approx((-0.15, 0.25)), "widened to the least span about its middle"
-
-
-def test_broken_numbers_do_not_break_the_plot(qtbot: QtBot) -> None:
-    plot = LivePlot("Volume error", "%", 0.4)
-    qtbot.addWidget(plot)
-    plot.resize(300, 150)
-    plot.show()
-    plot.set_curves([Curve(np.arange(4.0), np.array([0.1, np.inf, np.nan, 9.0]), "warning")], exact=0.0)
-    plot.grab()
-    assert plot.value_range() == (0.0, 9.0)
-
-
 @dataclass(frozen=True)
 class Said:
     state: str
@@ -207,7 +139,7 @@ class Said:
 
 
 def run(values: np.ndarray) -> Track:
-    return Track(np.arange(float(len(values))), values, values, values)
+    return Track(np.arange(float(len(values))), values, values, values, values)
 
 
 @pytest.fixture
@@ -274,7 +206,7 @@ def test_the_strip_is_empty_before_a_run_and_without_one_track(strip: Strip) -> 
     assert not strip.error_plot.isVisible()
     strip.set_run({"adaptive": run(np.empty(0))}, "adaptive", None)
     assert not strip.error_plot.isVisible()
-    strip.set_run({}, "exact", Exact(0.0, 12.0))
+    strip.set_run({}, "exact", Exact(0.0, 0.0, 12.0, 9.0))
     assert strip.error_plot.isVisible()
 
 
@@ -284,18 +216,3 @@ def test_the_method_is_asked_for(strip: Strip, qtbot: QtBot) -> None:
     with qtbot.waitSignal(strip.control_chosen) as said:
         next(each for each in strip.findChildren(QPushButton) if each.text() == "Exact").click()
     assert said.args == ["exact"]
-
-
-def test_pointing_at_a_turn_reads_both_plots(strip: Strip, qtbot: QtBot) -> None:
-    turns = np.arange(0.0, 50.0)
-    strip.set_run({"adaptive": Track(turns, turns / 100, turns, turns * 2)}, "adaptive", None)
-    plot = strip.error_plot.findChild(PlotWidget).viewport()
-    with qtbot.waitSignal(strip.error_plot.pointed) as pointed:
-        QTest.mouseMove(plot, plot.rect().center())
-    assert 15.0 < pointed.args[0] < 30.0
-    strip.error_plot.pointed.emit(20.3)
-    said = [label.text() for label in strip.findChildren(QLabel) if label.isVisible()]
-    assert {"turn 20: 0.20", "turn 20: 40.00"} <= set(said)
-    strip.apex_plot.pointed.emit(None)
-    said = [label.text() for label in strip.findChildren(QLabel) if label.isVisible()]
-    assert not any("turn 20" in text for text in said)

@@ -15,15 +15,14 @@ from PySide6.QtWidgets import QApplication
 from app.application import chosen_dark
 from app.desks.dialogs import about_busk, ask_about_changes, ask_open, ask_save
 from app.desks.present import (
-    exact_answer,
     facts,
     kept_volume,
     line_title,
     line_views,
     measure_views,
     strip_verdict,
-    tracks,
 )
+from app.desks.present_run import exact_answer, tracks
 from app.desks.recent import remember_file
 from app.dress.theme import apply_theme
 from app.wording.samples import sample_design

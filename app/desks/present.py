@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from app.panels.line_row import LineView
 from app.panels.result import MeasureView
 from app.seeing.bands import Band
 from app.seeing.ribbon import NO_BACK
-from app.showing.convergence import Exact, Track
 from app.showing.verdict_chip import state_title
 from app.wording.words import number, say, tr
 from core.design import Design
@@ -20,7 +17,6 @@ from core.lines import Line
 from core.live import Frame
 from core.mesh import Points
 from core.report import blamed_line, warnings
-from core.solver import Marks
 
 LINE_COLOURS = {"full-bust": "#0A5F73", "mid-bust": "#E5536B", "under-bust": "#5A3F94"}
 """Line colours by name, the same in both themes, told apart by the colour-blind; top line first."""
@@ -33,9 +29,6 @@ OWN_COLOURS = ("#E2A32F", "#6FA3F5", "#7A1F2E", "#A9ABC9")
 
 OWN_WIDTH = 12.0
 """Width of the band of an own line as it is drawn [mm]."""
-
-PLOTTED_TURNS = 600
-"""Turns that the live plot looks back."""
 
 
 def line_title(name: str) -> str:
@@ -119,32 +112,6 @@ def band_label(design: Design, frame: Frame, name: str) -> tuple[str, str]:
     ratio = design.ratio(name)
     change = (ratio - 1.0) * line.rest_length
     return f"{line_title(name)} {number(100.0 * ratio)} %", f"{number(change, 1, signed=True)} mm"
-
-
-def tracks(frame: Frame) -> dict[str, Track]:
-    """Return the runs of a frame as curves: volume error [%, ml], bust point height over its rest height
-    [mm].
-    """
-    rest = _bust_height(frame.stages.rest_marks)
-    result = {}
-    for control, records in frame.tracks.items():
-        rows = [
-            (row.turn, 100.0 * row.error, row.error_ml, _bust_height(row.marks) - rest)
-            for row in records[-PLOTTED_TURNS:]
-            if row.marks is not None
-        ]
-        result[control] = Track(*np.array(rows, dtype=np.float64).reshape(-1, 4).T)
-    return result
-
-
-def exact_answer(frame: Frame) -> Exact:
-    """Return what the exact answer ends at, for the dashed line."""
-    return Exact(0.0, _bust_height(frame.exact_marks) - _bust_height(frame.stages.rest_marks))
-
-
-def _bust_height(marks: Marks) -> float:
-    """Return the mean height of the two bust points [mm]."""
-    return 0.5 * (marks.nipple_left_z + marks.nipple_right_z)
 
 
 @dataclass(frozen=True)

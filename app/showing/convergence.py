@@ -3,46 +3,28 @@
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from typing import Protocol
 
-from PySide6.QtCore import QPointF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent, QPen, QResizeEvent
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtCore import QPoint, QSize, Qt, Signal
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QMenu, QSizePolicy, QVBoxLayout, QWidget
 
 from app.dress.parts import Segment, ToolButton, sentence
-from app.dress.theme import font, label, tokens_of
-from app.showing.live_plot import Curve, LivePlot, Numbers
+from app.dress.theme import label
+from app.showing.live_plot import LivePlot
+from app.showing.plot_canvas import Turns
+from app.showing.plot_curves import Curve, Event
+from app.showing.plot_legend import Entry, Legend, legend_entries, run_title
+from app.showing.tracks import Exact, Track, error_quantities, height_quantities, tolerance_of
 from app.showing.verdict_chip import VerdictChip
 from app.wording.words import tr
 
 CONTROLS = ("adaptive", "conventional", "none", "exact")
 """Ways to control the volume, as named in the run."""
 
-TOLERANCE_PERCENT = 0.1
-"""Volume error that the paper calls kept [%]."""
-
 _HIGH, _LOW, _FOLDED = 172, 150, 36
 _LEGEND_FROM = 1100  # narrower, the legend has no room beside the titles
-
-
-@dataclass(frozen=True, eq=False)
-class Track:
-    """A run over its ``turns``: volume error [%] and [ml], height of the bust point [mm]; all (n,)."""
-
-    turns: Numbers
-    error_percent: Numbers
-    error_ml: Numbers
-    apex_mm: Numbers
-
-
-@dataclass(frozen=True)
-class Exact:
-    """The exact answer: volume error [%] and height of the bust point [mm]."""
-
-    error_percent: float
-    apex_mm: float
 
 
 class VerdictView(Protocol):
@@ -64,9 +46,14 @@ class VerdictView(Protocol):
 
 
 class Strip(QWidget):
-    """Verdict and method on the left, volume error and bust point height live beside it."""
+    """Verdict and method on the left, volume error and a height over the turns live beside it.
+
+    ``export_asked`` carries csv, png or svg; ``quantity_chosen`` the name of what a plot shows now.
+    """
 
     control_chosen = Signal(str)
+    quantity_chosen = Signal(str)
+    export_asked = Signal(str)
     folded = Signal(bool)
 
     def __init__(self) -> None:
@@ -74,16 +61,22 @@ class Strip(QWidget):
         self._state, self._settling = "stale", False
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
         self.chip, self._small_chip = VerdictChip(), VerdictChip(small=True)
-        self.error_plot = LivePlot(tr("Volume error"), "%", 0.4, TOLERANCE_PERCENT)
-        self.apex_plot = LivePlot(tr("Bust point height"), "mm", 2.0)
-        for plot in (self.error_plot, self.apex_plot):
-            self.error_plot.pointed.connect(plot.point_at)
-            self.apex_plot.pointed.connect(plot.point_at)
-        self._legend = _Legend()
-        self.apex_plot.head.addWidget(self._legend)
+        self.error_plot, self.height_plot = LivePlot(error_quantities()), LivePlot(height_quantities())
+        self._run: tuple[Mapping[str, Track], str, Exact | None] = ({}, "adaptive", None)
+        self._events: tuple[Event, ...] = ()
+        for plot in self.plots:
+            for other in self.plots:
+                plot.pointed.connect(other.point_at)
+                plot.zoomed.connect(other.show_turns)
+            plot.quantity_chosen.connect(self._draw_anew)
+            plot.quantity_chosen.connect(self.quantity_chosen)
+            plot.menu_asked.connect(self._show_menu)
+        self._legend = Legend()
+        self.height_plot.head.addWidget(self._legend)
         self._body, self._line = QWidget(), QWidget()
         self._build_body()
         self._build_line()
+        self._build_menu()
         outer = QVBoxLayout(self)
         outer.setContentsMargins(0, 0, 0, 0)
         outer.setSpacing(0)
@@ -97,18 +90,52 @@ class Strip(QWidget):
 
     def set_run(self, tracks: Mapping[str, Track], main: str, exact: Exact | None) -> None:
         """Draw the runs by control; ``main`` is the one on the body, and may be ``"exact"``."""
+        self._run = tracks, main, exact
+        self._draw(refit=not self._settling)
+        self._show_emptiness(exact is None and not any(len(track.turns) for track in tracks.values()))
+
+    def set_events(self, events: Sequence[Event]) -> None:
+        """Mark from now on where something was changed."""
+        self._events = tuple(events)
+
+    def show_turns(self, turns: Turns | None) -> None:
+        """Show these turns in both plots, or all."""
+        for plot in self.plots:
+            plot.show_turns(turns)
+
+    @property
+    def plots(self) -> tuple[LivePlot, LivePlot]:
+        """Volume error and height."""
+        return self.error_plot, self.height_plot
+
+    @property
+    def legend(self) -> list[Entry]:
+        """The names of the curves as they are drawn."""
+        return self._legend.entries
+
+    def _draw_anew(self) -> None:
+        self._draw(refit=True)
+
+    def _draw(self, refit: bool) -> None:
+        tracks, main, exact = self._run
         strong = "warning" if self._state in ("vibrating", "diverging") else "main"
         roles = {name: strong if name == main else "ghost" for name in tracks}
-        refit = not self._settling
-        is_main = main == "exact"
-        for plot, quantity in ((self.error_plot, "error_percent"), (self.apex_plot, "apex_mm")):
+        is_main, some = main == "exact", tracks.get(main) or next(iter(tracks.values()), None)
+        for plot in self.plots:
+            quantity = plot.quantity.name
             curves = [
-                Curve(track.turns, getattr(track, quantity), roles[name]) for name, track in tracks.items()
+                Curve(track.turns, getattr(track, quantity), roles[name], run_title(name))
+                for name, track in tracks.items()
             ]
-            answer = None if exact is None else getattr(exact, quantity)
-            plot.set_curves(curves, answer, exact_is_main=is_main, refit=refit)
-        self._legend.show_tracks(roles, exact is not None, is_main)
-        self._show_emptiness(exact is None and not any(len(track.turns) for track in tracks.values()))
+            plot.set_curves(
+                curves,
+                None if exact is None else getattr(exact, quantity),
+                exact_is_main=is_main,
+                tolerance=tolerance_of(quantity, some),
+                events=self._events,
+                refit=refit,
+            )
+        self._legend.show_entries(legend_entries(roles, exact is not None, is_main))
 
     def set_verdict(self, verdict: VerdictView) -> None:
         """Show how the run stands; call it before ``set_run``, which takes its colour from it."""
@@ -155,11 +182,37 @@ class Strip(QWidget):
         self._nothing = sentence(tr("The plots fill while you drag a line."), "secondary")
         self._nothing.setAlignment(Qt.AlignmentFlag.AlignCenter)
         row.addWidget(self.error_plot, 1)
-        row.addWidget(self.apex_plot, 1)
+        row.addWidget(self.height_plot, 1)
         row.addWidget(self._nothing, 1)
+        row.addLayout(self._tools())
+
+    def _tools(self) -> QVBoxLayout:
+        """Return the buttons at the right edge; the window adds its own to them."""
+        self.tools = QVBoxLayout()
+        self.tools.setSpacing(2)
         fold = ToolButton("caret-down", tr("Fold the plots away (Ctrl+J)"), size=14, room=26)
         fold.clicked.connect(lambda: self.set_folded(True))
-        row.addWidget(fold, alignment=Qt.AlignmentFlag.AlignTop)
+        self.save = ToolButton("export", tr("Save what the plots show"), size=16, room=26)
+        self.save.clicked.connect(lambda: self._show_menu(self.save.mapToGlobal(self.save.rect().topLeft())))
+        for each in (fold, self.save):
+            self.tools.addWidget(each)
+        self.tools.addStretch(1)
+        return self.tools
+
+    def _show_menu(self, at: QPoint) -> None:
+        self.menu.exec(at)
+
+    def _build_menu(self) -> None:
+        self.menu = QMenu(self)
+        for kind, text in (
+            ("csv", tr("Save the turns as a table (CSV)…")),
+            ("png", tr("Save the plots as a picture (PNG)…")),
+            ("svg", tr("Save the plots as a drawing (SVG)…")),
+        ):
+            entry = self.menu.addAction(text)
+            entry.triggered.connect(lambda _=False, kind=kind: self.export_asked.emit(kind))
+        self.menu.addSeparator()
+        self.menu.addAction(tr("Show all turns")).triggered.connect(lambda: self.show_turns(None))
 
     def _verdict(self) -> QVBoxLayout:
         column = QVBoxLayout()
@@ -212,7 +265,7 @@ class Strip(QWidget):
         self.chip.setVisible(not empty)
         self._small_chip.setVisible(not empty)
         self.error_plot.setVisible(not empty)
-        self.apex_plot.setVisible(not empty)
+        self.height_plot.setVisible(not empty)
 
 
 def _control_tips() -> tuple[str, str, str, str]:
@@ -222,42 +275,3 @@ def _control_tips() -> tuple[str, str, str, str]:
         tr("No force: the volume is not kept"),
         tr("Exact answer: the balance with the volume kept, solved at once"),
     )
-
-
-class _Legend(QWidget):
-    """The names of the curves, each behind a piece of its line."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self._entries: list[tuple[str, str, bool]] = []
-        self.setFont(font("caption"))
-
-    def show_tracks(self, roles: Mapping[str, str], exact: bool, exact_is_main: bool) -> None:
-        """Name these runs by their roles, and the exact answer if there is one."""
-        titles = {
-            "adaptive": tr("Adaptive"),
-            "conventional": tr("Conventional"),
-            "accumulating": tr("Accumulating"),
-            "none": tr("None"),
-        }
-        colors = {"main": "accent", "warning": "warn_mark", "ghost": "ghost_curve"}
-        self._entries = [(titles[name], colors[role], False) for name, role in roles.items()]
-        if exact:
-            self._entries.append((tr("Exact"), "accent" if exact_is_main else "exact_curve", True))
-        wide = QFontMetrics(self.font())
-        self.setFixedSize(sum(wide.horizontalAdvance(title) + 38 for title, _, _ in self._entries), 18)
-        self.update()
-
-    def paintEvent(self, event: QPaintEvent) -> None:
-        tokens = tokens_of(self)
-        painter = QPainter(self)
-        x, middle = 0.0, self.height() / 2
-        for title, token, dashed in self._entries:
-            pen = QPen(QColor(getattr(tokens, token)), 2)
-            if dashed:
-                pen.setDashPattern([2.5, 1.5])
-            painter.setPen(pen)
-            painter.drawLine(QPointF(x + 2, middle), QPointF(x + 18, middle))
-            painter.setPen(QColor(tokens.text_quiet))
-            painter.drawText(QPointF(x + 23, middle + 4), title)
-            x += painter.fontMetrics().horizontalAdvance(title) + 38

@@ -1,103 +1,77 @@
-"""A live curve over the turns of a run, drawn so that a vibrating run can be read."""
+"""A live curve over the turns of a run, under a title at which another quantity can be chosen."""
 
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-import pyqtgraph as pg
-from numpy.typing import NDArray
-from PySide6.QtCore import QEvent, QLineF, QPointF, QRectF, Qt, Signal
-from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen, QResizeEvent, QTransform
-from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QActionGroup, QColor, QFontMetrics, QPainter, QPaintEvent, QPen
+from PySide6.QtWidgets import QAbstractButton, QHBoxLayout, QMenu, QSizePolicy, QVBoxLayout, QWidget
 
-from app.dress.theme import font, label, tokens_of
-from app.wording.tokens import Tokens
-from app.wording.words import number, tr
-
-Numbers = NDArray[np.float64]
-
-_FLIP_WINDOW = 24
-_DENSE_PX = 6.0  # turns nearer than this would melt into a block
+from app.dress.icons import pixmap
+from app.dress.theme import font, tokens_of
+from app.showing.plot_canvas import PlotCanvas, Turns
+from app.showing.plot_curves import Curve, Event, Plotted
+from app.showing.plot_painting import is_dense
+from app.wording.words import tr
 
 
-@dataclass(frozen=True, eq=False)
-class Curve:
-    """A run: ``turns`` (n,), ``values`` (n,); its role is main, warning (main, but vibrating) or ghost."""
+@dataclass(frozen=True)
+class Quantity:
+    """What can be plotted: ``name`` of the values, title, unit, the least span worth seeing."""
 
-    turns: Numbers
-    values: Numbers
-    role: str
-
-
-def flips_every_turn(values: Numbers) -> bool:
-    """Return whether the last values go up and down in turn, by more than a trifle."""
-    recent = values[-_FLIP_WINDOW:]
-    if len(recent) < 8 or not np.isfinite(recent).all():
-        return False
-    steps = np.diff(recent)
-    flips = np.count_nonzero(steps[1:] * steps[:-1] < 0.0)
-    span = float(np.ptp(values[np.isfinite(values)]))
-    return bool(flips >= 0.8 * (len(steps) - 1) and np.abs(steps).mean() > 0.02 * span > 0.0)
-
-
-def envelope(values: Numbers) -> tuple[Numbers, Numbers]:
-    """Return lower and upper edge, each (n,), of values that flip: their own or their neighbours' mean."""
-    padded = np.concatenate([values[1:2], values, values[-2:-1]])
-    across = (padded[:-2] + padded[2:]) / 2.0
-    return np.minimum(values, across), np.maximum(values, across)
-
-
-def round_ticks(low: float, high: float, count: int = 4) -> list[float]:
-    """Return about ``count`` round numbers from ``low`` to ``high``."""
-    span = high - low
-    if not (math.isfinite(span) and span > 0.0):
-        return [low]
-    rough = span / count
-    unit = 10.0 ** math.floor(math.log10(rough))
-    step = min((m * unit for m in (1, 2, 2.5, 5, 10)), key=lambda s: abs(span / s - count))
-    first = math.ceil(low / step - 1e-9)
-    return [i * step for i in range(first, math.floor(high / step + 1e-9) + 1)]
+    name: str
+    title: str
+    unit: str
+    least_span: float
 
 
 class LivePlot(QWidget):
     """A titled plot: the main curve strong, others faint, the exact answer dashed, a tolerance as a band.
 
-    ``pointed`` carries the turn under the mouse, or None.
+    ``pointed`` carries the turn under the pointer, or None; ``zoomed`` the turns wanted in view, or None for
+    all; ``quantity_chosen`` the name of another quantity.
     """
 
     pointed = Signal(object)
+    zoomed = Signal(object)
+    menu_asked = Signal(object)
+    quantity_chosen = Signal(str)
 
-    def __init__(self, title: str, unit: str, least_span: float, tolerance: float = 0.0) -> None:
+    def __init__(self, quantities: Sequence[Quantity]) -> None:
         super().__init__()
-        self._least_span, self._tolerance = least_span, tolerance
-        self._curves: tuple[Curve, ...] = ()
-        self._exact: float | None = None
-        self._exact_is_main = False
+        self._quantities = {each.name: each for each in quantities}
+        self.quantity = quantities[0]
         self._range = (0.0, 1.0)
-        self._levels: list[float] = []
-        self._pointed: float | None = None
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Expanding)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
         self.head = QHBoxLayout()
         self.head.setContentsMargins(0, 0, 0, 0)
-        self.head.setSpacing(6)
-        self.head.addWidget(label(title, "title"))
-        self.head.addWidget(label(unit, "caption"))
-        self._readout = label("", "caption", tabular=True)
-        self.head.addWidget(self._readout)
+        self.title = PullTitle(quantities)
+        self.title.chosen.connect(self.set_quantity)
+        self.title.chosen.connect(self.quantity_chosen)
+        self.head.addWidget(self.title)
         self.head.addStretch(1)
         column.addLayout(self.head)
-        self._plot, self._drawing = _bare_plot(), _Drawing(self)
-        self._plot.addItem(self._drawing, ignoreBounds=True)
-        self._plot.scene().sigMouseMoved.connect(self._follow)
-        self._plot.setAccessibleName(f"{title} {unit}")
-        column.addWidget(self._plot, 1)
+        self.canvas = PlotCanvas()
+        for heard, told in (
+            (self.canvas.pointed, self.pointed),
+            (self.canvas.zoomed, self.zoomed),
+            (self.canvas.menu_asked, self.menu_asked),
+        ):
+            heard.connect(told)
+        column.addWidget(self.canvas, 1)
+        self.set_quantity(self.quantity.name)
+
+    def set_quantity(self, name: str) -> None:
+        """Plot another quantity from now on; an unknown one changes nothing."""
+        self.quantity = self._quantities.get(name, self.quantity)
+        self.title.show_quantity(self.quantity)
+        self.canvas.setAccessibleName(f"{self.quantity.title} {self.quantity.unit}")
 
     def set_curves(
         self,
@@ -105,12 +79,23 @@ class LivePlot(QWidget):
         exact: float | None = None,
         *,
         exact_is_main: bool = False,
+        tolerance: float = 0.0,
+        events: Sequence[Event] = (),
         refit: bool = True,
     ) -> None:
         """Draw these runs and the exact answer; without ``refit`` the range only grows, as during a drag."""
-        self._curves, self._exact, self._exact_is_main = tuple(curves), exact, exact_is_main
-        self._fit(refit)
-        self._set_axes()
+        plotted = Plotted(tuple(curves), exact, exact_is_main, tolerance, tuple(events))
+        first, last = plotted.turns()
+        if self.canvas.zoom and not (first <= self.canvas.zoom[0] and self.canvas.zoom[1] <= last):
+            self.canvas.set_turns(None)
+        self._fit(plotted, refit)
+        self.canvas.set_plotted(plotted, self._range, smooth=refit)
+
+    def show_turns(self, turns: Turns | None) -> None:
+        """Show these turns, or all; the range of values follows."""
+        self.canvas.set_turns(turns)
+        self._fit(self.canvas.plotted, True)
+        self.canvas.set_plotted(self.canvas.plotted, self._range, self.canvas.smooth)
 
     def value_range(self) -> tuple[float, float]:
         """Return the lowest and the highest value that has room."""
@@ -118,183 +103,79 @@ class LivePlot(QWidget):
 
     def drawn_as_envelope(self, curve: Curve) -> bool:
         """Return whether a curve flips so densely that its envelope is drawn."""
-        turns = max(float(curve.turns[-1] - curve.turns[0]), 1.0) if len(curve.turns) else 1.0
-        return flips_every_turn(curve.values) and self._plot.getViewBox().width() / turns < _DENSE_PX
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange:
-            self._plot.resetCachedContent()  # the view keeps a picture of its ground
-            self._set_axes()
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self._set_axes()
-
-    def leaveEvent(self, event: QEvent) -> None:
-        self.pointed.emit(None)
+        return is_dense(curve, self.canvas.scale())
 
     def point_at(self, turn: float | None) -> None:
-        """Read out the strong curve at the nearest turn, or stop to."""
-        strong = next((curve for curve in self._curves if curve.role != "ghost" and len(curve.turns)), None)
-        self._pointed = None
-        self._readout.setText("")
-        if turn is not None and strong is not None:
-            nearest = int(np.abs(strong.turns - turn).argmin())
-            self._pointed = float(strong.turns[nearest])
-            value = number(strong.values[nearest], 2)
-            self._readout.setText(tr("turn {turn}: {value}").format(turn=f"{self._pointed:.0f}", value=value))
-        self._drawing.update()
+        """Read the curves at the nearest turn, or stop to."""
+        self.canvas.point_at(turn)
 
-    def _follow(self, scene_at: QPointF) -> None:
-        self.pointed.emit(self._drawing.mapFromScene(scene_at).x())
-
-    def paint_curves(self, painter: QPainter, to_pixels: QTransform) -> None:
-        """Paint all curves; ``to_pixels`` maps turns and values to pixels."""
-        tokens = tokens_of(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        self._paint_grid(painter, to_pixels, tokens)
-        for curve in sorted(self._curves, key=lambda each: each.role != "ghost"):
-            if len(curve.turns) > 1:
-                self._paint_curve(painter, to_pixels, curve, tokens)
-        if self._pointed is not None:
-            painter.setPen(QPen(QColor(tokens.control), 1))
-            x, edges = to_pixels.map(QPointF(self._pointed, 0.0)).x(), painter.clipBoundingRect()
-            painter.drawLine(QPointF(x, edges.top()), QPointF(x, edges.bottom()))
-        if self._exact is not None:
-            color = tokens.accent if self._exact_is_main else tokens.exact_curve
-            pen = QPen(QColor(color), 2.0 if self._exact_is_main else 1.3)
-            pen.setDashPattern([4, 3])
-            painter.setPen(pen)
-            painter.drawLine(_level(painter, to_pixels, self._exact))
-
-    def _fit(self, refit: bool) -> None:
-        """Set the range of values: all that is drawn, at least the smallest span worth seeing."""
-        values = [curve.values[np.isfinite(curve.values)] for curve in self._curves]
-        if self._exact is not None:
-            values.append(np.array([self._exact]))
-        if self._tolerance:
-            values.append(np.array([-self._tolerance, self._tolerance]))
-        together = np.concatenate([*values, np.empty(0)])
-        low, high = (float(together.min()), float(together.max())) if len(together) else (0.0, 0.0)
+    def _fit(self, plotted: Plotted, refit: bool) -> None:
+        """Set the range of values: all that is in view, at least the smallest span worth seeing."""
+        low, high = plotted.values(*(self.canvas.zoom or plotted.turns()))
         if not refit:
             low, high = min(low, self._range[0]), max(high, self._range[1])
-        slack = max(self._least_span - (high - low), 0.0) / 2
+        slack = max(self.quantity.least_span - (high - low), 0.0) / 2
         self._range = (low - slack, high + slack)
 
-    def _set_axes(self) -> None:
-        low, high = self._range
-        ends = [(float(curve.turns[0]), float(curve.turns[-1])) for curve in self._curves if len(curve.turns)]
-        first = min((end[0] for end in ends), default=0.0)
-        last = max(max((end[1] for end in ends), default=0.0), first + 10.0)
-        room = 0.08 * (high - low)
-        within = (first, last + 0.02 * (last - first))
-        self._plot.setRange(xRange=within, yRange=(low - room, high + room), padding=0)
-        self._levels = round_ticks(low, high, 4 if self.height() > 110 else 3)
-        digits = next((d for d in (0, 1, 2) if all(abs(v - round(v, d)) < 1e-9 for v in self._levels)), 3)
-        room_for_word = last - 0.2 * (last - first)
-        turns = [turn for turn in round_ticks(first, last, 4) if turn < room_for_word and turn.is_integer()]
-        left, bottom = self._plot.getAxis("left"), self._plot.getAxis("bottom")
-        left.setTicks([[(level, number(level, digits)) for level in self._levels]])
-        bottom.setTicks([[*((turn, f"{turn:.0f}") for turn in turns), (last, tr("turn"))]])
-        tokens = tokens_of(self)
-        for axis in (left, bottom):
-            axis.setTextPen(QColor(tokens.text_caption))
-        left.setPen(QPen(Qt.PenStyle.NoPen))
-        bottom.setPen(QColor(tokens.outline))
-        self._drawing.update()
 
-    def _paint_grid(self, painter: QPainter, to_pixels: QTransform, tokens: Tokens) -> None:
-        painter.setPen(QPen(QColor(tokens.line), 1))
-        for level in self._levels:
-            painter.drawLine(_level(painter, to_pixels, level))
-        if self._tolerance:
-            upper = _level(painter, to_pixels, self._tolerance)
-            lower = _level(painter, to_pixels, -self._tolerance)
-            painter.fillRect(QRectF(upper.p1(), lower.p2()), _fade(tokens.ok, 0.13))
+class PullTitle(QAbstractButton):
+    """Title and unit of a plot; where there is more than one quantity, pressing it shows the others."""
 
-    def _paint_curve(self, painter: QPainter, to_pixels: QTransform, curve: Curve, tokens: Tokens) -> None:
-        ghost = curve.role == "ghost"
-        color = {"main": tokens.accent, "warning": tokens.warn_mark, "ghost": tokens.ghost_curve}[curve.role]
-        path = _path(to_pixels, curve.turns, curve.values)
-        painter.setBrush(Qt.BrushStyle.NoBrush)
-        if self.drawn_as_envelope(curve):
-            lower, upper = (_path(to_pixels, curve.turns, each) for each in envelope(curve.values))
-            painter.fillPath(_between(lower, upper), _fade(color, 0.10 if ghost else 0.22))
-            painter.setPen(QPen(_fade(color, 0.2 if ghost else 0.45), 1))
-            painter.drawPath(path)
-            painter.setPen(QPen(_fade(color, 0.62 if ghost else 1.0), 1 if ghost else 1.6))
-            painter.drawPath(lower)
-            painter.drawPath(upper)
-        else:
-            painter.setPen(QPen(_fade(color, 0.62 if ghost else 1.0), 1 if ghost else 2))
-            painter.drawPath(path)
-        if not ghost and np.isfinite(curve.values[-1]):
-            painter.setPen(QPen(QColor(tokens.panel), 1.5))
-            painter.setBrush(QColor(color))
-            painter.drawEllipse(to_pixels.map(QPointF(curve.turns[-1], curve.values[-1])), 4, 4)
+    chosen = Signal(str)
 
-
-class _Drawing(pg.GraphicsObject):  # type: ignore[misc]
-    """All curves as one item, because one item a line costs a millisecond each time it is drawn anew."""
-
-    def __init__(self, owner: LivePlot) -> None:
+    def __init__(self, quantities: Sequence[Quantity]) -> None:
         super().__init__()
-        self._owner = owner
+        self._shown, self._pulls = quantities[0], len(quantities) > 1
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus if self._pulls else Qt.FocusPolicy.NoFocus)
+        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
+        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+        if self._pulls:
+            self.setCursor(Qt.CursorShape.PointingHandCursor)
+            self.setToolTip(tr("Choose what is plotted"))
+        self.menu = QMenu(self)
+        group = QActionGroup(self)
+        self._entries = {}
+        for each in quantities:
+            entry = self.menu.addAction(f"{each.title}  {each.unit}")
+            entry.setCheckable(True)
+            entry.triggered.connect(lambda _=False, name=each.name: self.chosen.emit(name))
+            group.addAction(entry)
+            self._entries[each.name] = entry
+        self.clicked.connect(self._pull)
 
-    def boundingRect(self) -> QRectF:
-        return QRectF(self.viewRect())
+    def show_quantity(self, quantity: Quantity) -> None:
+        """Show which quantity is plotted; nothing is emitted."""
+        self._shown = quantity
+        self._entries[quantity.name].setChecked(True)
+        self.setAccessibleName(f"{quantity.title} {quantity.unit}")
+        self.setFixedSize(self.sizeHint())
+        self.update()
 
-    def viewRangeChanged(self) -> None:
-        self.prepareGeometryChange()
+    def sizeHint(self) -> QSize:
+        title = QFontMetrics(font("title")).horizontalAdvance(self._shown.title)
+        unit = QFontMetrics(font("caption")).horizontalAdvance(self._shown.unit)
+        return QSize(title + unit + (30 if self._pulls else 12), 20)
 
-    def paint(self, painter: QPainter, *_: object) -> None:
-        # In pixels, pens are as wide as they say at any screen scale.
-        to_pixels = painter.transform()
-        painter.resetTransform()
-        self._owner.paint_curves(painter, to_pixels)
+    def paintEvent(self, event: QPaintEvent) -> None:
+        tokens, painter = tokens_of(self), QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        if self._pulls and (self.underMouse() or self.hasFocus()):
+            painter.setPen(QPen(QColor(tokens.accent), 2) if self.hasFocus() else Qt.PenStyle.NoPen)
+            painter.setBrush(QColor(tokens.pressed))
+            painter.drawRoundedRect(QRectF(self.rect()).adjusted(1, 1, -1, -1), 5, 5)
+        x, upright = 3.0, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft
+        for text, role, ink in (
+            (self._shown.title, "title", tokens.text),
+            (self._shown.unit, "caption", tokens.text_caption),
+        ):
+            painter.setFont(font(role))
+            painter.setPen(QColor(ink))
+            painter.drawText(QRectF(x, 0, self.width(), self.height()), upright, text)
+            x += painter.fontMetrics().horizontalAdvance(text) + 6
+        if self._pulls:
+            caret = pixmap("caret-down", tokens.text_caption, 10, self.devicePixelRatioF())
+            painter.drawPixmap(QPointF(x, self.height() / 2 - 5), caret)
 
-
-def _fade(color: str, share: float) -> QColor:
-    result = QColor(color)
-    result.setAlphaF(share)
-    return result
-
-
-def _level(painter: QPainter, to_pixels: QTransform, value: float) -> QLineF:
-    """Return the line across the plot at ``value`` [px]."""
-    y = to_pixels.map(QPointF(0.0, value)).y()
-    edges = painter.clipBoundingRect()
-    return QLineF(edges.left(), y, edges.right(), y)
-
-
-def _path(to_pixels: QTransform, turns: Numbers, values: Numbers) -> QPainterPath:
-    """Return the curve [px]; it is broken where a value is not finite."""
-    x, y = to_pixels.m11() * turns + to_pixels.dx(), to_pixels.m22() * values + to_pixels.dy()
-    return QPainterPath(pg.arrayToQPath(x, y, connect="finite"))
-
-
-def _between(lower: QPainterPath, upper: QPainterPath) -> QPainterPath:
-    """Return the area between two curves."""
-    area = QPainterPath(lower)
-    area.connectPath(upper.toReversed())
-    return area
-
-
-def _bare_plot() -> pg.PlotWidget:
-    """Return a plot without frame, buttons, menu or mouse."""
-    plot = pg.PlotWidget(background=None)
-    plot.setFrameShape(plot.Shape.NoFrame)
-    plot.hideButtons()
-    plot.setMenuEnabled(False)
-    plot.setMouseEnabled(False, False)
-    plot.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Ignored)
-    plot.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-    plot.getPlotItem().layout.setContentsMargins(0, 0, 12, 0)
-    for axis in map(plot.getAxis, ("left", "bottom")):
-        axis.setTickPen(QColor(0, 0, 0, 0))  # a tick of no length still draws a dot
-        tick_font = font("axis", tabular=True)
-        axis.setStyle(tickLength=0, tickAlpha=0, hideOverlappingLabels=False, tickFont=tick_font)
-    plot.getAxis("left").setWidth(34)
-    plot.getAxis("bottom").setHeight(18)
-    return plot
+    def _pull(self) -> None:
+        if self._pulls:
+            self.menu.exec(self.mapToGlobal(self.rect().bottomLeft()))

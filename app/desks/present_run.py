@@ -1,0 +1,70 @@
+"""What is plotted of a frame's runs, and what a table of them says."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from app.desks.present_lines import line_title
+from app.showing.tracks import Exact, Track
+from app.wording.words import tr
+from core.live import Frame
+from core.solver import Marks, Record
+
+PLOTTED_TURNS = 600
+"""Turns that the live plot looks back."""
+
+
+def tracks(frame: Frame) -> dict[str, Track]:
+    """Return the runs of a frame as curves; heights are counted from those of the body at rest."""
+    rest = frame.stages.rest_marks
+    result = {}
+    for control, records in frame.tracks.items():
+        rows = [
+            (row.turn, *_figures(row, row.marks, rest))
+            for row in records[-PLOTTED_TURNS:]
+            if row.marks is not None
+        ]
+        result[control] = Track(*np.array(rows, dtype=np.float64).reshape(-1, 5).T)
+    return result
+
+
+def exact_answer(frame: Frame) -> Exact:
+    """Return what the exact answer ends at, for the dashed line."""
+    return Exact(0.0, 0.0, *_heights(frame.exact_marks, frame.stages.rest_marks))
+
+
+def table_of(frame: Frame) -> tuple[list[str], list[Sequence[object]]]:
+    """Return the heading and the rows of all turns of all runs, as they were made."""
+    names = [line_title(line.name) for line in frame.stages.model.lines]
+    heading = [
+        tr("run"),
+        tr("turn"),
+        tr("volume error [%]"),
+        tr("volume error [ml]"),
+        tr("bust point height [mm]"),
+        tr("apex height [mm]"),
+        tr("largest move [mm]"),
+        *(tr("{line} [mm]").format(line=name) for name in names),
+    ]
+    rest = frame.stages.rest_marks
+    rows: list[Sequence[object]] = [
+        (control, row.turn, *_figures(row, row.marks or rest, rest), row.step, *row.lengths)
+        for control, records in frame.tracks.items()
+        for row in records
+    ]
+    return heading, rows
+
+
+def _figures(row: Record, marks: Marks, rest: Marks) -> tuple[float, float, float, float]:
+    return 100.0 * row.error, row.error_ml, *_heights(marks, rest)
+
+
+def _heights(marks: Marks, rest: Marks) -> tuple[float, float]:
+    """Return how far the bust points, on an average, and the apex lie above where they are at rest [mm]."""
+    return _bust_height(marks) - _bust_height(rest), marks.apex_z - rest.apex_z
+
+
+def _bust_height(marks: Marks) -> float:
+    return 0.5 * (marks.nipple_left_z + marks.nipple_right_z)
