@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
-from PySide6.QtGui import QGuiApplication, QImage, QMouseEvent, QWheelEvent
+from PySide6.QtGui import QImage, QMouseEvent, QWheelEvent
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
@@ -120,15 +120,6 @@ def test_many_requests_make_one_drawing(view: Viewport) -> None:
         for _ in range(5):
             view.request_draw()
     assert len(drawn) == 1
-
-
-def test_the_overlay_alone_draws_no_3d_off_screen(view: Viewport) -> None:
-    if QGuiApplication.platformName() != "offscreen":
-        pytest.skip("with OpenGL Qt composes both at once")
-    view.picture()
-    with drawings(view) as drawn:
-        view.overlay.update()
-    assert drawn == []
 
 
 def test_a_still_picture_loses_its_stairs_and_a_moving_one_is_quick(view: Viewport, qtbot: QtBot) -> None:

@@ -1,0 +1,75 @@
+"""What VTK draws in: with a graphics card and without one the window shows the same picture."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+from PySide6.QtGui import QGuiApplication, QImage
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.dress.theme import apply_theme
+from app.showing import canvas
+from app.showing.canvas import PaintedCanvas
+from app.showing.viewport import Viewport
+from core.mesh import Mesh
+
+
+def picture(qtbot: QtBot) -> np.ndarray:
+    """The colours of a ball in a view of its own, (height, width, 3)."""
+    app = QApplication.instance()
+    assert isinstance(app, QApplication)
+    apply_theme(app, dark=False)
+    view = Viewport()
+    qtbot.addWidget(view)
+    view.resize(300, 200)
+    view.show()
+    qtbot.waitExposed(view)
+    ball = pv.Icosphere(radius=150.0, nsub=4)
+    view.scene.show_body(Mesh(ball.points + np.array([120.0, 0.0, 40.0]), ball.regular_faces))
+    view.motion = False
+    view.frame_all()
+    image = view.picture().convertToFormat(QImage.Format.Format_RGBX8888)
+    view.close_view()
+    colours = np.frombuffer(image.constBits(), np.uint8).reshape(image.height(), image.width(), 4)
+    return colours[..., :3].astype(float)
+
+
+def test_with_and_without_a_graphics_card_the_picture_is_the_same(
+    qtbot: QtBot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if QGuiApplication.platformName() == "offscreen":
+        pytest.skip("Qt has no OpenGL there")
+    made: list[type] = []
+    make = canvas.make_canvas
+    monkeypatch.setattr(
+        "app.showing.viewport.make_canvas",
+        lambda parent: (both := make(parent), made.append(type(both[0])))[0],
+    )
+    pictures = []
+    for card in (True, False):
+        monkeypatch.setattr(canvas, "has_graphics_card", lambda card=card: card)
+        pictures.append(picture(qtbot))
+    assert [kind is PaintedCanvas for kind in made] == [False, True]
+    assert np.abs(pictures[0] - pictures[1]).max() <= 2.0
+
+
+def test_only_what_moved_in_3d_is_drawn_anew_without_a_card(
+    qtbot: QtBot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(canvas, "has_graphics_card", lambda: False)
+    view = Viewport()
+    qtbot.addWidget(view)
+    view.resize(300, 200)
+    view.show()
+    qtbot.waitExposed(view)
+    qtbot.wait(20)
+    drawn: list[str] = []
+    tag = view.scene.plotter.ren_win.AddObserver("EndEvent", lambda *_: drawn.append("drawn"))
+    view.overlay.repaint()
+    assert drawn == []
+    view.request_draw()
+    qtbot.waitUntil(lambda: drawn == ["drawn"], timeout=3000)
+    view.scene.plotter.ren_win.RemoveObserver(tag)
+    view.close_view()
