@@ -2,26 +2,30 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
+import time
 import zipfile
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
+from glob import escape
 from pathlib import Path
 
 from core.design import ScanSource
-from core.design_text import FORMAT, from_json, to_json
 from core.document import Document
-from core.errors import ProjectError, UserError
+from core.document_text import DESIGN, VARIANTS, from_texts, to_texts
+from core.errors import ProjectError
 from core.progress import Progress, quiet
 from core.reading.scan_file import scan_bytes
 
 SUFFIX = ".busk"
 _LARGEST_SCAN = 2_000_000_000
 _LARGEST_DESIGN = 1_000_000
+
+_ABANDONED = 600.0
+"""Seconds after which nobody writes any more to a file that is not whole."""
 
 _UNSAFE = re.compile(r'[<>:"/\\|?*\x00-\x1f\ud800-\udfff]')
 _BROKEN_ARCHIVE = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError)
@@ -48,55 +52,33 @@ def save_project(
     Raises ProjectError if the file cannot be written; what was there before then stays.
     """
     target = Path(path).absolute()
-    member = f"scan/{_safe_name(scan.name)}"
+    member = f"scan/{safe_name(scan.name)}"
     # The project may move to another place: inside it the scan needs no path.
-    inside = _with_scan(document, "", member)
+    inside = with_scan(document, "", member)
     with whole_file(target) as partial, zipfile.ZipFile(partial, "w", zipfile.ZIP_STORED) as archive:
-        for name, text in _texts(inside).items():
+        for name, text in to_texts(inside).items():
             archive.writestr(name, text)
         archive.writestr(member, scan.data)
         if picture:
             archive.writestr("preview.png", picture)
-    return _with_scan(inside, str(target), member)
+    return with_scan(inside, str(target), member)
 
 
 def open_project(path: str | os.PathLike[str]) -> Document:
     """Read the document of a project; its scan is read from the same file. Raises ProjectError."""
     source = Path(path).absolute()
     with _archive(source) as archive:
-        document = _document(archive)
+        names = [DESIGN, *({VARIANTS} & set(archive.namelist()))]
+        document = from_texts({name: _text(archive, name) for name in names})
         member = document.design.scan.member
         if member not in archive.namelist():
             raise ProjectError(
                 f"{source.name} holds no scan.", "Open a backup, or start again from the scan."
             )
-    return _with_scan(document, str(source), member)
+    return with_scan(document, str(source), member)
 
 
-def _texts(document: Document) -> dict[str, str]:
-    """Return what is written of a document, by member."""
-    others = {name: json.loads(to_json(each)) for name, each in document.designs if name != document.shown}
-    if document == Document.of(document.design):
-        return {"design.json": to_json(document.design)}
-    # An older program would drop the variants at its next save: it must not read this.
-    variants = {"shown": document.shown, "others": others}
-    return {"design.json": to_json(document.design, FORMAT), "variants.json": json.dumps(variants, indent=1)}
-
-
-def _document(archive: zipfile.ZipFile) -> Document:
-    design = from_json(_text(archive, "design.json"))
-    if "variants.json" not in archive.namelist():
-        return Document.of(design)
-    try:
-        told = json.loads(_text(archive, "variants.json"))
-        others = {str(name): from_json(json.dumps(each)) for name, each in told["others"].items()}
-        designs = others | {str(told["shown"]): design}
-        return Document(tuple(sorted(designs.items())), str(told["shown"])).with_design(design)
-    except (UserError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as broken:
-        raise ProjectError("The project's variants cannot be read.", "Open a backup.") from broken
-
-
-def _with_scan(document: Document, path: str, member: str) -> Document:
+def with_scan(document: Document, path: str, member: str) -> Document:
     """Return the document with its scan in a file, for every variant."""
     scan = replace(document.design.scan, path=path, member=member)
     return document.with_design(replace(document.design, scan=scan))
@@ -110,7 +92,7 @@ def read_scan_file(source: ScanSource, progress: Progress = quiet) -> ScanFile:
     return ScanFile(source.name, scan_bytes(Path(source.path), progress))
 
 
-def _safe_name(name: str) -> str:
+def safe_name(name: str) -> str:
     """Return a file name that every system takes, whatever system or hand the project came from."""
     return _UNSAFE.sub("_", name)[-60:].strip(". ") or "scan"
 
@@ -122,6 +104,7 @@ def whole_file(target: Path) -> Iterator[Path]:
     Raises ProjectError if the place cannot be written to.
     """
     partial = target.with_name(f".{target.name}.{os.getpid()}.part")
+    _sweep(target)
     try:
         yield partial
         with open(partial, "rb+") as written:
@@ -136,6 +119,14 @@ def whole_file(target: Path) -> Iterator[Path]:
         # Where nothing can be written nothing can be removed: the first problem is the one to tell.
         with suppress(OSError):
             partial.unlink(missing_ok=True)
+
+
+def _sweep(target: Path) -> None:
+    """Remove what a program that was killed in the middle of writing has left beside ``target``."""
+    with suppress(OSError):
+        for left in target.parent.glob(f".{escape(target.name)}.*.part"):
+            if time.time() - left.stat().st_mtime > _ABANDONED:
+                left.unlink()
 
 
 @contextmanager

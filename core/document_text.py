@@ -1,0 +1,37 @@
+"""A document as texts by name, as projects and recovery folders keep it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+
+from core.design_text import FORMAT, from_json, to_json
+from core.document import Document
+from core.errors import ProjectError, UserError
+
+DESIGN, VARIANTS = "design.json", "variants.json"
+"""The name of the text of the design that is shown, and of that of its variants, if there are any."""
+
+
+def to_texts(document: Document) -> dict[str, str]:
+    """Return what is written of a document, by name."""
+    others = {name: json.loads(to_json(each)) for name, each in document.designs if name != document.shown}
+    if document == Document.of(document.design):
+        return {DESIGN: to_json(document.design)}
+    # An older program would drop the variants at its next save: it must not read this.
+    variants = {"shown": document.shown, "others": others}
+    return {DESIGN: to_json(document.design, FORMAT), VARIANTS: json.dumps(variants, indent=1)}
+
+
+def from_texts(texts: Mapping[str, str]) -> Document:
+    """Read a document; there must be at least its design. Raises ProjectError if it is none."""
+    design = from_json(texts[DESIGN])
+    if VARIANTS not in texts:
+        return Document.of(design)
+    try:
+        told = json.loads(texts[VARIANTS])
+        others = {str(name): from_json(json.dumps(each)) for name, each in told["others"].items()}
+        designs = others | {str(told["shown"]): design}
+        return Document(tuple(sorted(designs.items())), str(told["shown"])).with_design(design)
+    except (UserError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as broken:
+        raise ProjectError("The project's variants cannot be read.", "Open a backup.") from broken

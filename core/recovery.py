@@ -1,0 +1,183 @@
+"""Recovery: what is not saved yet is kept in a folder of the running window, to be found after a crash.
+
+A folder holds the document as texts, the untouched scan once, and a small picture. It belongs to a window as
+long as that holds it; what is found unheld was left behind by a crash.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import tempfile
+import time
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import platformdirs
+
+from core.document import Document
+from core.document_text import from_texts, to_texts
+from core.errors import ProjectError, UserError
+from core.holding import Hold
+from core.project import ScanFile, safe_name, whole_file, with_scan
+
+_DOCUMENT, _PICTURE, _ASIDE = "document.json", "picture.png", ".broken"
+
+
+def recovery_folder() -> Path:
+    """Return the folder that holds those of all windows."""
+    return Path(platformdirs.user_state_path("Busk", appauthor=False)) / "recovery"
+
+
+@dataclass(frozen=True)
+class Kept:
+    """A document that was not saved, its scan where it is kept: the ``project`` it was opened from, if any,
+    when it was kept (``time`` [s] since 1970) and a PNG ``picture``.
+    """
+
+    document: Document
+    name: str
+    project: Path | None
+    time: float
+    picture: bytes | None
+
+
+class Recovery:
+    """The recovery folder of one window, held by it. Raises OSError if another one holds it."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._hold = Hold(folder)
+        self._scan: ScanFile | None = None
+        self._place: Path | None = None
+
+    @classmethod
+    def new(cls) -> Recovery:
+        """Return a folder of its own for a window. Raises OSError if there can be none."""
+        base = recovery_folder()
+        base.mkdir(parents=True, exist_ok=True)
+        return cls(Path(tempfile.mkdtemp(prefix=time.strftime("%Y%m%d-%H%M%S-"), dir=base)))
+
+    def keep(
+        self,
+        document: Document,
+        scan: ScanFile,
+        name: str,
+        project: Path | None,
+        picture: bytes | None = None,
+    ) -> None:
+        """Keep a document; of what was kept before nothing goes until this is whole. Raises ProjectError."""
+        try:
+            place = self._keep_scan(document, scan)
+            if picture:
+                with whole_file(self.folder / _PICTURE) as partial:
+                    partial.write_bytes(picture)
+            told = {
+                "name": name,
+                "project": str(project) if project is not None else None,
+                "time": time.time(),
+                "scan": place.relative_to(self.folder).as_posix(),
+                "size": place.stat().st_size,
+                "texts": to_texts(with_scan(document, "", "")),
+            }
+            with whole_file(self.folder / _DOCUMENT) as partial:
+                partial.write_text(json.dumps(told), encoding="utf-8")
+        except OSError as problem:
+            raise ProjectError(
+                f"Busk cannot keep your changes in {self.folder}: {problem.strerror or problem}.",
+                "Make room on the disk, or save often.",
+            ) from problem
+        self._sweep(place.parent)
+
+    def forget(self) -> None:
+        """Keep no document any more: it is saved. The scan stays, a restored document may lie on it."""
+        with suppress(OSError):
+            (self.folder / _DOCUMENT).unlink(missing_ok=True)
+
+    def let_go(self) -> None:
+        """Leave all that is kept to the next window that starts."""
+        self._hold.end()
+
+    def end(self) -> None:
+        """Let nothing be left: the window closes in order."""
+        self.forget()
+        self._hold.end()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def _keep_scan(self, document: Document, scan: ScanFile) -> Path:
+        """Return where the bytes of the scan are kept, written once."""
+        path = Path(document.design.scan.path)
+        if not document.design.scan.member and path.is_relative_to(self.folder) and path.exists():
+            return path
+        if self._place is None or scan is not self._scan:
+            free = next(n for n in range(1, 10**6) if not (self.folder / f"scan{n}").exists())
+            place = self.folder / f"scan{free}" / safe_name(scan.name)
+            place.parent.mkdir()
+            with whole_file(place) as partial:
+                partial.write_bytes(scan.data)
+            self._scan, self._place = scan, place
+        return self._place
+
+    def _sweep(self, kept: Path) -> None:
+        for old in self.folder.glob("scan*"):
+            if old != kept:
+                shutil.rmtree(old, ignore_errors=True)
+
+
+def left_behind() -> tuple[list[tuple[Kept, Recovery]], list[Path]]:
+    """Take hold of what windows left behind that did not close in order, the newest first.
+
+    Folders with nothing to lose are removed. What cannot be read is put aside: where, is returned beside.
+    """
+    found, broken = [], []
+    for folder in sorted(recovery_folder().glob("*/")):
+        if folder.suffix == _ASIDE:
+            continue
+        try:
+            recovery = Recovery(folder)
+        except OSError:
+            continue  # its window is at work, or it is not ours to take
+        try:
+            found.append((read_kept(folder), recovery))
+        except FileNotFoundError:
+            recovery.end()
+        except UserError:
+            recovery.let_go()
+            with suppress(OSError):
+                broken.append(folder.replace(folder.with_suffix(_ASIDE)))
+    return sorted(found, key=lambda each: -each[0].time), broken
+
+
+def read_kept(folder: Path) -> Kept:
+    """Read what a folder keeps. Raises FileNotFoundError if that is nothing, ProjectError if it is broken."""
+    try:
+        text = (folder / _DOCUMENT).read_text("utf-8")
+    except FileNotFoundError:
+        raise
+    except (OSError, ValueError) as problem:
+        raise _unreadable(folder) from problem
+    try:
+        return _kept(folder, json.loads(text))
+    except (ValueError, KeyError, TypeError, AttributeError, OSError) as problem:
+        raise _unreadable(folder) from problem
+
+
+def _kept(folder: Path, told: Mapping[str, Any]) -> Kept:
+    texts = {str(name): str(text) for name, text in told["texts"].items()}
+    scan, picture = folder / str(told["scan"]), folder / _PICTURE
+    if scan.stat().st_size != told["size"]:
+        raise ValueError("the scan is not whole")
+    return Kept(
+        with_scan(from_texts(texts), str(scan), ""),
+        str(told["name"]),
+        Path(told["project"]) if told["project"] else None,
+        float(told["time"]),
+        picture.read_bytes() if picture.exists() else None,
+    )
+
+
+def _unreadable(folder: Path) -> ProjectError:
+    return ProjectError(f"What was kept in {folder} cannot be read.", "Open a backup.")
