@@ -15,11 +15,12 @@ from types import TracebackType
 
 import platformdirs
 import PySide6
-from PySide6.QtCore import QSettings, Qt
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QApplication
 
 from app.dress.theme import apply_theme, load_fonts
+from app.dress.wishes import wish
 from app.wording.words import use_language
 from core import __version__
 from core.errors import UserError
@@ -43,11 +44,15 @@ def application(language: str | None = None, dark: bool | None = None) -> QAppli
         existing.setOrganizationName("Busk")
         existing.setApplicationName("Busk")
         existing.setApplicationVersion(__version__)
-    settings = QSettings()
-    use_language(language or str(settings.value("language", "en")))
+    use_language(language or wish("language"))
     load_fonts()
-    apply_theme(existing, chosen_dark(str(settings.value("theme", "system"))) if dark is None else dark)
+    apply_theme(existing, chosen_dark(wish("theme")) if dark is None else dark)
     return existing
+
+
+def log_folder() -> Path:
+    """Return the folder that faults are written to."""
+    return Path(platformdirs.user_log_dir("Busk", appauthor=False))
 
 
 @contextmanager
@@ -56,7 +61,7 @@ def log_kept() -> Iterator[Path]:
 
     Where no log can be written there is none.
     """
-    folder = Path(platformdirs.user_log_dir("Busk", appauthor=False))
+    folder = log_folder()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         crashes = open(folder / "crash.log", "a", encoding="utf-8")  # noqa: SIM115 - closed below

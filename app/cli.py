@@ -56,7 +56,7 @@ def _run(words: list[str]) -> int:
     gc.disable()
     from app.window import run_window
 
-    return run_window(options.file)
+    return run_window(options.file, options.safe_mode)
 
 
 def design_of(path: str, options: argparse.Namespace) -> Design:

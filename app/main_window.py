@@ -8,11 +8,20 @@ from PySide6.QtWidgets import QMainWindow, QVBoxLayout, QWidget
 
 from app.actions import Actions
 from app.asking.housekeeping import Housekeeping
+from app.asking.jobs import Jobs
 from app.asking.session import Session
 from app.desks.desk import Desk
 from app.desks.flip_key import FlipKey
+from app.desks.help_desk import HelpDesk
+from app.desks.job_desk import JobDesk
+from app.desks.landmark_desk import LandmarkDesk
 from app.desks.line_maker import LineMaker
+from app.desks.lines_desk import LinesDesk
+from app.desks.preferences_desk import PreferencesDesk
+from app.desks.rescue import Rescue
+from app.desks.safe_mode import SafeMode
 from app.desks.scan_desk import ScanDesk
+from app.desks.start_desk import StartDesk
 from app.layout import Layout
 from app.panels.inspector import Inspector
 from app.panels.landmarks import LandmarksPanel
@@ -42,7 +51,8 @@ class MainWindow(QMainWindow):
         self.resize(1600, 1000)
         self.setAcceptDrops(True)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.view = ViewArea()
+        self.jobs = Jobs(self)
+        self.view = ViewArea(self.jobs)
         do = self.actions_ = Actions(self, session.undo_stack, self.view.tool_actions)
         self.top = TopBar(do.bar, do.undo, do.redo, do.export)
         self.rail, self.notices, self.strip, self.status = Rail(), NoticeBar(), Strip(), StatusBar()
@@ -53,9 +63,14 @@ class MainWindow(QMainWindow):
         self._fill_inspector()
         self.layout_ = Layout(self)
         self.pages = self.layout_.pages
-        self.scan_desk = ScanDesk(self)
+        self.job_desk = JobDesk(self)
+        self.landmark_desk, self.scan_desk = LandmarkDesk(self), ScanDesk(self)
         self.desk = Desk(self)
-        self.line_maker = LineMaker(self)
+        self.start_desk = StartDesk(self)
+        self.lines_desk, self.line_maker = LinesDesk(self), LineMaker(self)
+        self.help = HelpDesk(self)
+        self.preferences = PreferencesDesk(self)
+        self.rescuer = Rescue(self)
         self.flip_key = FlipKey(self, self.actions_.flip, self.view)
         self.housekeeping = Housekeeping(self)
         connect(self)
@@ -77,6 +92,14 @@ class MainWindow(QMainWindow):
         """Tell whether the session's design is solved to the end and shown."""
         frame, design = self.session.frame, self.session.design
         return frame is not None and frame.stages.design is design and not frame.at_work
+
+    def tell_graphics(self, why: str) -> None:
+        """Say once why the view is drawn safely, if it is, and notice when it has been drawn."""
+        self.safe_mode = SafeMode(self, why)
+
+    def rescue(self) -> str:
+        """Keep the design aside after a fault; returns where, or an empty text if it was not kept."""
+        return ""
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:  # noqa: N802
         """Take files that are dragged onto the window."""
@@ -100,8 +123,9 @@ class MainWindow(QMainWindow):
         # The solver may be in the middle of reading a scan: nobody has to watch the window wait for it.
         self.hide()
         self.desk.close()
-        self.scan_desk.close()
+        self.jobs.close()
         self.session.close()
         self.view.close_view()
         self.housekeeping.close()
+        self.rescuer.close()
         event.accept()

@@ -12,10 +12,38 @@ if TYPE_CHECKING:
 
 def connect(window: MainWindow) -> None:
     """Connect everything: the session to the desks, the parts to the session, the actions to both."""
+    _connect_work(window)
+    _connect_landmarks(window)
     _connect_session(window)
     _connect_panels(window)
     _connect_view(window)
     _connect_actions(window)
+    _connect_start(window)
+
+
+def _connect_work(window: MainWindow) -> None:
+    job_desk = window.job_desk
+    window.session.working.connect(job_desk.show_work)
+    window.jobs.changed.connect(job_desk.show)
+    window.view.busy.cancelled.connect(job_desk.cancel)
+    window.status.job_cancelled.connect(job_desk.cancel)
+    window.actions_.cancel.triggered.connect(job_desk.cancel)
+
+
+def _connect_landmarks(window: MainWindow) -> None:
+    panel, view, landmark_desk = window.landmarks, window.view.viewport, window.landmark_desk
+    window.session.frame_ready.connect(landmark_desk.follow)
+    panel.landmark_selected.connect(landmark_desk.take)
+    panel.reset_asked.connect(landmark_desk.reset)
+    panel.confirmed.connect(landmark_desk.confirm)
+    panel.place_asked.connect(landmark_desk.put_pin)
+    panel.keys_asked.connect(landmark_desk.move_by_keys)
+    panel.hovered.connect(landmark_desk.hover)
+    panel.linked.connect(landmark_desk.link)
+    view.pin_pressed.connect(landmark_desk.take)
+    view.pin_moved.connect(landmark_desk.carry)
+    view.pin_released.connect(landmark_desk.put_down)
+    view.pin_hovered.connect(landmark_desk.hover_pin)
 
 
 def _connect_session(window: MainWindow) -> None:
@@ -25,7 +53,6 @@ def _connect_session(window: MainWindow) -> None:
     session.design_changed.connect(desk.show_design)
     session.failed.connect(desk.show_failure)
     session.asked.connect(scan_desk.show_stuck)
-    session.working.connect(scan_desk.show_work)
     session.saved.connect(desk.show_saved)
     session.undo_stack.cleanChanged.connect(desk.show_title)
 
@@ -34,32 +61,41 @@ def _connect_panels(window: MainWindow) -> None:
     session, desk, scan_desk = window.session, window.desk, window.scan_desk
     window.rail.step_chosen.connect(desk.go_to)
     window.lines.length_previewed.connect(session.preview_line)
-    window.lines.length_committed.connect(desk.commit_line)
+    window.lines.length_committed.connect(window.lines_desk.commit_length)
     window.lines.drag_cancelled.connect(lambda _: session.cancel_preview())
     window.lines.selected.connect(desk.select_line)
-    window.lines.visibility_changed.connect(desk.set_line_visible)
+    window.lines.visibility_changed.connect(window.lines_desk.set_visible)
+    window.lines.decided.connect(window.lines_desk.decide)
     window.lines.reset_all.connect(session.reset_lines)
     window.strip.control_chosen.connect(session.choose_control)
     window.lines.add_asked.connect(window.line_maker.show_menu)
-    window.lines.removed.connect(window.line_maker.remove)
+    window.lines.removed.connect(window.lines_desk.remove)
     window.door.clicked.connect(desk.show_model)
     window.model.left.connect(lambda: desk.go_to("lines"))
     window.model.changed.connect(session.change)
     window.scan.open_asked.connect(desk.open)
     window.scan.told.connect(scan_desk.tell)
     window.scan.front_asked.connect(scan_desk.ask)
-    window.landmarks.landmark_selected.connect(desk.select_landmark)
-    window.landmarks.reset_asked.connect(scan_desk.reset_landmarks)
-    window.landmarks.place_asked.connect(scan_desk.put_pin)
+
+
+def _connect_start(window: MainWindow) -> None:
+    session, desk, start = window.session, window.desk, window.start_desk
+    session.opened.connect(start.show_opened)
+    session.working.connect(start.show_work)
+    session.failed.connect(start.leave_page)
+    session.asked.connect(start.leave_page)
+    start.page.open_asked.connect(desk.open)
+    start.page.sample_asked.connect(desk.open_sample)
+    start.page.tour_asked.connect(start.take_tour)
+    start.page.project_chosen.connect(desk.open_file)
+    start.page.locate_asked.connect(start.locate)
+    start.page.forget_asked.connect(start.forget)
+    start.page.left.connect(start.leave_page)
 
 
 def _connect_view(window: MainWindow) -> None:
     desk, scan_desk, view = window.desk, window.scan_desk, window.view
     view.viewport.band_clicked.connect(desk.select_line)
-    view.viewport.pin_pressed.connect(desk.select_landmark)
-    view.viewport.pin_moved.connect(view.pins.drag)
-    view.viewport.pin_released.connect(scan_desk.place_landmark)
-    view.busy.cancelled.connect(scan_desk.cancel)
     view.question.answered.connect(scan_desk.answer)
     view.question.left.connect(scan_desk.leave_question)
     view.tools.view_chosen.connect(view.viewport.set_view)
@@ -76,7 +112,6 @@ def _connect_actions(window: MainWindow) -> None:
     do.save.triggered.connect(desk.save)
     do.save_as.triggered.connect(desk.save_as)
     do.export.triggered.connect(desk.export)
-    do.cancel.triggered.connect(window.scan_desk.cancel)
     do.quit.triggered.connect(window.close)
     do.reset.triggered.connect(session.reset_lines)
     _connect_layout(window)
@@ -84,7 +119,6 @@ def _connect_actions(window: MainWindow) -> None:
     window.strip.folded.connect(lambda folded: do.strip.setChecked(not folded))
     do.own_line.triggered.connect(window.line_maker.ask)
     do.model.triggered.connect(desk.show_model)
-    do.about.triggered.connect(desk.about)
     do.recent.aboutToShow.connect(lambda: fill_recent_menu(do.recent, desk.open_file))
     for name, action in do.samples.items():
         action.triggered.connect(lambda _=False, sample=name: desk.open_sample(sample))
@@ -92,8 +126,8 @@ def _connect_actions(window: MainWindow) -> None:
         (do.add_lines, window.line_maker.add),
         (do.controls, session.choose_control),
         (do.templates, session.choose_template),
-        (do.themes, desk.choose_theme),
-        (do.languages, desk.choose_language),
+        (do.themes, lambda theme: window.preferences.choose("theme", theme)),
+        (do.languages, lambda language: window.preferences.choose("language", language)),
     ):
         for name, action in group.items():
             action.triggered.connect(lambda _=False, ask=ask, name=name: ask(name))

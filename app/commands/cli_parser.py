@@ -71,6 +71,9 @@ def _window_parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("file", nargs="?", metavar="FILE", help="a project (.busk) or a scan to open")
+    parser.add_argument(
+        "--safe-mode", action="store_true", help="paint the 3D view without the graphics driver"
+    )
     parser.add_argument("--version", action="version", version=f"busk {__version__}")
     return parser
 

@@ -8,27 +8,23 @@ import traceback
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QBuffer, QIODevice, QObject, QSettings, QTimer
-from PySide6.QtGui import QGuiApplication, QImage
-from PySide6.QtWidgets import QApplication
+from PySide6.QtCore import QObject, QTimer
 
-from app.application import chosen_dark
-from app.desks.dialogs import about_busk, ask_about_changes, ask_open, ask_save
+from app.desks.dialogs import ask_about_changes, ask_open, ask_save
 from app.desks.present import (
     facts,
     kept_volume,
-    line_title,
-    line_views,
     measure_views,
     strip_verdict,
 )
 from app.desks.present_run import exact_answer, tracks
+from app.desks.project_picture import project_picture
 from app.desks.recent import remember_file
-from app.dress.theme import apply_theme
 from app.wording.samples import sample_design
 from app.wording.words import tr
 from core.design import Design
 from core.errors import UserError
+from core.export import write_frame
 from core.live import Frame
 from core.report import warnings
 
@@ -49,14 +45,9 @@ class Desk(QObject):
         self._frame: Frame | None = None
         self._fell_back_to: Design | None = None
         self._plotted: Frame | None = None
-        self._asked = ""
         self._plot_due = 0.0
         self._plot_clock = QTimer(self, interval=PLOT_INTERVAL, singleShot=True)
         self._plot_clock.timeout.connect(self.plot_now)
-        settings = QSettings()
-        themes, languages = window.actions_.themes, window.actions_.languages
-        themes.get(str(settings.value("theme")), themes["system"]).setChecked(True)
-        languages.get(str(settings.value("language")), languages["en"]).setChecked(True)
         window.actions_.strip.setChecked(True)
         window.actions_.inspector.setChecked(True)
         self.go_to("lines")
@@ -67,9 +58,6 @@ class Desk(QObject):
     def show_opened(self, frame: Frame) -> None:
         """Show a document that has just been opened."""
         window = self._window
-        if self._asked:
-            remember_file(self._asked)
-            self._asked = ""
         window.actions_.enable_document()
         window.notices.clear()
         self.show_title()
@@ -91,7 +79,7 @@ class Desk(QObject):
         self._frame = frame
         self._window.model.set_gain(frame.stages.gain, frame.stages.gain_limit)
         self._window.view.show_frame(frame)
-        self._window.lines.set_lines(line_views(design, frame, self._window.view.hidden_lines))
+        self._window.lines_desk.show_frame(frame)
         self._window.status.set_volume(*kept_volume(frame))
         self._window.status.set_facts(facts(frame))
         # Drawn together with the body while frames come, else a moment after the last one.
@@ -165,16 +153,6 @@ class Desk(QObject):
         self._window.landmarks.select(name)
         self._window.view.pins.select(name)
 
-    def set_line_visible(self, name: str, visible: bool) -> None:
-        """Show or hide a line's band."""
-        self._window.view.set_line_visible(name, visible)
-        if self._frame is not None:
-            self.show_frame(self._frame)
-
-    def commit_line(self, name: str, ratio: float) -> None:
-        """Set a line's length."""
-        self._session.commit_line(name, line_title(name), ratio)
-
     def open(self) -> None:
         """Ask for a file and open it."""
         self.open_file(ask_open(self._window))
@@ -182,13 +160,11 @@ class Desk(QObject):
     def open_file(self, path: str) -> None:
         """Open a project or a scan."""
         if path and self.may_leave():
-            self._asked = path
             self._session.open(path)
 
     def open_sample(self, name: str) -> None:
         """Open one of the sample bodies."""
         if self.may_leave():
-            self._asked = ""
             self._session.open_design(sample_design(name))
 
     def save(self) -> bool:
@@ -206,8 +182,17 @@ class Desk(QObject):
         """Ask for a place and write the body as it is shown."""
         kinds = "PLY (*.ply);;OBJ (*.obj);;STL (*.stl)"
         path = ask_save(self._window, tr("Export body"), f"{self._session.name}-busk.ply", kinds, ".ply")
-        if path and self._session.export_body(path):
-            self._window.notices.show_notice("ok", tr("Body written to {name}.").format(name=Path(path).name))
+        frame = self._session.frame
+        if not path or frame is None:
+            return
+        said = tr("Body written to {name}.").format(name=Path(path).name)
+        self._window.jobs.run(
+            tr("Writing the body"),
+            lambda progress: write_frame(path, frame, progress),
+            lambda _: self._window.notices.show_notice("ok", said),
+            self.show_failure,
+            waited=True,
+        )
 
     def save_picture(self) -> None:
         """Ask for a place and write what the view shows."""
@@ -218,22 +203,6 @@ class Desk(QObject):
             self.show_failure(
                 UserError(tr("The picture cannot be written there."), tr("Choose another folder."))
             )
-
-    def choose_theme(self, theme: str) -> None:
-        """Dress the window in another theme, now and next time."""
-        QSettings().setValue("theme", theme)
-        app = QGuiApplication.instance()
-        if isinstance(app, QApplication):
-            apply_theme(app, chosen_dark(theme))
-
-    def choose_language(self, language: str) -> None:
-        """Remember the language; widgets keep the words that they were built with."""
-        QSettings().setValue("language", language)
-        self._window.notices.show_notice("info", tr("The language changes when Busk is started again."))
-
-    def about(self) -> None:
-        """Say what Busk is."""
-        about_busk(self._window)
 
     def may_leave(self) -> bool:
         """Ask about unsaved changes; returns whether the document may be left."""
@@ -248,7 +217,8 @@ class Desk(QObject):
 
     def _preview(self) -> bytes:
         """Return a small picture of the view, for the project file."""
-        return png_of(self._window.view.viewport.picture().scaledToWidth(480))
+        state = self._frame.verdict.state if self._frame is not None else ""
+        return project_picture(self._window.view.viewport.picture(), state)
 
     def plot_now(self) -> None:
         """Bring the live plot up to date, if there is a frame that it has not shown."""
@@ -266,11 +236,3 @@ class Desk(QObject):
         bad, reached = state in ("folded", "overstrained"), "done" if state == "settled" else "available"
         self._window.rail.set_state("lines", "look" if bad else reached, int(bad))
         self._window.rail.set_state("result", reached)
-
-
-def png_of(image: QImage) -> bytes:
-    """Return an image as the bytes of a PNG file."""
-    buffer = QBuffer()
-    buffer.open(QIODevice.OpenModeFlag.WriteOnly)
-    image.save(buffer, "PNG")  # type: ignore[call-overload]  # the stub asks for bytes, Qt for a text
-    return bytes(buffer.data().data())

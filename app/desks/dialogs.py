@@ -9,7 +9,6 @@ from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from app.wording.scan_formats import PATTERNS
 from app.wording.words import tr
-from core import __version__
 
 _ENDING = re.compile(r"\*(\.\w+)")
 
@@ -52,11 +51,3 @@ def ask_about_changes(parent: QWidget, name: str) -> str:
     box.setDefaultButton(buttons.Save)
     answer = box.exec()
     return {buttons.Save.value: "save", buttons.Discard.value: "discard"}.get(answer, "stay")
-
-
-def about_busk(parent: QWidget) -> None:
-    """Say what Busk is, and under which licence."""
-    title = tr("Busk {version}").format(version=__version__)
-    purpose = tr("See how a foundation garment reshapes a body.")
-    terms = tr("Apache-2.0. Nothing leaves this computer.")
-    QMessageBox.about(parent, tr("About Busk"), f"{title}\n\n{purpose}\n{terms}")

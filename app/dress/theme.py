@@ -185,6 +185,12 @@ QLineEdit[kind="number"] {{ border-color: transparent; background: transparent; 
 QLineEdit[kind="number"]:hover {{ border-color: {t.outline}; background: {t.raised}; }}
 QLineEdit[kind="number"]:focus {{ border: 2px solid {t.accent}; background: {t.raised}; padding: 0 3px; }}
 QLineEdit[wrong="true"]:focus {{ border-color: {t.bad}; }}
+QTreeView, QPlainTextEdit {{ border: 1px solid {t.line}; border-radius: 6px; background: {t.raised};
+    padding: 2px; selection-background-color: {t.accent}; selection-color: {t.on_accent}; outline: none; }}
+QTreeView:focus, QPlainTextEdit:focus {{ border: 2px solid {t.accent}; padding: 1px; }}
+QTreeView::item {{ min-height: 28px; padding: 0 8px; border: none; }}
+QTreeView::item:hover {{ background: {t.hover}; }}
+QTreeView::item:selected {{ background: {t.selected}; color: {t.text}; }}
 QScrollArea, QScrollArea > QWidget > QWidget[scrolled="true"] {{ background: transparent; border: none; }}
 QScrollBar:vertical {{ width: 10px; background: transparent; margin: 2px; }}
 QScrollBar::handle:vertical {{ background: {t.outline}; border-radius: 3px; min-height: 28px; }}

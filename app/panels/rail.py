@@ -41,10 +41,11 @@ class Rail(QWidget):
             self.items[step] = item
         self._column.addStretch(1)
 
-    def add_tool(self, drawing: str, action: QAction) -> None:
-        """Put a small button at the foot, for what is no step."""
+    def add_tool(self, drawing: str, action: QAction) -> ToolButton:
+        """Put a small button at the foot, for what is no step, and return it."""
         tool = ToolButton(drawing, size=20, room=36, action=action)
         self._column.addWidget(tool, alignment=Qt.AlignmentFlag.AlignHCenter)
+        return tool
 
     def set_current(self, step: str) -> None:
         """Show which step the window is in; nothing is emitted."""

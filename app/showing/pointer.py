@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 from PySide6.QtCore import QEvent, QObject, QPointF, Qt, Signal
-from PySide6.QtGui import QMouseEvent, QWheelEvent
+from PySide6.QtGui import QMouseEvent, QNativeGestureEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.seeing.camera import View
 from app.seeing.scene import Scene
+from app.showing.gestures import ORBIT, PAN, ZOOM, chosen_gestures
 from app.showing.overlay import Overlay
 from core.mesh import Floats
 
@@ -19,6 +21,10 @@ TURN = 0.4
 NOTCH = 1.15
 """How much larger a notch of the wheel makes the body."""
 
+NOTCH_PIXELS, WHEEL_PIXELS = 30.0, 40.0
+"""Pixels of a drag that scale as much as a notch of the wheel, and of a notch that turns or moves."""
+
+_HELD = Qt.KeyboardModifier.ShiftModifier | Qt.KeyboardModifier.ControlModifier
 _CLICK = 3.0  # pixels that the pointer may stray within a click
 
 
@@ -37,6 +43,7 @@ class Pointer(QObject):
     pin_pressed = Signal(str)
     pin_moved = Signal(str, object)
     pin_released = Signal(str)
+    pin_hovered = Signal(str)
 
     def __init__(self, canvas: QWidget, scene: Scene, overlay: Overlay) -> None:
         super().__init__(canvas)
@@ -45,9 +52,9 @@ class Pointer(QObject):
         self._overlay = overlay
         self._pressed = QPointF()
         self._last = QPointF()
-        self._grip = ""
+        self._grip = self._drags = ""
         self._pin = ""
-        self._hovered = ""
+        self._hovered = self._hovered_pin = ""
         canvas.installEventFilter(self)
 
     def let_go(self) -> None:
@@ -65,6 +72,7 @@ class Pointer(QObject):
             QEvent.Type.MouseButtonRelease: self._release,
             QEvent.Type.MouseButtonDblClick: self._centre,
             QEvent.Type.Wheel: self._wheel,
+            QEvent.Type.NativeGesture: self._pinch,
             QEvent.Type.Leave: self._leave,
         }
         if kind not in handlers:
@@ -74,31 +82,35 @@ class Pointer(QObject):
 
     def _press(self, event: QMouseEvent) -> None:
         self._pressed = self._last = event.position()
-        shift = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
-        if event.button() == Qt.MouseButton.MiddleButton or (
-            event.button() == Qt.MouseButton.LeftButton and shift
-        ):
-            self._grip = "pan"
-        elif event.button() == Qt.MouseButton.LeftButton:
-            self._pin = self._overlay.pin_at(event.position())
-            self._grip = "pin" if self._pin else "click"
-            if self._pin:
-                self.pin_pressed.emit(self._pin)
+        self._drags = chosen_gestures().of_drag(event.button(), event.modifiers())
+        plain = event.button() == Qt.MouseButton.LeftButton and not event.modifiers() & _HELD
+        self._pin = self._overlay.pin_at(event.position()) if plain else ""
+        self._grip = "pin" if self._pin else "click" if plain else self._drags
+        if self._pin:
+            self.pin_pressed.emit(self._pin)
 
     def _drag(self, event: QMouseEvent) -> None:
         step = event.position() - self._last
         if self._grip == "click" and (event.position() - self._pressed).manhattanLength() > _CLICK:
-            self._grip = "orbit"
-        if self._grip == "orbit":
-            self.turned.emit(self._scene.view.orbit(-TURN * step.x(), TURN * step.y()))
-        elif self._grip == "pan":
-            self.shifted.emit(self._scene.view.pan(step.x(), step.y(), self._canvas.height()))
+            self._grip = self._drags
+        if self._grip in (ORBIT, PAN, ZOOM):
+            self._move(self._grip, step, self._pressed)
         elif self._grip == "pin" and (event.position() - self._pressed).manhattanLength() > _CLICK:
             self._drag_pin(event.position())
         elif not self._grip:
             self._hover(event.position())
         if self._grip != "click":
             self._last = event.position()
+
+    def _move(self, act: str, step: QPointF, at: QPointF) -> None:
+        """Turn, move or scale what is seen by a drag of so many pixels, about the place it began at."""
+        view = self._scene.view
+        if act == ORBIT:
+            self.turned.emit(view.orbit(-TURN * step.x(), TURN * step.y()))
+        elif act == PAN:
+            self.shifted.emit(view.pan(step.x(), step.y(), self._canvas.height()))
+        else:
+            self._zoom(-step.y() / NOTCH_PIXELS, at)
 
     def _release(self, event: QMouseEvent) -> None:
         if self._grip == "click":
@@ -116,10 +128,22 @@ class Pointer(QObject):
             self.centred.emit(self._scene.view.centred(place))
 
     def _wheel(self, event: QWheelEvent) -> None:
+        act, turned = chosen_gestures().of_wheel(event.modifiers()), event.angleDelta()
+        if act == ZOOM:
+            # With Shift or Alt held some systems turn the wheel sideways.
+            self._zoom((turned.y() or turned.x()) / 120.0, event.position())
+        else:
+            self._move(act, QPointF(turned) * WHEEL_PIXELS / 120.0, event.position())
+
+    def _pinch(self, event: QNativeGestureEvent) -> None:
+        """Scale by two fingers that move apart on a trackpad."""
+        if event.gestureType() == Qt.NativeGestureType.ZoomNativeGesture:
+            self._zoom(math.log(max(1.0 + event.value(), 0.1), NOTCH), event.position())
+
+    def _zoom(self, notches: float, at: QPointF) -> None:
         half = self._canvas.height() / 2.0
-        x = (event.position().x() - self._canvas.width() / 2.0) / half
-        y = (half - event.position().y()) / half
-        self.shifted.emit(self._scene.view.zoom(NOTCH ** (event.angleDelta().y() / 120.0), x, y))
+        x, y = (at.x() - self._canvas.width() / 2.0) / half, (half - at.y()) / half
+        self.shifted.emit(self._scene.view.zoom(NOTCH**notches, x, y))
 
     def _leave(self, event: QEvent) -> None:
         self._set_hovered("")
@@ -129,12 +153,15 @@ class Pointer(QObject):
         name = "" if pin else self._band_at(place)
         shape = Qt.CursorShape.PointingHandCursor if pin or name else Qt.CursorShape.ArrowCursor
         self._canvas.setCursor(shape)
-        self._set_hovered(name)
+        self._set_hovered(name, pin)
 
-    def _set_hovered(self, name: str) -> None:
+    def _set_hovered(self, name: str, pin: str = "") -> None:
         if name != self._hovered:
             self._hovered = name
             self.band_hovered.emit(name)
+        if pin != self._hovered_pin:
+            self._hovered_pin = pin
+            self.pin_hovered.emit(pin)
 
     def skin_at(self, place: QPointF) -> Floats | None:
         """Return the place of the body at rest, shape (3,) [mm], that is seen at a pixel, or None."""

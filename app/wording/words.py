@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from functools import cache
 from importlib import resources
 
 LANGUAGES = {"en": "English", "ja": "日本語"}
@@ -29,6 +30,7 @@ def use_language(code: str) -> None:
             _messages.append((_pattern(english), messages[english]))
 
 
+@cache
 def read_words(name: str) -> dict[str, str]:
     """Return one table of ``resources/words``, English to translated."""
     text = (resources.files("resources") / "words" / f"{name}.json").read_text(encoding="utf-8")
@@ -52,6 +54,13 @@ def say(english: str) -> str:
             return translated.format(**{name: say(value) for name, value in match.groupdict().items()})
     sentences = _SENTENCE_END.split(english) if _messages else [english]
     return english if len(sentences) == 1 else "".join(say(each) for each in sentences)
+
+
+def in_all_languages(shown: str) -> list[str]:
+    """Return words of the window as they are shown, and as they are in every other language."""
+    english = next((text for text, translated in _table.items() if translated == shown), shown)
+    others = (read_words(code).get(english) for code in LANGUAGES if code != "en")
+    return [shown, english, *(other for other in others if other)]
 
 
 def _pattern(english: str) -> re.Pattern[str]:

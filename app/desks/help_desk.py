@@ -1,0 +1,82 @@
+"""What the window does when it is asked for help: keys, commands by their words, What's This."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, QPoint
+from PySide6.QtGui import QAction, QKeySequence
+from PySide6.QtWidgets import QWhatsThis, QWidget
+
+from app.desks.machine import machine_facts
+from app.panels.about import AboutSheet, DiagnosticsSheet
+from app.panels.commands import Command, CommandSheet
+from app.showing.gestures import chosen_gestures, gestures_in_words
+from app.wording.licences import licences
+from app.wording.words import in_all_languages, tr
+from core import __version__
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+
+
+class HelpDesk(QObject):
+    """Adds the help menu and opens what it offers; what it tells is read from the actions themselves."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        add = window.actions_.add
+        said = tr("Find any command by its words, and give it")
+        self.palette = add("help", tr("Find a command…"), "Ctrl+K", said, do=self.find_command)
+        window.rail.add_tool("search", self.palette)
+        add("help", tr("Keyboard shortcuts"), "Ctrl+/", do=self.show_keys)
+        said = tr("Then click on something, and read what it is for")
+        add("help", tr("What's this?"), "Shift+F1", said, do=QWhatsThis.enterWhatsThisMode)
+        window.actions_.rule("help")
+        add(
+            "help", tr("Diagnostics"), tip=tr("Versions, graphics and folders, to copy"), do=self.show_machine
+        )
+        window.actions_.about.triggered.connect(self.show_about)
+        menu = QAction(tr("Help"), window)
+        menu.setToolTip(tr("Keys, tour, What's This and more"))
+        tool = window.rail.add_tool("question", menu)
+        menu.triggered.connect(lambda: self._show_menu(tool))
+
+    def commands(self) -> list[Command]:
+        """Return every command of the menus."""
+        return [_command(where, action) for where, action in self._window.actions_.all()]
+
+    def find_command(self) -> None:
+        """Search all commands by their words."""
+        CommandSheet(self._window, tr("Find a command"), self.commands(), to_give=True).open()
+
+    def show_keys(self) -> None:
+        """Show every key: those of the commands, and what the pointer does in the view."""
+        keyed = [command for command in self.commands() if command.keys]
+        view = [
+            Command(what, tr("In the view"), how, f"{what} {how}".casefold())
+            for how, what in gestures_in_words(chosen_gestures())
+        ]
+        CommandSheet(self._window, tr("Keyboard shortcuts"), [*keyed, *view], to_give=False).open()
+
+    def show_machine(self) -> None:
+        """Show what the program is made of, what draws for it, and where it writes."""
+        DiagnosticsSheet(self._window, machine_facts(self._window)).open()
+
+    def show_about(self) -> None:
+        """Say what Busk is, and under which licences."""
+        AboutSheet(self._window, __version__, licences()).open()
+
+    def _show_menu(self, place: QWidget) -> None:
+        """Open the help menu beside the button that asks for it."""
+        self._window.actions_.menus["help"].popup(place.mapToGlobal(QPoint(place.width() + 4, 0)))
+
+
+def _command(where: str, action: QAction) -> Command:
+    native = QKeySequence.SequenceFormat.NativeText
+    keys = ", ".join(key.toString(native) for key in action.shortcuts())
+    title = action.text().replace("&", "")
+    words = " ".join((*in_all_languages(title), *in_all_languages(where), action.toolTip()))
+    give = action.trigger if action.isEnabled() else None
+    return Command(title.rstrip("…"), where, keys, words.casefold(), give)

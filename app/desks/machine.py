@@ -1,0 +1,61 @@
+"""Facts about program and machine, for somebody who is to find out why something does not work."""
+
+from __future__ import annotations
+
+import platform
+import sys
+from importlib import metadata
+from pathlib import Path
+
+from PySide6.QtCore import QSettings, QSysInfo, qVersion
+from PySide6.QtGui import QGuiApplication
+from PySide6.QtWidgets import QWidget
+
+from app.application import log_folder
+from app.showing.graphics import graphics_in_words, is_safe_mode
+from app.wording.words import tr
+from core import __version__
+
+LIBRARIES = ("PySide6-Essentials", "vtk", "pyvista", "pyvistaqt", "pyqtgraph", "numpy", "scipy", "numba")
+
+Group = tuple[str, list[tuple[str, str]]]
+
+
+def machine_facts(window: QWidget) -> list[Group]:
+    """Return what the program is made of, what draws for it, and where it writes."""
+    screen = window.screen()
+    size, scale = screen.geometry(), window.devicePixelRatioF()
+    return [
+        (
+            tr("Program"),
+            [
+                ("Busk", __version__),
+                ("Python", f"{platform.python_version()} ({sys.executable})"),
+                ("Qt", f"{qVersion()}, {QGuiApplication.platformName()}"),
+                *((name, _version_of(name)) for name in LIBRARIES),
+                (tr("System"), f"{QSysInfo.prettyProductName()}, {QSysInfo.currentCpuArchitecture()}"),
+            ],
+        ),
+        (
+            tr("Graphics"),
+            [
+                *graphics_in_words(),
+                (tr("Safe mode"), tr("on") if is_safe_mode() else tr("off")),
+                (tr("Screen"), f"{size.width()} x {size.height()} ({scale:g}x)"),
+            ],
+        ),
+        (
+            tr("Folders"),
+            [
+                (tr("Log"), str(log_folder())),
+                (tr("Settings"), str(Path(QSettings().fileName()))),
+            ],
+        ),
+    ]
+
+
+def _version_of(name: str) -> str:
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return tr("not installed")

@@ -1,0 +1,38 @@
+"""What the window says and does when the 3D view is painted without OpenGL in the window."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, QTimer
+
+from app.showing.graphics import graphics_work
+from app.wording.words import tr
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+
+_DRAWN_FOR = 1000
+"""Milliseconds after which a view that is drawn has shown that it can be."""
+
+
+class SafeMode(QObject):
+    """Says once why the view is drawn safely; ``why`` is what ``begin_graphics`` answered."""
+
+    def __init__(self, window: MainWindow, why: str) -> None:
+        super().__init__(window)
+        self._window, self._why = window, why
+        window.session.opened.connect(self._show_opened)
+
+    def _show_opened(self) -> None:
+        self._window.session.opened.disconnect(self._show_opened)
+        if not self._why:
+            QTimer.singleShot(_DRAWN_FOR, self, graphics_work)
+            return
+        said = {
+            "asked": tr("Safe mode: the 3D view is painted without the graphics driver."),
+            "failed": tr("Safe mode, because Busk has twice ended before the 3D view was drawn."),
+        }
+        hint = tr("All else works as ever, the view more slowly.")
+        act = (tr("Normal next time"), graphics_work) if self._why == "failed" else None
+        self._window.notices.show_notice("warn", said[self._why], hint, [act] if act else (), lasting=True)

@@ -1,0 +1,68 @@
+"""The house's dialog: a heading, what it is about, and buttons at its foot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QFontDatabase
+from PySide6.QtWidgets import QDialog, QHBoxLayout, QPlainTextEdit, QPushButton, QVBoxLayout, QWidget
+
+from app.dress.parts import button, hairline
+from app.dress.theme import label
+from app.wording.words import tr
+
+
+class Sheet(QDialog):
+    """A dialog that goes when it is closed; ``body`` takes what it shows, ``foot`` its buttons."""
+
+    def __init__(self, parent: QWidget | None, title: str, size: tuple[int, int] | None = None) -> None:
+        super().__init__(parent)
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setWindowTitle(title)
+        self.body, self.foot = QVBoxLayout(), QHBoxLayout()
+        self.body.setContentsMargins(20, 18, 20, 16)
+        self.body.setSpacing(10)
+        self.foot.setContentsMargins(20, 11, 20, 12)
+        self.foot.setSpacing(8)
+        self.foot.addStretch(1)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addLayout(self.body, 1)
+        column.addWidget(hairline())
+        column.addLayout(self.foot)
+        heading = label(title, "page")
+        heading.setWordWrap(True)
+        self.body.addWidget(heading)
+        if size is not None:
+            self.resize(*size)
+
+    def add_button(self, text: str, do: Callable[[], object], kind: str = "secondary") -> QPushButton:
+        """Put one more button at the right of the foot; the primary one answers the Enter key."""
+        result = button(text, kind)
+        result.setAutoDefault(False)
+        result.setDefault(kind == "primary")
+        result.clicked.connect(lambda _=False: do())
+        self.foot.addWidget(result)
+        return result
+
+    def add_close(self) -> QPushButton:
+        """Put the button that closes the sheet at the foot."""
+        return self.add_button(tr("Close"), self.accept, "primary")
+
+
+def reading(text: str, name: str, *, code: bool = False) -> QPlainTextEdit:
+    """Return text to read and to copy, for ears called ``name``; ``code`` keeps its columns."""
+    result = QPlainTextEdit(text)
+    result.setReadOnly(True)
+    result.setAccessibleName(name)
+    result.setTabChangesFocus(True)
+    result.setTextInteractionFlags(
+        Qt.TextInteractionFlag.TextSelectableByMouse | Qt.TextInteractionFlag.TextSelectableByKeyboard
+    )
+    if code:
+        type_ = QFontDatabase.systemFont(QFontDatabase.SystemFont.FixedFont)
+        type_.setPixelSize(12)
+        result.setFont(type_)
+    return result

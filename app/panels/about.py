@@ -1,0 +1,64 @@
+"""What Busk is and under which terms, and what it runs on: texts to read and to copy."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtGui import QGuiApplication
+from PySide6.QtWidgets import QStackedWidget, QWidget
+
+from app.dress.parts import Segment, sentence
+from app.dress.sheet import Sheet, reading
+from app.wording.words import tr
+
+Facts = Sequence[tuple[str, Sequence[tuple[str, str]]]]
+"""Groups of facts, each with its title: name and value, ready to read."""
+
+
+class AboutSheet(Sheet):
+    """What Busk is, with the licences to read."""
+
+    def __init__(self, parent: QWidget, version: str, licences: Sequence[tuple[str, str]]) -> None:
+        super().__init__(parent, tr("Busk {version}").format(version=version), (680, 560))
+        self.body.addWidget(sentence(tr("See how a foundation garment reshapes a body."), "body"))
+        self.body.addWidget(sentence(tr("Apache-2.0. Nothing leaves this computer."), "secondary"))
+        names = [str(place) for place in range(len(licences))]
+        self.tabs = Segment([(name, title) for name, (title, _) in zip(names, licences, strict=True)])
+        self.texts = QStackedWidget()
+        for title, text in licences:
+            self.texts.addWidget(reading(text, title, code=True))
+        self.tabs.chosen.connect(lambda name: self.show_licence(int(name)))
+        self.body.addSpacing(4)
+        self.body.addWidget(self.tabs)
+        self.body.addWidget(self.texts, 1)
+        self.add_close()
+        self.show_licence(0)
+
+    def show_licence(self, place: int) -> None:
+        """Show one of the licences."""
+        self.texts.setCurrentIndex(place)
+        self.tabs.set_choice(str(place))
+
+
+class DiagnosticsSheet(Sheet):
+    """Facts about program and machine, to copy for whoever is asked for help."""
+
+    def __init__(self, parent: QWidget, facts: Facts) -> None:
+        super().__init__(parent, tr("Diagnostics"), (680, 560))
+        said = tr("For a report: versions, graphics and folders. No scan, no measures, no names of files.")
+        self.body.addWidget(sentence(said))
+        self.text = as_text(facts)
+        self.body.addWidget(reading(self.text, tr("Diagnostics"), code=True), 1)
+        self.copy = self.add_button(tr("Copy"), self._copy)
+        self.add_close()
+
+    def _copy(self) -> None:
+        QGuiApplication.clipboard().setText(self.text)
+        self.copy.setText(tr("Copied"))
+
+
+def as_text(facts: Facts) -> str:
+    """Return facts as lines, in two columns."""
+    width = max((len(name) for _, group in facts for name, _ in group), default=0) + 2
+    groups = ((title, (f"  {name:{width}}{value}" for name, value in group)) for title, group in facts)
+    return "\n\n".join("\n".join((title, *lines)) for title, lines in groups)
