@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from itertools import groupby
 
 from core.design_lines import OwnLine
@@ -36,6 +37,11 @@ def own_line(text: str, template: Template) -> OwnLine:
 def place_of(point: int, template: Template) -> str:
     """Return how a control point is written: r2c-3."""
     return f"r{template.row[point]}c{template.column[point]}"
+
+
+def mirrored(points: Sequence[int], template: Template) -> tuple[int, ...]:
+    """Return the control points of the other side, in the same order."""
+    return tuple(template.point(int(template.row[point]), -int(template.column[point])) for point in points)
 
 
 def _walk(word: str, template: Template) -> list[int]:
