@@ -17,10 +17,13 @@ from app.desks.job_desk import JobDesk
 from app.desks.landmark_desk import LandmarkDesk
 from app.desks.line_maker import LineMaker
 from app.desks.lines_desk import LinesDesk
+from app.desks.map_desk import MapDesk
+from app.desks.plot_desk import PlotDesk
 from app.desks.preferences_desk import PreferencesDesk
 from app.desks.rescue import Rescue
 from app.desks.safe_mode import SafeMode
 from app.desks.scan_desk import ScanDesk
+from app.desks.section_desk import SectionDesk
 from app.desks.start_desk import StartDesk
 from app.layout import Layout
 from app.panels.inspector import Inspector
@@ -66,7 +69,8 @@ class MainWindow(QMainWindow):
         self.job_desk = JobDesk(self)
         self.landmark_desk, self.scan_desk = LandmarkDesk(self), ScanDesk(self)
         self.desk = Desk(self)
-        self.start_desk = StartDesk(self)
+        self.map_desk, self.section_desk = MapDesk(self), SectionDesk(self)
+        self.start_desk, self.plot_desk = StartDesk(self), PlotDesk(self)
         self.lines_desk, self.line_maker = LinesDesk(self), LineMaker(self)
         self.help = HelpDesk(self)
         self.preferences = PreferencesDesk(self)

@@ -19,6 +19,8 @@ def connect(window: MainWindow) -> None:
     _connect_view(window)
     _connect_actions(window)
     _connect_start(window)
+    _connect_plots(window)
+    _connect_maps(window)
 
 
 def _connect_work(window: MainWindow) -> None:
@@ -93,6 +95,14 @@ def _connect_start(window: MainWindow) -> None:
     start.page.left.connect(start.leave_page)
 
 
+def _connect_plots(window: MainWindow) -> None:
+    plots = window.plot_desk
+    window.session.frame_ready.connect(plots.mark_edit)
+    window.strip.export_asked.connect(plots.export)
+    window.strip.quantity_chosen.connect(plots.keep_quantity)
+    plots.slow.toggled.connect(plots.set_slow)
+
+
 def _connect_view(window: MainWindow) -> None:
     desk, scan_desk, view = window.desk, window.scan_desk, window.view
     view.viewport.band_clicked.connect(desk.select_line)
@@ -104,6 +114,20 @@ def _connect_view(window: MainWindow) -> None:
     view.tools.picture_asked.connect(desk.save_picture)
     view.compare.way_chosen.connect(view.compare_by)
     view.compare.toggled.connect(view.set_layer)
+
+
+def _connect_maps(window: MainWindow) -> None:
+    maps, section, view = window.map_desk, window.section_desk, window.view
+    tools = view.tools.actions_by_name
+    tools["map"].triggered.connect(maps.cycle)
+    tools["section"].triggered.connect(section.set_on)
+    maps.changed.connect(section.refresh)
+    window.landmarks.landmark_selected.connect(section.follow_landmark)
+    view.viewport.pin_pressed.connect(section.follow_landmark)
+    # What the view shows of a frame is there before it is painted and cut.
+    for shown in (window.session.frame_ready, view.compared, window.lines.visibility_changed):
+        shown.connect(lambda *_: maps.refresh())
+        shown.connect(lambda *_: section.refresh())
 
 
 def _connect_actions(window: MainWindow) -> None:

@@ -12,6 +12,9 @@ from core.mechanics import RANGES
 LONGEST_TITLE = 60
 """Letters of a line's title."""
 
+WIDTHS = (2.0, 100.0)
+"""The narrowest and the widest band [mm]."""
+
 
 @dataclass(frozen=True)
 class WornLine:
@@ -53,7 +56,8 @@ class LineTraits:
 
     ``title`` and ``colour`` ("#rrggbb") are empty where the usual ones stand. A ``locked`` line keeps its
     length and cannot be removed; a ``linked`` one shares its length with its partner of the other side.
-    ``stiffness`` [1] is its own in place of the design's, or None. Raises LineError for what cannot be.
+    ``stiffness`` [1] is its own in place of the design's, or None; ``width`` [mm] is that of its band as it
+    is drawn, or None for the usual one. Raises LineError for what cannot be.
     """
 
     name: str
@@ -62,6 +66,7 @@ class LineTraits:
     locked: bool = False
     linked: bool = True
     stiffness: float | None = None
+    width: float | None = None
 
     def __post_init__(self) -> None:
         if len(self.title) > LONGEST_TITLE or not all(letter.isprintable() for letter in self.title):
@@ -76,6 +81,11 @@ class LineTraits:
             raise LineError(
                 f"The stiffness {self.stiffness:g} of the line {self.name} is out of range.",
                 f"It goes from {low:g} to {high:g}.",
+            )
+        if self.width is not None and not WIDTHS[0] <= self.width <= WIDTHS[1]:
+            raise LineError(
+                f"The line {self.name} cannot be {self.width:g} mm wide.",
+                f"It goes from {WIDTHS[0]:g} to {WIDTHS[1]:g}.",
             )
 
 

@@ -64,14 +64,11 @@ def _placed(values: Mapping[str, Any]) -> PlacedMark:
 
 
 def _traits(values: Mapping[str, Any]) -> LineTraits:
-    locked, linked, stiffness = (
-        values.get("locked", False),
-        values.get("linked", True),
-        values.get("stiffness"),
-    )
+    locked, linked = values.get("locked", False), values.get("linked", True)
     if not isinstance(locked, bool) or not isinstance(linked, bool):
         raise TypeError("locked and linked are true or false")
     title, colour = str(values.get("title", "")), str(values.get("colour", ""))
-    return LineTraits(
-        str(values["name"]), title, colour, locked, linked, None if stiffness is None else float(stiffness)
+    stiffness, width = (
+        None if number is None else float(number) for number in (values.get("stiffness"), values.get("width"))
     )
+    return LineTraits(str(values["name"]), title, colour, locked, linked, stiffness, width)

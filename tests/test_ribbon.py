@@ -86,7 +86,7 @@ def test_a_taut_band_bridges_a_hollow_and_lies_on_the_rest() -> None:
 def test_bands_of_the_template_go_round_a_body(name: str, built: Callable[[str], Stages]) -> None:
     stages = built(name)
     surface = Surface(stages.body.mesh)
-    drawn = bands(stages.model.lines, stages.control.mesh.vertices, (), stages.backs)
+    drawn = bands(stages, ())
     assert {band.name for band in drawn} == {"full-bust", "mid-bust", "under-bust"}
     for band in drawn:
         ribbon = build_ribbon(band.path, surface, band.width, band.back)

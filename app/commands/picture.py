@@ -65,7 +65,7 @@ def _set_up(scene: Scene, solution: Solution) -> None:
     scene.show_body(stages.body.mesh)
     scene.set_occlusion(bake_occlusion(stages.body.mesh))
     scene.show_control_mesh(stages.control.mesh, stages.control.fixed)
-    scene.show_bands(bands(stages.model.lines, stages.control.mesh.vertices, (), stages.backs))
+    scene.show_bands(bands(stages, ()))
     scene.move_body(stages.moving.vertices, *stages.shape(solution.control_points))
 
 

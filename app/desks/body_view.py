@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
-from app.desks.present import band_label, bands
+from app.desks.present import band_label, bands, drawn
 from app.showing.viewport import Viewport
 from core.body import Body
 from core.control_mesh import ControlMesh
-from core.fitting.back_length import Back
-from core.lines import Line
 from core.live import Frame
 from core.mesh import Floats
+from core.pipeline import Stages
 
 SCENE_PARTS = {"control-mesh": "control", "bands": "bands", "ghost": "ghost"}
 """Layers of the tools by what the scene calls them."""
@@ -28,8 +25,7 @@ class BodyView:
         self.hidden_lines: frozenset[str] = frozenset()
         self.selected_line = "mid-bust"
         self._control: ControlMesh | None = None
-        self._lines: tuple[Line, ...] = ()
-        self._backs: Mapping[str, Back] = {}
+        self._laid: Stages | None = None  # whose lines lie on the body
 
     def show_frame(self, frame: Frame) -> None:
         """Bring the view up to date; of a body that is seen at rest only what is new is drawn again."""
@@ -41,10 +37,10 @@ class BodyView:
         if laid:
             self._control = stages.control
             scene.show_control_mesh(stages.control.mesh, stages.control.fixed)
-            self._lines = ()
-        redrawn = _paths(stages.model.lines) != _paths(self._lines)
+            self._laid = None
+        redrawn = self._laid is None or (stages is not self._laid and drawn(stages) != drawn(self._laid))
+        self._laid = stages
         if redrawn:
-            self._lines, self._backs = stages.model.lines, stages.backs
             self.show_bands()
         scene.move_body(stages.moving.vertices, frame.points, frame.normals)
         scene.move_control_mesh(frame.control_points)
@@ -89,15 +85,15 @@ class BodyView:
 
     def show_bands(self) -> None:
         """Lay the lines that are not hidden on the body."""
-        if self._control is not None:
-            rest = self._control.mesh.vertices
-            self.viewport.scene.show_bands(bands(self._lines, rest, self.hidden_lines, self._backs))
+        if self._laid is not None:
+            self.viewport.scene.show_bands(bands(self._laid, self.hidden_lines))
         self.select_line(self.selected_line)
 
     def select_line(self, name: str) -> None:
         """Put a casing round one line."""
         self.selected_line = name
-        shown = name in {line.name for line in self._lines} - self.hidden_lines
+        names = {line.name for line in self._laid.model.lines} if self._laid is not None else set()
+        shown = name in names - self.hidden_lines
         self.viewport.select_band(name if shown else None)
         self._show_label()
 
@@ -109,7 +105,3 @@ class BodyView:
             self.viewport.label_band(name, *band_label(frame.stages.design, frame, name))
         else:
             self.viewport.label_band(None)
-
-
-def _paths(lines: tuple[Line, ...]) -> list[tuple[str, list[int]]]:
-    return [(line.name, line.path.tolist()) for line in lines]

@@ -20,6 +20,7 @@ from app.desks.present import (
 from app.desks.present_run import exact_answer, tracks
 from app.desks.project_picture import project_picture
 from app.desks.recent import remember_file
+from app.desks.safe_dialogs import ask_overwrite
 from app.wording.samples import sample_design
 from app.wording.words import tr
 from core.design import Design
@@ -112,6 +113,10 @@ class Desk(QObject):
         said = tr("Something went wrong inside Busk."), tr("Your design is kept. The log tells more.")
         notices.show_notice("bad", *said, lasting=True)
 
+    def show_saving(self, at_work: bool) -> None:
+        """Say that the project is being saved, or no longer."""
+        self._window.status.set_saved(tr("Saving…") if at_work else "")
+
     def show_saved(self, path: str) -> None:
         """Say when the project was saved."""
         remember_file(path)
@@ -168,12 +173,18 @@ class Desk(QObject):
             self._session.open_design(sample_design(name))
 
     def save(self) -> bool:
-        """Save the project, asking for a place the first time; returns whether it is saved."""
+        """Save the project, asking for a place the first time; returns whether it is being saved."""
         path = self._session.path
-        return self.save_as() if path is None else self._session.save(str(path), self._preview())
+        if path is None:
+            return self.save_as()
+        if self._session.changed_elsewhere:
+            answer = ask_overwrite(self._window, self._session.name)
+            if answer != "overwrite":
+                return answer == "elsewhere" and self.save_as()
+        return self._session.save(str(path), self._preview())
 
     def save_as(self) -> bool:
-        """Ask for a place and save the project there."""
+        """Ask for a place and save the project there; returns whether it is being saved."""
         kinds = f"{tr('Projects')} (*.busk)"
         path = ask_save(self._window, tr("Save as"), f"{self._session.name}.busk", kinds, ".busk")
         return bool(path) and self._session.save(path, self._preview())
@@ -205,11 +216,11 @@ class Desk(QObject):
             )
 
     def may_leave(self) -> bool:
-        """Ask about unsaved changes; returns whether the document may be left."""
-        if self._session.undo_stack.isClean():
+        """Ask about unsaved changes; returns whether the document may be left. A save is waited for."""
+        if self._session.finish_saving():
             return True
         answer = ask_about_changes(self._window, self._session.name)
-        return self.save() if answer == "save" else answer == "discard"
+        return self.save() and self._session.finish_saving() if answer == "save" else answer == "discard"
 
     def close(self) -> None:
         """Stop the clock of the plot."""

@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.desks.present import OWN_COLOURS
+from app.desks.present_lines import OWN_COLOURS
 from app.dress.parts import Segment, sentence
 from app.dress.theme import font, tokens_of
 from app.wording.words import say, tr

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, QPoint
 
 from app.desks.line_dialog import ask_own_line
-from app.desks.present import LINE_COLOURS, line_title
+from app.desks.present_lines import LINE_COLOURS, line_title, pair_title
 from app.wording.words import tr
 from core.design_lines import OwnLine
 from core.own_lines import ready_made
@@ -44,13 +44,12 @@ class LineMaker(QObject):
             if line is not None:
                 self._take((line,))
 
-    def remove(self, name: str) -> None:
-        """Remove a line."""
-        self._window.desk.select_line("mid-bust")
-        self._window.session.remove_own_line(name, line_title(name))
-
     def _take(self, lines: tuple[OwnLine, ...]) -> None:
-        titles = tr(" and ").join(line_title(line.name) for line in lines)
-        self._window.session.add_own_lines(lines, tr("{line} added").format(line=titles))
+        session = self._window.session
+        if session.design is None:
+            return
+        first = lines[0].name
+        title = pair_title(first, session.design) if len(lines) > 1 else line_title(first, session.design)
+        session.add_own_lines(lines, tr("{line} added").format(line=title))
         self._window.desk.go_to("lines")
         self._window.desk.select_line(lines[0].name)

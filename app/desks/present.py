@@ -2,116 +2,69 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
-from app.panels.line_row import LineView
+from app.desks.present_lines import band_width, line_colours, line_title
 from app.panels.result import MeasureView
 from app.seeing.bands import Band
 from app.seeing.ribbon import NO_BACK
 from app.showing.verdict_chip import state_title
 from app.wording.words import number, say, tr
 from core.design import Design
-from core.fitting.back_length import Back
 from core.lines import Line
 from core.live import Frame
-from core.mesh import Points
+from core.pipeline import Stages
 from core.report import blamed_line, warnings
 
-LINE_COLOURS = {"full-bust": "#0A5F73", "mid-bust": "#E5536B", "under-bust": "#5A3F94"}
-"""Line colours by name, the same in both themes, told apart by the colour-blind; top line first."""
 
-BAND_WIDTHS = {"full-bust": 10.0, "mid-bust": 12.0, "under-bust": 22.0}
-"""Width of the bands as they are drawn [mm]; what they are made of comes with the garment."""
+@dataclass(frozen=True)
+class _Drawn:
+    """How a line is drawn; as long as all are the same, nothing has to be laid on the body anew."""
 
-OWN_COLOURS = ("#E2A32F", "#6FA3F5", "#7A1F2E", "#A9ABC9")
-"""Colours of own lines, one after the other; a pair of lines for both sides shares one."""
-
-OWN_WIDTH = 12.0
-"""Width of the band of an own line as it is drawn [mm]."""
+    name: str
+    path: tuple[int, ...]
+    colour: str
+    width: float
 
 
-def line_title(name: str) -> str:
-    """Return a line's name in the window's language."""
-    titles = {
-        "full-bust": tr("Full bust"),
-        "mid-bust": tr("Mid-bust"),
-        "under-bust": tr("Under-bust"),
-        "strap left": tr("Strap left"),
-        "strap right": tr("Strap right"),
-        "sling left": tr("Sling left"),
-        "sling right": tr("Sling right"),
-        "oblique left": tr("Oblique left"),
-        "oblique right": tr("Oblique right"),
-        "ring left": tr("Ring left"),
-        "ring right": tr("Ring right"),
-    }
-    return titles.get(name, name[:1].upper() + name[1:])
+def drawn(stages: Stages) -> tuple[_Drawn, ...]:
+    """Return how the lines of a body are drawn, in the order of the list."""
+    paths, design = {line.name: line.path for line in stages.model.lines}, stages.design
+    return tuple(
+        _Drawn(name, tuple(paths[name].tolist()), colour, band_width(name, design))
+        for name, colour in line_colours(paths, design).items()
+    )
 
 
-def line_colours(names: Iterable[str]) -> dict[str, str]:
-    """Return the colours of these lines in the order of the list: those of the template, top line first."""
-    given = list(names)
-    own = [name for name in given if name not in LINE_COLOURS]
-    kinds = list(dict.fromkeys(_kind(name) for name in own))
-    colours = {name: colour for name, colour in LINE_COLOURS.items() if name in given}
-    return colours | {name: OWN_COLOURS[kinds.index(_kind(name)) % len(OWN_COLOURS)] for name in own}
+def bands(stages: Stages, hidden: Collection[str]) -> list[Band]:
+    """Return what is drawn of the lines that are not ``hidden``.
 
-
-def _kind(name: str) -> str:
-    """Return the name of a line without its side."""
-    return name.removesuffix(" left").removesuffix(" right")
-
-
-def bands(
-    lines: Sequence[Line], rest: Points, hidden: Collection[str], backs: Mapping[str, Back]
-) -> list[Band]:
-    """Return what is drawn of the lines on the body; ``rest`` are all control points at rest, (n, 3) [mm].
-
-    ``backs`` complete lines to whole bands; the others end where they end.
+    Those with a back are drawn as whole bands; the others end where they end.
     """
-    paths = {line.name: line.path for line in lines}
+    rest, backs = stages.control.mesh.vertices, stages.backs
     return [
         Band(
-            name,
-            rest[paths[name]],
-            colour,
-            BAND_WIDTHS.get(name, OWN_WIDTH),
-            backs[name].path if name in backs else NO_BACK,
+            line.name,
+            rest[list(line.path)],
+            line.colour,
+            line.width,
+            backs[line.name].path if line.name in backs else NO_BACK,
         )
-        for name, colour in line_colours(paths).items()
-        if name not in hidden
-    ]
-
-
-def line_views(design: Design, frame: Frame, hidden: Collection[str]) -> list[LineView]:
-    """Return the rows of the list of lines, top line first, then own lines."""
-    lines = {line.name: line for line in frame.stages.model.lines}
-    return [
-        LineView(
-            name,
-            line_title(name),
-            colour,
-            design.ratio(name),
-            lines[name].rest_length,
-            frame.lengths[name],
-            lines[name].constrains,
-            name not in hidden,
-            lines[name].whole_length,
-            name not in LINE_COLOURS,
-        )
-        for name, colour in line_colours(lines).items()
+        for line in drawn(stages)
+        if line.name not in hidden
     ]
 
 
 def band_label(design: Design, frame: Frame, name: str) -> tuple[str, str]:
     """Return what stands beside a line on the body: its name and length, and how much shorter that is."""
     line = next(line for line in frame.stages.model.lines if line.name == name)
+    title = line_title(name, design)
     if not line.constrains:
-        return line_title(name), f"{number(line.rest_length)} mm"
+        return title, f"{number(line.rest_length)} mm"
     ratio = design.ratio(name)
     change = (ratio - 1.0) * line.rest_length
-    return f"{line_title(name)} {number(100.0 * ratio)} %", f"{number(change, 1, signed=True)} mm"
+    return f"{title} {number(100.0 * ratio)} %", f"{number(change, 1, signed=True)} mm"
 
 
 @dataclass(frozen=True)
@@ -191,7 +144,7 @@ def _hint(frame: Frame) -> str:
     if not what or line is None:
         return what
     wish = tr("Set {line} longer.") if line.ratio < 1.0 else tr("Set {line} shorter.")
-    return f"{what} {wish.format(line=line_title(line.name))}"
+    return f"{what} {wish.format(line=line_title(line.name, frame.stages.design))}"
 
 
 def measure_views(frame: Frame) -> list[MeasureView]:
@@ -208,15 +161,15 @@ def measure_views(frame: Frame) -> list[MeasureView]:
         (tr("Volume of control mesh"), "ml", volume, volume + frame.error_ml),
         (tr("Volume on the skin"), "ml", volume, volume + skin),
         *(
-            (_measured_part(line), "mm", line.rest_length, reached)
+            (_measured_part(line, frame.stages.design), "mm", line.rest_length, reached)
             for line, reached in zip(frame.stages.model.lines, frame.lengths.values(), strict=True)
         ),
     )
     return [MeasureView(*row) for row in rows]
 
 
-def _measured_part(line: Line) -> str:
-    title = line_title(line.name)
+def _measured_part(line: Line, design: Design) -> str:
+    title = line_title(line.name, design)
     return tr("{line}, front part").format(line=title) if line.back_length else title
 
 

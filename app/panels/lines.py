@@ -16,6 +16,17 @@ from app.wording.words import tr
 
 __all__ = ["LineView", "LinesPanel"]
 
+_KEYS = {
+    (Qt.Key.Key_H, False): "hide",
+    (Qt.Key.Key_L, True): "lock",
+    (Qt.Key.Key_L, False): "link",
+    (Qt.Key.Key_F2, False): "rename",
+    (Qt.Key.Key_Delete, False): "remove",
+    (Qt.Key.Key_Return, False): "type",
+    (Qt.Key.Key_Enter, False): "type",
+}
+"""What a key, without or with Shift, asks of the selected line."""
+
 
 class _Area(QScrollArea):
     """An area that leaves the keys to the list: arrows go from line to line."""
@@ -25,14 +36,20 @@ class _Area(QScrollArea):
 
 
 class LinesPanel(QWidget):
-    """All lines, one row each; lengths in the signals are shares of the rest length [1]."""
+    """All lines, one row each, a linked pair in one; lengths in the signals are shares of those at rest [1].
+
+    Signals name a line, a pair by its left one; ``decided`` carries one of its traits and the value.
+    """
 
     length_previewed = Signal(str, float)
     length_committed = Signal(str, float)
     drag_cancelled = Signal(str)
     selected = Signal(str)
     visibility_changed = Signal(str, bool)
+    decided = Signal(str, str, object)
     removed = Signal(str)
+    path_asked = Signal(str)
+    draw_asked = Signal()
     add_asked = Signal()
     reset_all = Signal()
 
@@ -40,6 +57,7 @@ class LinesPanel(QWidget):
         super().__init__()
         self.rows: dict[str, LineRow] = {}
         self._selected: str | None = None
+        self._of: dict[str, str] = {}
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
@@ -59,48 +77,71 @@ class LinesPanel(QWidget):
         """Show these lines; rows stay the same widgets while names and order stay, even during a drag."""
         if [view.name for view in lines] != list(self.rows):
             self._rebuild(lines)
+        self._of = {name: view.name for view in lines for name in view.names}
         for view in lines:
             self.rows[view.name].show_view(view)
         self._empty.setVisible(not lines)
-        self.add.setEnabled(bool(lines))
+        for tool in (self.add, self.draw):
+            tool.setEnabled(bool(lines))
         self._scroll.setVisible(bool(lines))
-        self._reset.setEnabled(any(view.constrained and view.ratio != 1.0 for view in lines))
+        self._reset.setEnabled(any(view.settable and view.ratio != 1.0 for view in lines))
 
     def select(self, name: str | None) -> None:
         """Open the row of a line and close the others; nothing is emitted."""
-        self._selected = name
+        self._selected = self._of.get(name or "", name)
         for each, row in self.rows.items():
-            row.set_open(each == name)
-        if name in self.rows:
-            self._scroll.ensureWidgetVisible(self.rows[name], 0, 8)
+            row.set_open(each == self._selected)
+        if self._selected in self.rows:
+            self._scroll.ensureWidgetVisible(self.rows[self._selected], 0, 8)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
+        key = Qt.Key(event.key())
+        shift = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
         steps = {Qt.Key.Key_Up: -1, Qt.Key.Key_Down: 1}
-        row = self.rows.get(self._selected or "")
-        if event.key() in steps and self.rows:
-            self._step(steps[Qt.Key(event.key())])
-        elif event.key() == Qt.Key.Key_H and row is not None:
-            self.visibility_changed.emit(row.view.name, not row.view.visible)
-        elif event.key() == Qt.Key.Key_Delete and row is not None and row.view.own:
-            self.removed.emit(row.view.name)
-        elif (
-            event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and row is not None and row.view.constrained
-        ):
-            row.percent.setFocus(Qt.FocusReason.ShortcutFocusReason)
+        if key in steps and self.rows:
+            self._step(steps[key])
+        elif (key, shift) in _KEYS:
+            self.do(_KEYS[key, shift])
         else:
             super().keyPressEvent(event)
+
+    def do(self, what: str) -> None:
+        """Do with the selected line what can be done: type, hide, lock, link, rename, remove."""
+        row = self.rows.get(self._selected or "")
+        if row is None:
+            return
+        view = row.view
+        if what == "hide":
+            self.visibility_changed.emit(view.name, not view.visible)
+        elif what == "lock":
+            self.decided.emit(view.name, "locked", not view.locked)
+        elif what == "link" and view.partner:
+            self.decided.emit(view.name, "linked", not view.sides)
+        elif what == "rename":
+            row.title.begin()
+        elif what == "remove" and view.own:
+            self.removed.emit(view.name)
+        elif what == "type" and view.settable:
+            row.percent.setFocus(Qt.FocusReason.ShortcutFocusReason)
 
     def _head(self) -> QHBoxLayout:
         head = QHBoxLayout()
         head.setContentsMargins(18, 12, 14, 8)
         head.addWidget(label(tr("Lines"), "heading"))
         head.addStretch(1)
-        self.add = ToolButton("plus", tr("Add a line of your own"))
-        self.add.clicked.connect(self.add_asked)
-        head.addWidget(self.add)
-        self._reset = ToolButton("arrow-counter-clockwise", tr("Set all lines back to their length at rest"))
-        self._reset.clicked.connect(self.reset_all)
-        head.addWidget(self._reset)
+        self._reset = ToolButton(
+            "arrow-counter-clockwise",
+            tr("Set all lines back to their length at rest, but for locked ones (Ctrl+R)"),
+        )
+        self.draw = ToolButton("draw-line", tr("Draw a line on the body (N)"))
+        self.add = ToolButton("plus", tr("Add lines: a preset, a pair, or through control points"))
+        for tool, signal in (
+            (self._reset, self.reset_all),
+            (self.draw, self.draw_asked),
+            (self.add, self.add_asked),
+        ):
+            tool.clicked.connect(signal)
+            head.addWidget(tool)
         return head
 
     def _scroll_area(self) -> QScrollArea:
@@ -134,6 +175,8 @@ class LinesPanel(QWidget):
         row.cancelled.connect(lambda: self.drag_cancelled.emit(name))
         row.pressed.connect(lambda: self._choose(name))
         row.removed.connect(lambda: self.removed.emit(name))
+        row.decided.connect(lambda trait, value: self.decided.emit(name, trait, value))
+        row.path_asked.connect(lambda: self.path_asked.emit(name))
         row.visibility_changed.connect(lambda visible: self.visibility_changed.emit(name, visible))
 
     def _choose(self, name: str) -> None:
@@ -146,5 +189,4 @@ class LinesPanel(QWidget):
         here = names.index(self._selected) if self._selected in names else -1 if step > 0 else len(names)
         name = names[min(max(here + step, 0), len(names) - 1)]
         self._choose(name)
-        row = self.rows[name]
-        (row.slider if row.view.constrained else row).setFocus(Qt.FocusReason.OtherFocusReason)
+        self.rows[name].take_focus(Qt.FocusReason.OtherFocusReason)

@@ -50,7 +50,7 @@ class NumberField(QLineEdit):
         self.textEdited.connect(lambda _: set_tag(self, "wrong", False))
 
     def sizeHint(self) -> QSize:
-        return QSize(self.fontMetrics().horizontalAdvance("100.0") + self._unit_width() + 18, 24)
+        return QSize(self.fontMetrics().horizontalAdvance("100.0") + self._unit_width() + 15, 24)
 
     def show_length(self, ratio: float, rest_mm: float, whole_mm: float) -> None:
         """Show a set length, as a share of ``rest_mm`` [1], unless something is being typed."""

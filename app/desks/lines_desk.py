@@ -1,0 +1,125 @@
+"""The desk of the lines: what is decided in the list goes to the session, what comes of it to the list."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial, reduce
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+
+from app.desks.present_lines import line_views, pair_title, row_title
+from app.panels.length_groove import Feasible
+from app.wording.words import number, tr
+from core.design import Design
+from core.design_lines import partner_of
+from core.live import Frame
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+
+
+class LinesDesk(QObject):
+    """Shows the list of lines, and carries out what is asked there; a linked pair is asked as one."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._session = window.session
+        self.feasible: Callable[[Frame], Mapping[str, Feasible]] = lambda _: {}
+        self._frame: Frame | None = None
+        self._add_actions()
+
+    def show_frame(self, frame: Frame) -> None:
+        """Show the lines of a frame."""
+        self._frame = frame
+        self.show_rows()
+
+    def show_rows(self) -> None:
+        """Show the rows anew: something was hidden, or ``feasible`` knows more of the lines' limits."""
+        frame = self._frame
+        if frame is not None:
+            hidden = self._window.view.hidden_lines
+            views = line_views(frame.stages.design, frame, hidden, self.feasible(frame))
+            self._window.lines.set_lines(views)
+
+    def commit_length(self, name: str, ratio: float) -> None:
+        """Set the length of a line and its linked partner."""
+        if self._session.design is not None:
+            self._session.commit_line(name, row_title(name, self._session.design), ratio)
+
+    def decide(self, name: str, trait: str, value: object) -> None:
+        """Set a trait of a line and its linked partner as one undo step."""
+        design = self._session.design
+        if design is None:
+            return
+        if trait == "linked":
+            names: tuple[str, ...] = (name, partner_of(name))
+            text = self._linked_text(design, name, bool(value))
+        else:
+            names, text = design.linked(name), _text(row_title(name, design), trait, value)
+
+        def decided(before: Design) -> Design:
+            after = reduce(lambda d, each: _with_trait(d, each, trait, value), names, before)
+            if trait == "linked" and value and before.ratio(names[0]) != before.ratio(names[1]):
+                after = after.with_line(names[1], before.ratio(name) if name in before.worn() else None)
+            return after
+
+        self._session.edit(decided, text)
+
+    def set_visible(self, name: str, visible: bool) -> None:
+        """Show or hide the bands of a line and its linked partner."""
+        if self._session.design is not None:
+            for each in self._session.design.linked(name):
+                self._window.view.set_line_visible(each, visible)
+            self.show_rows()
+
+    def remove(self, name: str) -> None:
+        """Remove a line and its linked partner."""
+        design = self._session.design
+        if design is None:
+            return
+        text = tr("{line} removed").format(line=row_title(name, design))
+        names = design.linked(name)
+        self._session.edit(lambda before: reduce(Design.without_own_line, names, before), text)
+        left = self._session.design
+        if left is not None and left is not design:
+            self._window.desk.select_line("mid-bust")
+
+    def _linked_text(self, design: Design, name: str, linked: bool) -> str:
+        words = tr("{line} linked") if linked else tr("{line} set apart")
+        return words.format(line=pair_title(name, design))
+
+    def _add_actions(self) -> None:
+        """Offer in the menu what the keys do in the list."""
+        do = self._window.actions_
+        do.rule("lines")
+        for text, key, act in (
+            (tr("Rename"), "F2", "rename"),
+            (tr("Show or hide"), "H", "hide"),
+            (tr("Lock or unlock"), "Shift+L", "lock"),
+            (tr("Link left and right, or set apart"), "L", "link"),
+        ):
+            do.add("lines", text, key, do=partial(self._row_asked, act), of_document=True)
+
+    def _row_asked(self, what: str) -> None:
+        self._window.desk.go_to("lines")
+        self._window.lines.do(what)
+
+
+def _with_trait(design: Design, name: str, trait: str, value: object) -> Design:
+    return design.with_traits(replace(design.traits_of(name), **{trait: value}))  # type: ignore[arg-type]
+
+
+def _text(title: str, trait: str, value: object) -> str:
+    """Return what an edit of a trait is called."""
+    if trait == "locked":
+        return (tr("{line} locked") if value else tr("{line} unlocked")).format(line=title)
+    if trait == "title":
+        return tr("{line} renamed").format(line=title)
+    if trait == "colour":
+        return tr("{line}: another colour").format(line=title)
+    if value is None:
+        return tr("{line}: stiffness as the model").format(line=title)
+    return tr("{line}: stiffness {value}").format(line=title, value=number(float(str(value)), 1))

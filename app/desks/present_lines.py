@@ -1,0 +1,139 @@
+"""What the window says about lines: titles, colours, widths and the rows of the list."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import replace
+
+from app.panels.length_groove import Feasible
+from app.panels.line_view import LineView, SideView
+from app.wording.tokens import LINE_COLORS
+from app.wording.words import tr
+from core.design import Design
+from core.design_lines import partner_of
+from core.lines import Line
+from core.live import Frame
+
+LINE_COLOURS = {"full-bust": "#0A5F73", "mid-bust": "#E5536B", "under-bust": "#5A3F94"}
+"""Colours of the template's lines in both themes, told apart by the colour-blind; top line first."""
+
+BAND_WIDTHS = {"full-bust": 10.0, "mid-bust": 12.0, "under-bust": 22.0}
+"""Usual width of the bands of the template's lines [mm]; what they are made of comes with the garment."""
+
+OWN_WIDTH = 12.0
+"""Usual width of the band of an own line [mm]."""
+
+OWN_COLOURS = ("#E2A32F", "#6FA3F5", "#7A1F2E", "#A9ABC9", "#8C8B2C", "#C2571A")
+"""Colours of own lines, one after the other; a pair of lines for both sides shares one."""
+
+PALETTE = LINE_COLORS
+"""The colours that a line can be given."""
+
+
+def line_title(name: str, design: Design | None = None) -> str:
+    """Return a line's name in the window's language, or the title that ``design`` gives it."""
+    own = design.traits_of(name).title if design else ""
+    if own:
+        side = _side(name)
+        return f"{own}, {side}" if side else own
+    titles = {
+        "full-bust": tr("Full bust"),
+        "mid-bust": tr("Mid-bust"),
+        "under-bust": tr("Under-bust"),
+        "strap left": tr("Strap left"),
+        "strap right": tr("Strap right"),
+        "sling left": tr("Sling left"),
+        "sling right": tr("Sling right"),
+        "oblique left": tr("Oblique left"),
+        "oblique right": tr("Oblique right"),
+        "ring left": tr("Ring left"),
+        "ring right": tr("Ring right"),
+    }
+    kind, side = kind_of(name), _side(name)
+    usual = f"{kind}, {side}" if side else name
+    return titles.get(name, usual[:1].upper() + usual[1:])
+
+
+def pair_title(name: str, design: Design) -> str:
+    """Return what a line and its linked partner are called together."""
+    kind = kind_of(name)
+    titles = {
+        "strap": tr("Straps"),
+        "sling": tr("Slings"),
+        "oblique": tr("Obliques"),
+        "ring": tr("Rings"),
+    }
+    return design.traits_of(name).title or titles.get(kind, kind[:1].upper() + kind[1:])
+
+
+def row_title(name: str, design: Design) -> str:
+    """Return what the row of a line is called: that of its pair if it is linked."""
+    return pair_title(name, design) if len(design.linked(name)) > 1 else line_title(name, design)
+
+
+def kind_of(name: str) -> str:
+    """Return the name of a line without its side."""
+    return name.removesuffix(" left").removesuffix(" right")
+
+
+def _side(name: str) -> str:
+    return {" left": tr("left"), "right": tr("right")}.get(name[-5:], "") if partner_of(name) else ""
+
+
+def line_colours(names: Iterable[str], design: Design | None = None) -> dict[str, str]:
+    """Return the colours of these lines in the order of the list: those of the template, top line first."""
+    given = list(names)
+    own = [name for name in given if name not in LINE_COLOURS]
+    kinds = list(dict.fromkeys(kind_of(name) for name in own))
+    colours = {name: colour for name, colour in LINE_COLOURS.items() if name in given}
+    colours |= {name: OWN_COLOURS[kinds.index(kind_of(name)) % len(OWN_COLOURS)] for name in own}
+    if design is None:
+        return colours
+    return {name: design.traits_of(name).colour or colour for name, colour in colours.items()}
+
+
+def band_width(name: str, design: Design | None = None) -> float:
+    """Return the width of a line's band as it is drawn [mm]."""
+    own = design.traits_of(name).width if design else None
+    return BAND_WIDTHS.get(name, OWN_WIDTH) if own is None else own
+
+
+def line_views(
+    design: Design, frame: Frame, hidden: Collection[str], feasible: Mapping[str, Feasible] | None = None
+) -> list[LineView]:
+    """Return the rows of the list, top line first, then own lines; a linked pair is one row."""
+    lines = {line.name: line for line in frame.stages.model.lines}
+    rows = []
+    for name, colour in line_colours(lines, design).items():
+        pair = tuple(each for each in sorted(design.linked(name)) if each in lines)
+        if name == pair[0]:
+            view = _view(design, frame, [lines[each] for each in pair], colour)
+            limits = (feasible or {}).get(name)
+            rows.append(replace(view, visible=not set(pair) <= set(hidden), feasible=limits))
+    return rows
+
+
+def _view(design: Design, frame: Frame, lines: list[Line], colour: str) -> LineView:
+    """Return the row of a line, or of a linked pair whose lengths are the mean of both."""
+    name, traits = lines[0].name, design.traits_of(lines[0].name)
+    own = {each.name for each in design.own_lines}
+    sides = [SideView(_side(line.name), line.rest_length, frame.lengths[line.name]) for line in lines]
+    return LineView(
+        name,
+        row_title(name, design),
+        colour,
+        design.ratio(name),
+        sum(side.rest_mm for side in sides) / len(sides),
+        sum(frame.lengths[line.name] for line in lines) / len(lines),
+        any(line.constrains for line in lines),
+        True,
+        sum(line.whole_length for line in lines) / len(lines),
+        name in own,
+        partner=partner_of(name) if partner_of(name) in own else "",
+        sides=tuple(sides) if len(sides) > 1 else (),
+        locked=traits.locked,
+        own_title=traits.title,
+        width_mm=band_width(name, design),
+        stiffness=traits.stiffness,
+        usual_stiffness=design.line_stiffness,
+    )

@@ -1,0 +1,188 @@
+"""What an opened row tells and offers besides: set, reached, gap, limits, stiffness and what can be done."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWidget
+
+from app.dress.parts import IconLabel, ToolButton, hairline, sentence
+from app.dress.theme import label, set_tag
+from app.panels.line_parts import PaletteMenu, StiffnessField
+from app.panels.line_view import LineView, SideView
+from app.wording.words import number, tr
+
+_OFF = 5e-6  # a set length nearer to the rest length than this means that the line is not worn
+_GAP_SEEN, _GAP_LARGE = 0.005, 0.02  # shares of the set length above which a gap is amber, red
+
+
+class LineDetails(QWidget):
+    """The lower part of an opened row; a linked pair has one line of figures for each side.
+
+    ``decided`` carries what was decided and its value: colour, linked, stiffness; ``asked`` one of: reset,
+    rename, path, remove.
+    """
+
+    decided = Signal(str, object)
+    asked = Signal(str)
+
+    def __init__(self) -> None:
+        super().__init__()
+        outside = QVBoxLayout(self)
+        outside.setContentsMargins(0, 0, 4, 4)
+        outside.setSpacing(0)
+        self._set = QWidget()
+        column = QVBoxLayout(self._set)
+        column.setContentsMargins(0, 6, 0, 0)
+        column.setSpacing(3)
+        self._grid = QGridLayout()
+        self._grid.setHorizontalSpacing(8)
+        self._grid.setVerticalSpacing(1)
+        for place, title in enumerate((tr("Set"), tr("Reached"), tr("Gap"))):
+            self._grid.addWidget(label(title, "caption"), 0, place + 1)
+            self._grid.setColumnStretch(place + 1, 1)
+        self._figures = [self._row(1), self._row(2)]
+        column.addLayout(self._grid)
+        column.addSpacing(5)
+        column.addWidget(hairline())
+        column.addSpacing(4)
+        column.addWidget(self._limit_row())
+        self._part, self._whole = sentence("", "caption"), sentence("", "caption")
+        column.addWidget(self._part)
+        column.addWidget(self._whole)
+        outside.addWidget(self._set)
+        outside.addLayout(self._foot())
+
+    def show_lengths(self, view: LineView, ratio: float) -> None:
+        """Show a set length, as a share of the rest length, and what ``view`` reached."""
+        worn = abs(ratio - 1.0) > _OFF
+        sides = view.sides or (SideView("", view.rest_mm, view.reached_mm),)
+        for row, figures in enumerate(self._figures):
+            for each in figures:
+                each.setVisible(row < len(sides) and (each is not figures[0] or len(sides) > 1))
+        unit = "mm" if len(sides) == 1 else ""  # two sides leave no room for it in each figure
+        for side, figures in zip(sides, self._figures, strict=False):
+            _show_side(side, ratio, worn, unit, figures)
+        front, own = (
+            tr("{percent} % of the front part, side to side"),
+            tr("{percent} % of its length at rest"),
+        )
+        part = (own if view.own else front).format(percent=number(ratio * 100))
+        self._part.setText(part if worn else tr("At 100 % the line is off: it measures and does not pull."))
+        self._show_whole(view, ratio)
+
+    def show_view(self, view: LineView) -> None:
+        """Show limits and stiffness, and what can be done; a line that is only measured has none."""
+        limits = view.feasible
+        for each in (self._set, self._pull, self._tools["reset"]):
+            each.setVisible(view.constrained)
+        self._limits.setVisible(limits is not None)
+        if limits is not None:
+            self._limit.setText(limits.sentence())
+            short = [ratio for ratio in (limits.amber, limits.impossible) if ratio is not None]
+            beyond = bool(short) and view.ratio < max(short)
+            self._sign.show_icon("warning" if beyond else "info", "warn" if beyond else "text_caption")
+        self._stiffness.show_stiffness(view.stiffness, view.usual_stiffness)
+        self._tools["link"].setVisible(bool(view.partner))
+        self._tools["link"].show_icon("unlink" if view.sides else "link")
+        tip = tr("Set left and right apart (L)") if view.sides else tr("Link with the other side (L)")
+        self._tools["link"].setToolTip(tip)
+        self._tools["link"].setAccessibleName(tip)
+        for name in ("path", "remove"):
+            self._tools[name].setVisible(view.own)
+        for name in ("path", "remove", "reset"):
+            self._tools[name].setEnabled(not view.locked)
+        self._tools["reset"].setEnabled(view.settable and abs(view.ratio - 1.0) > _OFF)
+        self._linked = bool(view.sides)
+
+    def _row(self, row: int) -> list[QLabel]:
+        figures = [label("", "caption"), *(label("", "heading", tabular=True) for _ in range(3))]
+        for column, each in enumerate(figures):
+            each.setTextFormat(Qt.TextFormat.RichText)
+            self._grid.addWidget(each, row, column)
+        return figures
+
+    def _limit_row(self) -> QWidget:
+        self._limits = QWidget()
+        row = QHBoxLayout(self._limits)
+        row.setContentsMargins(0, 0, 0, 2)
+        row.setSpacing(6)
+        self._sign = IconLabel("info", "text_caption", 15)
+        self._limit = sentence("", "secondary")
+        row.addWidget(self._sign, alignment=Qt.AlignmentFlag.AlignTop)
+        row.addWidget(self._limit, 1)
+        return self._limits
+
+    def _foot(self) -> QHBoxLayout:
+        foot = QHBoxLayout()
+        foot.setContentsMargins(0, 5, 0, 2)
+        foot.setSpacing(0)
+        self._stiffness = StiffnessField()
+        self._stiffness.entered.connect(lambda value: self.decided.emit("stiffness", value))
+        self._pull = QWidget()
+        left = QVBoxLayout(self._pull)
+        left.setContentsMargins(0, 0, 0, 0)
+        left.setSpacing(1)
+        left.addWidget(label(tr("Stiffness"), "caption"))
+        left.addWidget(self._stiffness)
+        foot.addWidget(self._pull)
+        foot.addStretch(1)
+        self._palette = PaletteMenu(self)
+        self._palette.chosen.connect(lambda colour: self.decided.emit("colour", colour))
+        self._linked = False
+        self._tools: dict[str, ToolButton] = {}
+        for name, drawing, tip in _tools():
+            tool = self._tools[name] = ToolButton(drawing, tip, size=16, room=26)
+            foot.addWidget(tool, alignment=Qt.AlignmentFlag.AlignBottom)
+            tool.clicked.connect(lambda _=False, name=name: self._press(name))
+        return foot
+
+    def _press(self, name: str) -> None:
+        if name == "colour":
+            tool = self._tools[name]
+            self._palette.popup(tool.mapToGlobal(tool.rect().bottomLeft()))
+        elif name == "link":
+            self.decided.emit("linked", not self._linked)
+        else:
+            self.asked.emit(name)
+
+    def _show_whole(self, view: LineView, ratio: float) -> None:
+        whole_mm = view.whole_mm - view.rest_mm + ratio * view.rest_mm
+        self._whole.setVisible(view.whole_mm > view.rest_mm)
+        whole = tr("Whole band: {set} of {rest} mm ({percent} %)")
+        percent = number(whole_mm / view.whole_mm * 100)
+        self._whole.setText(whole.format(set=number(whole_mm), rest=number(view.whole_mm), percent=percent))
+
+
+def _tools() -> Sequence[tuple[str, str, str]]:
+    return (
+        ("rename", "rename", tr("Give the line a name of your own (F2)")),
+        ("colour", "palette", tr("Choose the colour of this line")),
+        ("link", "link", tr("Link with the other side (L)")),
+        ("path", "edit-path", tr("Lead this line through other control points")),
+        ("reset", "arrow-counter-clockwise", tr("Set this line back to its length at rest (Backspace)")),
+        ("remove", "trash", tr("Remove this line (Del)")),
+    )
+
+
+def _show_side(side: SideView, ratio: float, worn: bool, unit: str, figures: list[QLabel]) -> None:
+    """Write what is set and reached of a line, and the gap between them."""
+    set_mm = ratio * side.rest_mm
+    reached, gap, tone = "–", "–", ""
+    if side.reached_mm is not None:
+        off = side.reached_mm - set_mm
+        share = abs(off) / set_mm
+        reached = _figure(number(side.reached_mm), unit)
+        gap = _figure(number(off, signed=True), f"mm&nbsp; {number(share * 100)} %")
+        if worn and share > _GAP_SEEN:
+            tone = "bad" if share > _GAP_LARGE else "warn"
+    said = (side.title, _figure(number(set_mm), unit), reached, gap)
+    for each, text in zip(figures, said, strict=True):
+        each.setText(text)
+    set_tag(figures[3], "tone", tone)
+
+
+def _figure(value: str, unit: str) -> str:
+    """Return a number with its unit behind it in small type, as rich text."""
+    return f'{value} <span style="font-size:11px; font-weight:400">{unit}</span>'

@@ -1,0 +1,237 @@
+"""Small parts of a line's row: the chip in its colour, its name, its stiffness, the palette."""
+
+# ruff: noqa: D102, N802 - Qt names its events and says what they are
+from __future__ import annotations
+
+from PySide6.QtCore import QRectF, QSize, Qt, Signal
+from PySide6.QtGui import (
+    QColor,
+    QFocusEvent,
+    QIcon,
+    QKeyEvent,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QPen,
+    QPixmap,
+    QResizeEvent,
+)
+from PySide6.QtWidgets import QLabel, QLineEdit, QMenu, QSizePolicy, QWidget
+
+from app.dress.theme import font, set_tag, tokens_of
+from app.wording.tokens import LINE_COLORS
+from app.wording.words import number, tr
+from core.design_lines import LONGEST_TITLE
+from core.mechanics import RANGES
+
+
+class LineChip(QWidget):
+    """The colour of a line and, by its height, the width of its band; an outline only while it is hidden."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._color, self._width, self._filled = "", 12.0, True
+        self.setFixedSize(QSize(14, 18))
+
+    def show_line(self, color: str, width_mm: float, filled: bool) -> None:
+        """Show a line's colour and the width of its band, filled or as an outline."""
+        self._color, self._width, self._filled = color, width_mm, filled
+        self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        rim = QColor("#FFFFFF")
+        rim.setAlpha(97 if tokens_of(self).dark else 0)
+        outline = QColor(self._color).lighter(150) if tokens_of(self).dark else QColor(self._color)
+        painter.setPen(QPen(rim, 1) if self._filled else QPen(outline, 1.5))
+        painter.setBrush(QColor(self._color) if self._filled else Qt.BrushStyle.NoBrush)
+        high = min(max(self._width / 2.0, 4.0), 16.0)
+        round_ = min(3.0, high / 2.0)
+        painter.drawRoundedRect(QRectF(0.75, (18.0 - high) / 2.0, 12.5, high), round_, round_)
+
+
+class LineTitle(QLabel):
+    """The name of a line, where there is no room for it its beginning; ``renamed`` when another was typed.
+
+    A double click, or ``begin``, opens it for typing.
+    """
+
+    renamed = Signal(str)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setFont(font("name"))
+        self.setProperty("role", "name")
+        self.setMinimumWidth(40)
+        self.setSizePolicy(QSizePolicy.Policy.Maximum, QSizePolicy.Policy.Preferred)
+        self._editor = _Editor(self)
+        self._editor.hide()
+        self._editor.editingFinished.connect(self._end)
+        self._editor.left.connect(self._leave)
+
+    def begin(self) -> None:
+        """Let another name be typed."""
+        self._editor.setText(self.text())
+        self._fit()
+        self._editor.show()
+        self._editor.selectAll()
+        self._editor.setFocus(Qt.FocusReason.OtherFocusReason)
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
+        self.begin()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        painter.setPen(self.palette().color(self.foregroundRole()))
+        shown = painter.fontMetrics().elidedText(self.text(), Qt.TextElideMode.ElideRight, self.width())
+        painter.drawText(self.rect(), Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, shown)
+
+    def _fit(self) -> None:
+        """Lay the editor over the row's head: a long name needs more room than it has while it stands."""
+        row = self.parentWidget()
+        if row is not None:
+            self._editor.setParent(row)
+            self._editor.setGeometry(self.x() - 7, self.y() + (self.height() - 26) // 2, 170, 26)
+
+    def _end(self) -> None:
+        if self._editor.isHidden():
+            return
+        self._leave()
+        title = self._editor.text().strip()
+        if title != self.text():
+            self.renamed.emit(title)
+
+    def _leave(self) -> None:
+        self._editor.hide()
+        row = self.parentWidget()
+        if row is not None:
+            row.setFocus(Qt.FocusReason.OtherFocusReason)
+
+
+class _Editor(QLineEdit):
+    """A line's name while it is typed; ``left`` at Esc."""
+
+    left = Signal()
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.setMaxLength(LONGEST_TITLE)
+        self.setAccessibleName(tr("Name of the line"))
+        self.setToolTip(
+            tr("Enter keeps the name, Esc the old one; nothing typed brings the usual name back.")
+        )
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.key() == Qt.Key.Key_Escape:
+            self.left.emit()
+            return
+        super().keyPressEvent(event)
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            event.accept()  # the list would open the length for typing
+
+
+class StiffnessField(QLineEdit):
+    """The stiffness of one line; nothing typed means: as the model. ``entered`` carries a number or None."""
+
+    entered = Signal(object)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._stiffness: float | None = None
+        self.setFont(font("body", tabular=True))
+        self.setFixedWidth(104)
+        low, high = RANGES["line_stiffness"]
+        tip = tr(
+            "Stiffness of this line, {low} to {high} times that of the skin at a point;"
+            " leave it empty to have it as the model."
+        )
+        self.setToolTip(tip.format(low=low, high=number(high, 0)))
+        self.setAccessibleName(tr("Stiffness"))
+        self.textEdited.connect(lambda _: set_tag(self, "wrong", False))
+
+    def show_stiffness(self, own: float | None, usual: float) -> None:
+        """Show a line's own stiffness [1], or faintly the usual one."""
+        self.setPlaceholderText(tr("model: {value}").format(value=_plain(usual)))
+        self._stiffness = own
+        if not (self.hasFocus() and self.isModified()):
+            self._show()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self._enter()
+        elif event.key() == Qt.Key.Key_Escape:
+            self._show()
+        else:
+            super().keyPressEvent(event)
+
+    def focusOutEvent(self, event: QFocusEvent) -> None:
+        super().focusOutEvent(event)
+        self._enter()
+        self._show()
+
+    def _show(self) -> None:
+        self.setText("" if self._stiffness is None else _plain(self._stiffness))
+        self.setModified(False)
+        set_tag(self, "wrong", False)
+
+    def _enter(self) -> None:
+        if not self.isModified():
+            return
+        text, (low, high) = self.text().strip().replace(",", "."), RANGES["line_stiffness"]
+        try:
+            stiffness = float(text) if text else None
+        except ValueError:
+            stiffness = -1.0
+        if stiffness is not None and not low <= stiffness <= high:
+            set_tag(self, "wrong", True)
+            self.selectAll()
+            return
+        self.setModified(False)
+        if stiffness != self._stiffness:
+            self._stiffness = stiffness
+            self.entered.emit(stiffness)
+
+
+def _plain(value: float) -> str:
+    return f"{value:g}"
+
+
+class PaletteMenu(QMenu):
+    """The colours that a line can have; ``chosen`` carries one, or an empty text for the usual one."""
+
+    chosen = Signal(str)
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        names = (
+            tr("Plum"),
+            tr("Rose"),
+            tr("Petrol"),
+            tr("Wine"),
+            tr("Amber"),
+            tr("Lavender"),
+            tr("Sky"),
+            tr("Olive"),
+            tr("Rust"),
+        )
+        for colour, name in zip(LINE_COLORS, names, strict=True):
+            self.addAction(_swatch(colour), name, lambda colour=colour: self.chosen.emit(colour))
+        self.addSeparator()
+        self.addAction(tr("The usual colour"), lambda: self.chosen.emit(""))
+
+
+def _swatch(colour: str) -> QIcon:
+    picture = QPixmap(32, 32)
+    picture.fill(Qt.GlobalColor.transparent)
+    painter = QPainter(picture)
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(QColor(colour))
+    painter.drawRoundedRect(QRectF(3, 6, 26, 20), 5, 5)
+    painter.end()
+    return QIcon(picture)

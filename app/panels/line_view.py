@@ -1,0 +1,57 @@
+"""What the list shows of a line: plain values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.panels.length_groove import Feasible
+
+
+@dataclass(frozen=True)
+class SideView:
+    """One line of a linked pair: its side in words, its length at rest and the one reached [mm]."""
+
+    title: str
+    rest_mm: float
+    reached_mm: float | None
+
+
+@dataclass(frozen=True)
+class LineView:
+    """What a row shows of a line; lengths [mm], ``ratio`` = set over rest length [1].
+
+    ``rest_mm`` is the rest length of the free front part, ``whole_mm`` that of the whole closed band.
+    ``reached_mm`` is None before a run. A line that is not ``constrained`` is only measured; an ``own`` one
+    can be removed and led elsewhere. ``partner`` names its line of the other side, if there is one; the row
+    of a linked pair has both ``sides``, and means of their lengths. ``own_title`` is empty for the usual one.
+    ``width_mm`` is that of its band; ``stiffness`` [1] its own, or None for the ``usual_stiffness``.
+    """
+
+    name: str
+    title: str
+    color: str
+    ratio: float
+    rest_mm: float
+    reached_mm: float | None
+    constrained: bool
+    visible: bool
+    whole_mm: float
+    own: bool = False
+    partner: str = ""
+    sides: tuple[SideView, ...] = ()
+    locked: bool = False
+    own_title: str = ""
+    width_mm: float = 12.0
+    stiffness: float | None = None
+    usual_stiffness: float = 16.0
+    feasible: Feasible | None = None
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The lines that this row stands for."""
+        return (self.name, self.partner) if self.sides else (self.name,)
+
+    @property
+    def settable(self) -> bool:
+        """Whether its length can be set."""
+        return self.constrained and not self.locked
