@@ -5,10 +5,13 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from core.mesh import Flags, Floats, Indices, Mesh, Points
+from core.mesh import MIRROR, Flags, Floats, Indices, Mesh, Points
 
 FAR = 25.0
 """A place whose mirror image finds no skin nearer than this has no counterpart [mm]."""
+
+ALIKE = 0.5
+"""Nor has skin whose mirror image looks another way than the skin near it [cosine]."""
 
 _ROUNDS = 4
 _SIDEWAYS = 0.3  # skin that looks less to the side tells little of where the middle is
@@ -41,7 +44,7 @@ class Sides:
 
     def __init__(self, rest: Mesh, moving: Indices, middle: float) -> None:
         self.middle = middle
-        self._partner, self._alone = self._counterparts(rest.vertices)
+        self._partner, self._alone = self._counterparts(rest)
         moves = np.zeros(len(rest.vertices), dtype=bool)
         moves[moving] = True
         self.rows = np.flatnonzero(moves | moves[self._partner])
@@ -55,9 +58,11 @@ class Sides:
         off = _stand_out(places, normals, rows, self._partner[rows], self.middle)
         return np.where(self._alone[rows], np.nan, off)
 
-    def _counterparts(self, places: Points) -> tuple[Indices, Flags]:
-        away, partner = cKDTree(places).query(_mirrored(places, self.middle))
-        return np.asarray(partner, dtype=np.int64), np.asarray(away > FAR)
+    def _counterparts(self, rest: Mesh) -> tuple[Indices, Flags]:
+        found = cKDTree(rest.vertices).query(_mirrored(rest.vertices, self.middle))
+        away, partner = map(np.asarray, found)
+        alike = np.einsum("ij,ij->i", rest.vertex_normals, rest.vertex_normals[partner] * MIRROR)
+        return partner.astype(np.int64), (away > FAR) | (alike < ALIKE)
 
 
 def _mirrored(places: Points, middle: float) -> Points:

@@ -84,6 +84,8 @@ class ViewTools(Toolbar):
         self._add_layer("control-mesh", "control-mesh", tr("Control mesh"), "K")
         self._add_layer("landmarks", "map-pin", tr("Landmarks"), "M")
         self._add_layer("bands", "bands", tr("Bands"), "B")
+        self._add("section", "section-plane", tr("Section plane"), "P", checkable=True)
+        self._add("map", "palette", tr("Map on the body"), "C", checkable=True)
         self._add("picture", "camera", tr("Save a picture"), "Ctrl+Shift+P")
         self.actions_by_name["picture"].triggered.connect(self.picture_asked)
 

@@ -11,7 +11,7 @@ import pyvista as pv
 from app.seeing.ribbon import ACROSS, NO_BACK, Ribbon, Surface, build_casing, build_ribbon
 from app.seeing.sight import Sight
 from app.seeing.stage import rgb
-from core.mesh import Floats, Points, area_vectors, incidence, unit
+from core.mesh import Floats, Indices, Points, area_vectors, incidence, unit
 
 _SHADE = np.array([0.62, 0.62, 0.86, 1.0, 1.0, 0.86, 0.62, 0.62])
 _SEAM = 0.72  # how dark the seam is where front part and back part meet
@@ -167,6 +167,10 @@ class Bands:
     def colour(self, name: str) -> str:
         """Return the colour of a line, ``"#rrggbb"``."""
         return self._bands[name].colour
+
+    def parts(self, name: str) -> Indices:
+        """Return the segment of the line's path at each row of its ribbon, -1 on the back, (rows,)."""
+        return self._ribbons[name].ribbon.part
 
     def spine(self, name: str) -> tuple[Points, Points]:
         """Return the middle of the top of a ribbon as shown and its normals, both (rows, 3)."""

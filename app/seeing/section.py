@@ -17,11 +17,11 @@ COLOURS = {False: "#2459CF", True: "#8DB0FF"}
 SHEET, OUTLINE = 0.055, 0.55
 """How much of the colour sheet and outline have [1]."""
 
-CURVE = 2.5
+CURVE = 2.2
 """Width of the curve [px]."""
 
 _BEYOND = 24.0  # how far the sheet reaches out of the body [mm]
-_NEARER = -4000.0  # the curve is drawn over the skin that it lies on; in units of the depth buffer
+_NEARER = -60.0  # about 2 mm: the curve is drawn over the skin that it lies on
 
 
 class SectionSheet:

@@ -140,3 +140,12 @@ LINE_COLORS = (
     "#C2571A",
 )
 """Colours of the constraining lines in both themes; the first seven stay apart for colour-blind eyes."""
+
+MAP_LESS = ("#1D4E8F", "#4C8CCB", "#A9C8E6")
+"""Colours of a map below zero, the least first; zero is the clay of the body."""
+
+MAP_MORE = ("#F2B685", "#D9772B", "#A34A0E")
+"""Colours of a map above zero, the largest last."""
+
+MAP_AMOUNT = ("#F2B685", "#D9772B", "#8A3408")
+"""Colours of a map of amounts, from a little to the most; nothing is the clay of the body."""

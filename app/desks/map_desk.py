@@ -1,0 +1,227 @@
+"""Maps of values on the body: which is shown, in what range, and what is pinned on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary, WeakSet
+
+import numpy as np
+from PySide6.QtCore import QObject, QTimer, Signal
+
+from app.desks.body_now import BodyNow
+from app.desks.body_view import BodyView
+from app.desks.present_maps import MAPS, automatic_range, map_kinds, ramp_of
+from app.panels.legend import Legend
+from app.seeing.bands import Bands
+from app.seeing.body import BodyActor
+from app.seeing.paint import Ramp
+from app.showing.flags import Flag, Flags
+from app.wording.words import number
+from core.live import Frame
+from core.mesh import Floats
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+
+
+@dataclass(frozen=True)
+class Pinned:
+    """What a flag stands on: a vertex of the body, or a row of a line's band."""
+
+    at: int
+    line: str = ""
+
+
+class MapDesk(QObject):
+    """Lays the map called ``name`` over the bodies that are seen; an empty name is none.
+
+    ``changed`` says that another map was chosen, or none.
+    """
+
+    changed = Signal()
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window, self._view = window, window.view
+        self._kinds = {kind.name: kind for kind in map_kinds()}
+        self.name = ""
+        self.now: BodyNow | None = None
+        self.pinned: tuple[Pinned, ...] = ()
+        self._by_hand: dict[str, tuple[float, float]] = {}
+        self._range, self._range_of = (0.0, 1.0), ""
+        self._values: Floats = np.empty(0)
+        self._pulls: dict[str, Floats] = {}
+        self._laid = False
+        self._painted: WeakKeyDictionary[BodyActor, tuple[str, Ramp, bool]] = WeakKeyDictionary()
+        self._tinted: WeakSet[Bands] = WeakSet()
+        self.legend = Legend(list(self._kinds.values()), self._view)
+        self.legend.hide()
+        self._view.place(self.legend, "top-right")
+        self.flags = Flags(self._view.viewport)
+        self._connect()
+
+    def _connect(self) -> None:
+        self.legend.chosen.connect(self.choose)
+        self.legend.range_set.connect(self.set_range)
+        self.legend.range_freed.connect(self.free_range)
+        self.legend.flags_cleared.connect(lambda: self._pin(()))
+        # The view must have heard of the new theme before the map is painted anew.
+        self.legend.theme_changed.connect(lambda: QTimer.singleShot(0, self, self.refresh))
+        self.flags.pinned.connect(self.pin)
+        self.flags.pulled.connect(self.unpin)
+
+    # -- what is asked
+
+    def cycle(self) -> None:
+        """Go on to the next map, and after the last one to none."""
+        names = ("", *MAPS)
+        self.choose(names[(names.index(self.name) + 1) % len(names)])
+
+    def choose(self, name: str) -> None:
+        """Show a map by name, or none."""
+        self.name, self.pinned = name, ()
+        if name == "pull":
+            self._view.set_layer("bands", True)
+        if name:
+            self.legend.show_map(name)
+        self.refresh()
+        self.changed.emit()
+
+    def set_range(self, low: float, high: float) -> None:
+        """Set the range of the shown map by hand."""
+        self._by_hand[self.name] = low, high
+        self.refresh()
+
+    def free_range(self) -> None:
+        """Let the range hold all values again."""
+        self._by_hand.pop(self.name, None)
+        self.refresh()
+
+    def pin(self, place: Floats, line: str) -> None:
+        """Pin the value at a place of the shown body, (3,) [mm], or of the line that lies there."""
+        body = self._view.viewport.scene.body
+        if self.now is None or body is None or (line and self.name != "pull"):
+            return
+        if self.name == "pull":
+            at = self._row_near(line, place)
+            new = () if at is None else (Pinned(at, line),)
+        else:
+            new = (Pinned(int(np.linalg.norm(body.shown_points - place, axis=1).argmin())),)
+        self._pin((*self.pinned, *new))
+
+    def unpin(self, number: int) -> None:
+        """Take a flag away."""
+        self._pin(self.pinned[:number] + self.pinned[number + 1 :])
+
+    def _pin(self, pinned: tuple[Pinned, ...]) -> None:
+        self.pinned = pinned
+        self.refresh()
+
+    def _row_near(self, line: str, place: Floats) -> int | None:
+        bands = self._view.viewport.scene.bands
+        if line not in bands.names:
+            return None
+        spine, _ = bands.spine(line)
+        row = int(np.linalg.norm(spine - place, axis=1).argmin())
+        return None if bands.parts(line)[row] < 0 else row
+
+    # -- what is shown
+
+    def refresh(self) -> None:
+        """Bring legend, colours and flags up to date with the frame of the session."""
+        frame = self._window.session.frame
+        shown = bool(self.name) and frame is not None
+        self._view.tools.set_shown("map", shown)
+        self.legend.setVisible(shown)
+        self.flags.listening = shown
+        if frame is not None and shown:
+            self._follow(frame)
+            self._read(frame)
+        elif not self._laid:
+            return
+        for body in self._view.comparison.live:
+            self._paint_skin(body)
+            self._paint_bands(body)
+            body.viewport.request_draw()
+        self._laid = shown
+        self._show_flags()
+
+    def _follow(self, frame: Frame) -> None:
+        if self.now is not None and self.now.is_of(frame):
+            self.now.follow(frame)
+        else:
+            self.now, self.pinned, self._painted = BodyNow(frame), (), WeakKeyDictionary()
+
+    def _read(self, frame: Frame) -> None:
+        """Read the values off the body and choose the range that they are shown in."""
+        assert self.now is not None
+        if self.name == "pull":
+            self._pulls, self._values = self.now.pulls(), np.empty(0)
+        else:
+            self._pulls, self._values = {}, self.now.values(self.name)
+        by_hand, (low, high) = self._by_hand.get(self.name), automatic_range(self.name, self._values)
+        if frame.at_work and self._range_of == self.name:  # while a body moves the colours only widen
+            low, high = min(low, self._range[0]), max(high, self._range[1])
+        self._range, self._range_of = by_hand or (low, high), "" if by_hand else self.name
+        ramp = ramp_of(self.name, *self._range, self._view.viewport.scene.dark)
+        self.legend.show_range(*self._range, ramp.stops, by_hand is not None)
+
+    def _paint_skin(self, view: BodyView) -> None:
+        """Lay the map over one body; only where it moves, if nothing else has changed."""
+        scene, now = view.viewport.scene, self.now
+        body = scene.body
+        if body is None or now is None:
+            return
+        if self.name in ("", "pull") or not (view.after or self.name == "sides"):
+            if self._painted.pop(body, None) is not None:
+                body.show_map(None)
+            return
+        ramp = ramp_of(self.name, *self._range, scene.dark)
+        rows, fresh = now.rows(self.name), self._painted.get(body) != (self.name, ramp, view.after)
+        if fresh:
+            values = now.at_rest(self.name)
+            if view.after:
+                values[rows] = self._values
+            body.show_map(ramp(values))
+            self._painted[body] = self.name, ramp, view.after
+        elif view.after:
+            body.recolour(rows, ramp(self._values))
+
+    def _paint_bands(self, view: BodyView) -> None:
+        """Colour the bands by how they pull, or give them their own colours back."""
+        bands = view.viewport.scene.bands
+        if self.name == "pull" and view.after:
+            ramp = ramp_of(self.name, *self._range, view.viewport.scene.dark)
+            bands.paint({name: ramp(pulls) for name, pulls in self._pulls.items()}, ramp.blank)
+            self._tinted.add(bands)
+        elif bands in self._tinted:
+            bands.paint(None)
+            self._tinted.discard(bands)
+
+    def _show_flags(self) -> None:
+        """Show the values that are pinned, where there are any."""
+        if not self.name:
+            self.flags.show_flags(())
+            return
+        kind, said = self._kinds[self.name], [self._value_at(pinned) for pinned in self.pinned]
+        said = [(place, value) for place, value in said if not np.isnan(value)]
+        self.flags.show_flags(
+            Flag(place, f"{number(value, kind.digits, kind.both_ways)} {kind.unit}") for place, value in said
+        )
+        self.legend.show_value(said[-1][1] if said else None)
+
+    def _value_at(self, pinned: Pinned) -> tuple[Floats, float]:
+        """Return where a flag stands now, (3,) [mm], and the value there; NaN where there is none."""
+        scene, now = self._view.viewport.scene, self.now
+        assert now is not None
+        assert scene.body is not None
+        if pinned.line:
+            if pinned.line not in self._pulls or pinned.line not in scene.bands.names:
+                return np.zeros(3), np.nan
+            part = scene.bands.parts(pinned.line)[pinned.at]
+            return scene.bands.spine(pinned.line)[0][pinned.at], float(self._pulls[pinned.line][part])
+        values = now.at_rest(self.name)
+        if self._view.after:
+            values[now.rows(self.name)] = self._values
+        return scene.body.shown_points[pinned.at], float(values[pinned.at])

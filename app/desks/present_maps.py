@@ -1,0 +1,111 @@
+"""What the window says of maps and sections: kinds, colours, ranges and figures, as plain values."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from app.panels.legend import MapKind
+from app.seeing.paint import Ramp
+from app.seeing.stage import LOOKS
+from app.wording.tokens import MAP_AMOUNT, MAP_LESS, MAP_MORE
+from app.wording.words import number, tr
+from core.mesh import Floats
+
+MAPS = ("displacement", "strain", "sides", "pull")
+"""Maps in the order in which a key goes through them."""
+
+_ROUND = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
+
+
+def map_kinds() -> list[MapKind]:
+    """Return the maps that can be chosen, in words."""
+    return [
+        MapKind(
+            "displacement",
+            tr("Displacement"),
+            "mm",
+            tr("How far the skin moved along its normal at rest: outward (+) or inward (−)."),
+            tr("+ outward  − inward"),
+            both_ways=True,
+        ),
+        MapKind(
+            "strain",
+            tr("Strain"),
+            "%",
+            tr(
+                "Largest strain of the control mesh, stretched or pressed together: the principal strain of "
+                "its triangles, averaged at each control point and carried to the skin between them."
+            ),
+            tr("of the control mesh"),
+        ),
+        MapKind(
+            "sides",
+            tr("Left and right"),
+            "mm",
+            tr(
+                "How far each side stands out beyond the other one, mirrored. The mirror stands where the "
+                "trunk without the breasts matches best."
+            ),
+            tr("+ stands out more than the other side"),
+            both_ways=True,
+        ),
+        MapKind(
+            "pull",
+            tr("Pull of lines"),
+            "%",
+            tr(
+                "How strongly each part of the worn lines pulls, in % of the strongest part. The model knows "
+                "no newtons: it does not know what the tape is made of."
+            ),
+            tr("of the strongest part"),
+            digits=0,
+        ),
+    ]
+
+
+def ramp_of(name: str, low: float, high: float, dark: bool) -> Ramp:
+    """Return the colours of a map between two values; zero is the clay of the theme."""
+    clay = LOOKS[dark].clay
+    if name in ("displacement", "sides"):
+        return Ramp((*MAP_LESS, clay, *MAP_MORE), low, high, clay)
+    return Ramp((clay, *MAP_AMOUNT), low, high, clay)
+
+
+def automatic_range(name: str, values: Floats) -> tuple[float, float]:
+    """Return the range that holds all values, up to a round number; at least one worth a look."""
+    if name == "pull":
+        return 0.0, 100.0
+    seen = np.abs(values[np.isfinite(values)])
+    high = rounded_up(max(float(seen.max(initial=0.0)), 5.0 if name == "sides" else 1.0))
+    return (-high, high) if name in ("displacement", "sides") else (0.0, high)
+
+
+def rounded_up(value: float) -> float:
+    """Return the next round number that is not below ``value`` > 0."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return next(unit * power for unit in _ROUND if unit * power >= value * (1.0 - 1e-9))
+
+
+def apex_words(axis: str, pairs: Sequence[tuple[Floats, Floats]], sides: bool) -> str:
+    """Return how far the apexes of a section are apart, in words; each pair is (former, present) [mm]."""
+    steps = [present - former for former, present in pairs]
+    if axis == "x" and len(steps) == 1:
+        text = (
+            tr("Apexes differ: {up} mm up, {out} mm forward")
+            if sides
+            else tr("Apex: {up} mm up, {out} mm forward")
+        )
+        return text.format(up=_signed(steps[0][1]), out=_signed(steps[0][0]))
+    if axis == "z" and len(steps) == 2 and not sides:
+        text = tr("Forward: left {left} mm, right {right} mm")
+        return text.format(left=_signed(-steps[0][1]), right=_signed(-steps[1][1]))
+    if axis == "z" and len(steps) == 2:
+        return tr("Left {out} mm further forward than right").format(out=_signed(-steps[0][1]))
+    return ""
+
+
+def _signed(value: float) -> str:
+    return number(float(value), 1, signed=True)

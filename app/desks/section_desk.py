@@ -1,0 +1,195 @@
+"""The section plane: where it stands, its curves before and after, and how far they are apart."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtCore import QObject
+
+from app.desks.body_now import BodyNow
+from app.desks.dialogs import ask_save
+from app.desks.present_maps import apex_words
+from app.panels.profile import ProfilePanel
+from app.showing.profile_plot import Drawn
+from app.wording.words import number, tr
+from core.errors import UserError
+from core.export import write_profile
+from core.live import Frame
+from core.mesh import Floats
+from core.profile import Curve, Plane, Slicer, apexes, mirrored, nearest, stand_out
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+
+_AROUND = 12.0  # what is seen beside the part that can move [mm]
+_NEAR = 25.0  # how near to a curve the pointer reads it [px]
+
+
+class SectionDesk(QObject):
+    """Shows one plane at a time; it goes through a bust point until it is moved by hand.
+
+    ``curves`` are what is shown of the plane: before, after, and of the other side if that is asked for.
+    """
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window, self._view = window, window.view
+        self.is_on = False
+        self.axis = "x"
+        self.curves: dict[str, tuple[Curve, ...]] = {}
+        self._through = "left"
+        self._by_hand: dict[str, float] = {}
+        self._now: BodyNow | None = None
+        self._slicer: Slicer | None = None
+        self._opposite: Slicer | None = None
+        self._again = True
+        self._place: Floats | None = None
+        self.panel = ProfilePanel(self._view)
+        self.panel.hide()
+        self._view.place(self.panel, "bottom-left")
+        self._connect()
+
+    def _connect(self) -> None:
+        panel = self.panel
+        panel.axis_chosen.connect(self.choose_axis)
+        panel.moved.connect(self.move_to)
+        panel.through_asked.connect(self.go_through)
+        panel.export_asked.connect(self.export)
+        panel.closed.connect(lambda: self.set_on(False))
+        panel.plot.pointed.connect(self._point)
+
+    # -- what is asked
+
+    def set_on(self, on: bool) -> None:
+        """Show or hide the plane and its panel."""
+        self.is_on = self._again = on
+        self.refresh()
+
+    def choose_axis(self, axis: str) -> None:
+        """Let the plane stand across x, y or z."""
+        self.axis, self._again = axis, True
+        self.refresh()
+
+    def move_to(self, at: float) -> None:
+        """Move the plane along its axis by hand [mm]."""
+        self._by_hand[self.axis] = at
+        self.refresh()
+
+    def go_through(self, side: str) -> None:
+        """Let the plane go through the left or the right bust point again."""
+        self._through, self._again = side, True
+        self._by_hand.clear()
+        self.refresh()
+
+    def follow_landmark(self, name: str) -> None:
+        """Go with the selected landmark if it is a bust point."""
+        if name.startswith("bust_point_") and self.is_on:
+            self.go_through(name.removeprefix("bust_point_"))
+
+    def export(self) -> None:
+        """Ask for a place and write the curves there."""
+        name = f"{self._window.session.name}-{self.axis}.csv"
+        path = ask_save(self._window, tr("Export the curves as CSV…"), name, "CSV (*.csv)", ".csv")
+        if not path or self._slicer is None:
+            return
+        try:
+            write_profile(path, self._slicer.plane, self.curves)
+        except UserError as problem:
+            self._window.desk.show_failure(problem)
+        else:
+            said = tr("Curves written to {name}.").format(name=Path(path).name)
+            self._window.notices.show_notice("ok", said)
+
+    # -- what is shown
+
+    def refresh(self) -> None:
+        """Cut the body of the session's frame, and show the curves."""
+        frame = self._window.session.frame
+        shown = self.is_on and frame is not None
+        self._view.tools.set_shown("section", shown)
+        self.panel.setVisible(shown)
+        if frame is not None and shown:
+            self._cut(frame)
+            self._draw()
+        for body in self._view.comparison.live:
+            if not shown and body.viewport.scene.body is not None:
+                body.viewport.scene.section.set_visible(False)
+            body.viewport.request_draw()
+
+    def _cut(self, frame: Frame) -> None:
+        if self._now is None or not self._now.is_of(frame):
+            self._now, self._slicer, self._again = BodyNow(frame), None, True
+        else:
+            self._now.follow(frame)
+        now, plane = self._now, self._plane(frame)
+        if self._slicer is None or self._slicer.plane != plane:
+            self._slicer, self._opposite = Slicer(now.rest, plane), None
+            self._before = self._slicer.curves(now.rest.vertices)
+        self.curves = {"before": self._before, "after": self._slicer.curves(now.places)}
+        if self._window.map_desk.name == "sides":
+            self.curves["other"] = self._other_side(now, plane)
+
+    def _other_side(self, now: BodyNow, plane: Plane) -> tuple[Curve, ...]:
+        """Return the curves of the shown body mirrored."""
+        if plane.axis != "x":
+            return mirrored(plane, self.curves["after"], now.sides.middle)
+        if self._opposite is None:
+            self._opposite = Slicer(now.rest, Plane("x", 2.0 * now.sides.middle - plane.at))
+        return self._opposite.curves(now.places)
+
+    def _plane(self, frame: Frame) -> Plane:
+        bust = frame.stages.landmarks.position(f"bust_point_{self._through}")
+        at = self._by_hand.get(self.axis)
+        return Plane(self.axis, float(bust["xyz".index(self.axis)]) if at is None else at)
+
+    def _draw(self) -> None:
+        assert self._now is not None
+        assert self._slicer is not None
+        plane, rest = self._slicer.plane, self._now.rest.vertices
+        low, high = rest.min(axis=0), rest.max(axis=0)
+        for body in self._view.comparison.live:
+            curves = self.curves["after" if body.after else "before"]
+            body.viewport.scene.section.show(plane, low, high, curves)
+        self.panel.show_plane(plane.axis, plane.at, low[plane.number], high[plane.number])
+        sides = "other" in self.curves
+        roles = ("after", "other") if sides else ("before", "after")
+        pairs = self._apexes(*reversed(roles) if sides else roles)
+        drawn = Drawn(
+            {role: [curve.places for curve in self.curves[role]] for role in roles}, pairs, self._home()
+        )
+        self.panel.show_curves(drawn, apex_words(plane.axis, pairs, sides), again=self._again)
+        self._again = False
+        self._point(self._place)
+
+    def _home(self) -> Floats:
+        """Return the box of what can move, in the plane, (2, 2) [mm]."""
+        assert self._now is not None
+        assert self._slicer is not None
+        control = self._now.stages.control
+        free = self._slicer.plane.flat(control.mesh.vertices[~control.fixed])
+        return np.stack([free.min(axis=0) - _AROUND, free.max(axis=0) + _AROUND])
+
+    def _apexes(self, former: str, present: str) -> list[tuple[Floats, Floats]]:
+        """Return the apexes of two kinds of curves, pair by pair, each (2,) [mm]."""
+        assert self._now is not None
+        assert self._slicer is not None
+        control = self._now.stages.control
+        free = control.mesh.vertices[~control.fixed]
+        box = free.min(axis=0), free.max(axis=0), self._now.stages.moving.middle
+        plane = self._slicer.plane
+        found = [apexes(plane, self.curves[role], *box) for role in (former, present)]
+        return list(zip(*found, strict=True)) if len(found[0]) == len(found[1]) else []
+
+    def _point(self, place: Floats | None) -> None:
+        """Read how far the curves are apart at a place of the plot, (2,) [mm]."""
+        self._place, plot = place, self.panel.plot
+        plot.show_gap(None)
+        foot = None if place is None else nearest(self.curves.get("after", ()), place)
+        if place is None or foot is None:
+            return
+        away = np.linalg.norm(plot.to_pixels(foot.place) - plot.to_pixels(place))
+        gap = stand_out(foot, self.curves["other" if "other" in self.curves else "before"])
+        if away < _NEAR and gap is not None:
+            plot.show_gap(gap[0], foot.place, f"{number(gap[1], 1, signed=True)} mm")

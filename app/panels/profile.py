@@ -1,0 +1,177 @@
+"""The section plane's panel: curves before and after, where the plane is, and how far apexes moved."""
+
+# ruff: noqa: D102, N802 - Qt names its events and says what they are
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
+from PySide6.QtWidgets import QHBoxLayout, QSlider, QStyle, QStyleOptionSlider, QVBoxLayout, QWidget
+
+from app.dress.parts import FloatingPanel, ToolButton
+from app.dress.theme import font, label, tokens_of
+from app.panels.figure_field import FigureField
+from app.showing.live_plot import PullTitle, Quantity
+from app.showing.profile_plot import Drawn, ProfilePlot
+from app.wording.words import tr
+
+STEPS = 2
+"""Steps of the slider in a millimetre."""
+
+
+class ProfilePanel(FloatingPanel):
+    """Title, place of the plane, plot, slider and what the curves are.
+
+    ``axis_chosen`` carries x, y or z; ``moved`` a place on it [mm]; ``through_asked`` left or right: the bust
+    point that the plane is to go through.
+    """
+
+    axis_chosen = Signal(str)
+    moved = Signal(float)
+    through_asked = Signal(str)
+    export_asked = Signal()
+    closed = Signal()
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._axes = {
+            "x": Quantity("x", tr("Side profile"), "", 0.0),
+            "z": Quantity("z", tr("Level section"), "", 0.0),
+            "y": Quantity("y", tr("Section from the front"), "", 0.0),
+        }
+        column = QVBoxLayout()
+        column.setContentsMargins(6, 2, 2, 4)
+        column.setSpacing(4)
+        column.addLayout(self._head())
+        self.plot = ProfilePlot()
+        self.plot.setFixedSize(self.plot.sizeHint())
+        self.plot.setAccessibleName(tr("Curves of the section in millimetres"))
+        self.plot.setToolTip(tr("Wheel: zoom. Drag: move. Double click: all that changed."))
+        column.addWidget(self.plot)
+        self.slider = PlaneSlider()
+        self.slider.setAccessibleName(tr("Place of the section plane"))
+        self.slider.setToolTip(tr("Move the section plane [mm]; ← → 0.5 mm"))
+        self.slider.setPageStep(10 * STEPS)
+        self.slider.valueChanged.connect(lambda value: self.moved.emit(value / STEPS))
+        column.addWidget(self.slider)
+        self.keys = CurveKeys()
+        column.addWidget(self.keys)
+        self.readout = label("", "secondary", tabular=True)
+        self.readout.setWordWrap(True)
+        self.readout.setFixedWidth(self.plot.width())
+        column.addWidget(self.readout)
+        self.row.addLayout(column)
+
+    def _head(self) -> QHBoxLayout:
+        head = QHBoxLayout()
+        head.setSpacing(2)
+        self.title = PullTitle(list(self._axes.values()))
+        self.title.setToolTip(tr("Choose the plane, or write its curves to a file"))
+        self.title.chosen.connect(self.axis_chosen)
+        menu = self.title.menu
+        menu.addSeparator()
+        for side, words in (
+            ("left", tr("Through the left bust point")),
+            ("right", tr("Through the right bust point")),
+        ):
+            menu.addAction(words).triggered.connect(lambda _=False, side=side: self.through_asked.emit(side))
+        menu.addSeparator()
+        self.export = menu.addAction(tr("Export the curves as CSV…"))
+        self.export.triggered.connect(self.export_asked)
+        self._axis = label("", "caption")
+        self.place = FigureField("mm", tr("Place of the section plane"), widest="−888.8")
+        self.place.entered.connect(self.moved)
+        close = ToolButton("x", tr("Close the section  P"), size=14, room=24)
+        close.clicked.connect(self.closed)
+        head.addWidget(self.title)
+        head.addStretch(1)
+        head.addWidget(self._axis)
+        head.addWidget(self.place)
+        head.addWidget(close)
+        return head
+
+    def show_plane(self, axis: str, at: float, low: float, high: float) -> None:
+        """Show which plane it is, where [mm], and how far it can go; nothing is emitted."""
+        self.title.show_quantity(self._axes[axis])
+        self._axis.setText(f"{axis} =")
+        self.place.show_value(at)
+        self.slider.blockSignals(True)
+        self.slider.setRange(round(low * STEPS), round(high * STEPS))
+        self.slider.setValue(round(at * STEPS))
+        self.slider.blockSignals(False)
+
+    def show_curves(self, drawn: Drawn, readout: str, *, again: bool) -> None:
+        """Draw the curves; ``again`` shows all that changed."""
+        self.plot.show_curves(drawn, again=again)
+        self.keys.show_roles([role for role in CurveKeys.ROLES if drawn.curves.get(role)])
+        self.readout.setText(readout)
+
+
+class PlaneSlider(QSlider):
+    """A quiet slider: a groove and a round handle."""
+
+    def __init__(self) -> None:
+        super().__init__(Qt.Orientation.Horizontal)
+        self.setFixedHeight(22)
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        tokens, painter = tokens_of(self), QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        option = QStyleOptionSlider()
+        self.initStyleOption(option)
+        style = self.style()
+        handle = style.subControlRect(
+            QStyle.ComplexControl.CC_Slider, option, QStyle.SubControl.SC_SliderHandle, self
+        )
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(tokens.groove))
+        painter.drawRoundedRect(QRectF(4, self.height() / 2 - 2, self.width() - 8, 4), 2, 2)
+        if self.hasFocus():
+            halo = QColor(tokens.accent)
+            halo.setAlpha(60)
+            painter.setBrush(halo)
+            painter.drawEllipse(QRectF(handle).center(), 10, 10)
+        painter.setPen(QPen(QColor(tokens.accent), 1.6))
+        painter.setBrush(QColor(tokens.raised))
+        painter.drawEllipse(QRectF(handle).center(), 6.5, 6.5)
+
+
+class CurveKeys(QWidget):
+    """What each kind of curve is."""
+
+    ROLES = ("before", "after", "other")
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._roles: Sequence[str] = ()
+        self._words = {
+            "before": tr("Before"),
+            "after": tr("After"),
+            "other": tr("other side, mirrored"),
+        }
+        self.setFixedHeight(self.sizeHint().height())
+
+    def sizeHint(self) -> QSize:
+        return QSize(200, 18)
+
+    def show_roles(self, roles: Sequence[str]) -> None:
+        """Explain these."""
+        self._roles = roles
+        self.setAccessibleName(", ".join(self._words[role] for role in roles))
+        self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        painter, tokens = QPainter(self), tokens_of(self)
+        painter.setFont(font("caption"))
+        inks = {"before": tokens.ghost_curve, "after": tokens.accent, "other": tokens.warn_mark}
+        x, y = 2.0, self.height() / 2.0
+        for role in self._roles:
+            pen = QPen(QColor(inks[role]), 2.0)
+            if role == "before":
+                pen.setDashPattern([3.0, 2.0])
+            painter.setPen(pen)
+            painter.drawLine(QPointF(x, y), QPointF(x + 18.0, y))
+            painter.setPen(QColor(tokens.text_quiet))
+            painter.drawText(QPointF(x + 23.0, y + 4.0), self._words[role])
+            x += 23.0 + painter.fontMetrics().horizontalAdvance(self._words[role]) + 14.0
