@@ -1,0 +1,182 @@
+"""What belongs to any desktop program, through the real main(): keys, layout, wishes, faults, safe mode."""
+
+from __future__ import annotations
+
+import threading
+from collections import Counter
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import QByteArray, QPoint, QSettings, Qt, QTimer
+from PySide6.QtGui import QGuiApplication
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+from window_tools import Script, drag, run_main, settled
+
+from app.dress.sheet import Sheet
+from app.main_window import MainWindow
+from app.panels.about import AboutSheet, DiagnosticsSheet
+from app.panels.commands import CommandSheet
+from app.panels.fault import FaultSheet
+from app.panels.preferences import PreferencesSheet
+from app.showing.canvas import PaintedCanvas
+from app.wording.tokens import DARK
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+def sheet_of(window: MainWindow, kind: type[Sheet]) -> Sheet:
+    return next(each for each in window.findChildren(kind) if each.isVisible())
+
+
+def test_help_finds_keys_commands_versions_and_licences() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        no_key_means_two_things(window)
+        window.activateWindow()
+        yield window.isActiveWindow
+        QTest.keyClick(window, Qt.Key.Key_K, Qt.KeyboardModifier.ControlModifier)
+        found = sheet_of(window, CommandSheet)
+        assert isinstance(found, CommandSheet)
+        found.search.setText("no such thing")
+        assert found.list.chosen() is None
+        found.search.setText("環境設定")  # Japanese in the English window
+        QTest.keyClick(found.search, Qt.Key.Key_Return)
+        preferences = sheet_of(window, PreferencesSheet)
+        assert isinstance(preferences, PreferencesSheet)
+        preferences.fields["theme"].chosen.emit("dark")
+        assert window.palette().window().color().name().upper() == DARK.panel
+        preferences.fields["autosave"].chosen.emit(2.0)
+        assert (QSettings().value("theme"), QSettings().value("autosave")) == ("dark", "5")
+        preferences.accept()
+        window.help.show_keys()
+        keys = sheet_of(window, CommandSheet)
+        assert isinstance(keys, CommandSheet)
+        said = {
+            keys.list.topLevelItem(row).text(2): keys.list.topLevelItem(row).text(0)
+            for row in range(keys.list.topLevelItemCount())
+        }
+        assert said["Ctrl+O"] == "Open"
+        assert said["Shift+Left drag"] == "Move the body"
+        keys.accept()
+        window.help.show_machine()
+        machine = sheet_of(window, DiagnosticsSheet)
+        assert isinstance(machine, DiagnosticsSheet)
+        machine.copy.click()
+        copied = QGuiApplication.clipboard().text()
+        assert "vtk" in copied
+        assert "Renderer" in copied or "OpenGL" in copied
+        machine.accept()
+        window.help.show_about()
+        about = sheet_of(window, AboutSheet)
+        assert isinstance(about, AboutSheet)
+        texts = [about.texts.widget(place).toPlainText() for place in range(about.texts.count())]
+        assert ["Apache License" in texts[0], "shiboken6" in texts[1], "SIL OPEN FONT" in texts[2]] == [
+            True
+        ] * 3
+        about.accept()
+
+    run_main([], script)
+
+
+def no_key_means_two_things(window: MainWindow) -> None:
+    keys = Counter(key.toString() for _, action in window.actions_.all() for key in action.shortcuts())
+    assert [key for key, count in keys.items() if count > 1] == []
+    assert {"Ctrl+K", "F6", "Shift+F1", "Ctrl+,", "Ctrl+I", "Ctrl+J", "Ctrl+1", "Space"} <= keys.keys()
+
+
+def test_the_layout_is_shared_out_by_hand_and_kept(mannequin: Path) -> None:
+    def first(window: MainWindow) -> Script:
+        yield settled(window)
+        window.activateWindow()
+        yield window.isActiveWindow
+        assert window.inspector.width() == 340
+        handle = window.layout_._across.handle(1)
+        QTest.mousePress(handle, Qt.MouseButton.LeftButton, pos=QPoint(0, 200))
+        QTest.mouseMove(handle, QPoint(-80, 200))
+        QTest.mouseRelease(handle, Qt.MouseButton.LeftButton, pos=QPoint(-80, 200))
+        assert 400 < window.inspector.width() < 440
+        window.strip.set_folded(True)
+        window.view.viewport.setFocus()
+        QTest.keyClick(window.view.viewport, Qt.Key.Key_Tab)
+        assert [part.isVisible() for part in (window.rail, window.inspector, window.strip)] == [False] * 3
+        QTest.keyClick(window.view.viewport, Qt.Key.Key_Tab)
+        assert [part.isVisible() for part in (window.rail, window.inspector, window.strip)] == [True] * 3
+        window.inspector.tabs.button("result").click()
+        assert window.result.isVisible()
+        QTest.keyClick(window, Qt.Key.Key_1, Qt.KeyboardModifier.ControlModifier)
+        assert (window.scan.isVisible(), window.inspector.tabs.isVisible()) == (True, False)
+
+    def second(window: MainWindow) -> Script:
+        yield settled(window)
+        assert 400 < window.inspector.width() < 440
+        assert window.strip.is_folded()
+        window.actions_.reset_layout.trigger()
+        assert (window.inspector.width(), window.strip.is_folded()) == (340, False)
+
+    def third(window: MainWindow) -> Script:
+        yield settled(window)
+        assert window.screen().geometry().intersects(window.frameGeometry())
+
+    run_main([], first)
+    run_main([str(mannequin)], second)
+    QSettings().setValue("window/geometry", QByteArray(b"no geometry"))
+    QSettings().setValue("window/inspector", "-7")
+    run_main([str(mannequin)], third)
+
+
+def test_a_fault_is_told_once_and_the_work_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    rescued = []
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        monkeypatch.setattr(window, "rescue", lambda: rescued.append(1) or "/a/safe/place")
+        storm = QTimer(window, interval=0)
+        storm.timeout.connect(lambda: {}["nothing"])
+        storm.start()
+        thread = threading.Thread(target=lambda: 1 // 0, name="faulty")
+        thread.start()
+        thread.join()
+        yield (
+            lambda: window.rescuer.sheet is not None and "ZeroDivisionError" in window.rescuer.sheet.report()
+        )
+        for _ in range(20):
+            QApplication.processEvents()
+        storm.stop()
+        sheets = window.findChildren(FaultSheet)
+        assert len(sheets) == 1
+        assert len(rescued) == 1
+        assert "/a/safe/place" in sheets[0].said.text()
+        assert {"KeyError", "vtk"} <= set(sheets[0].report().replace(":", " ").split())
+        sheets[0].go_on.click()
+        drag(window, "mid-bust", -30)
+        yield settled(window)
+        design = window.session.design
+        assert design is not None
+        assert design.ratio("mid-bust") < 0.95
+
+    run_main([], script)
+
+
+def test_the_safe_mode_draws_without_the_graphics_driver_and_says_so() -> None:
+    def asked(window: MainWindow) -> Script:
+        yield settled(window)
+        assert window.view.findChildren(PaintedCanvas)
+        notice = window.notices.notice()
+        assert notice is not None
+        assert notice.sentence.startswith("Safe mode")
+        image = window.view.viewport.picture()
+        colours = {image.pixelColor(x, image.height() // 2).name() for x in range(0, image.width(), 7)}
+        assert len(colours) > 20
+
+    def failed(window: MainWindow) -> Script:
+        yield settled(window)
+        notice = window.notices.notice()
+        assert notice is not None
+        assert "twice" in notice.sentence
+        notice.actions[0][1]()
+        assert not QSettings().contains("view/begun")
+
+    run_main(["--safe-mode"], asked)
+    QSettings().setValue("view/begun", 2)  # as two crashes before the first picture leave it
+    run_main([], failed)
