@@ -79,8 +79,13 @@ class Panes(QWidget):
         fresh = [viewport for viewport in viewports if viewport not in self.viewports]
         self.viewports = viewports
         self.titles = tuple(PaneTitle(title, self) for title in titles)
+        held = self.handle.hasFocus()
         self._wiped.setVisible(wiped)
         self.handle.setVisible(wiped)
+        if wiped and self.main.hasFocus():
+            self.handle.setFocus()
+        elif held and not wiped:
+            self.main.setFocus()
         for viewport in viewports:
             viewport.setParent(self._wiped if wiped and viewport is not self.main else self)
         self._lay_out()
