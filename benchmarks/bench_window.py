@@ -36,6 +36,7 @@ from app.showing.overlay import Overlay
 from app.showing.viewport import Viewport
 from app.view_area import ViewArea
 from app.window import open_window
+from app.wording.display import off_screen
 from core import live
 from core.comparison import Comparison
 from core.design import Design, ScanSource
@@ -173,6 +174,7 @@ def report(drag: Drag, watch: Stopwatch, seconds: float, processor: float) -> No
 
 
 def main() -> None:
+    off_screen()
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("scan", nargs="?", default=str(SAMPLE))
     parser.add_argument("--seconds", type=float, default=6.0)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -18,54 +18,23 @@ from core import kernels
 from core.comparison import Comparison
 from core.design import Design, cannot_hold, no_balance
 from core.errors import UserError
-from core.mesh import Points
+from core.frame import Failure, Frame, make_frame
 from core.pipeline import Stages, StuckError, build, targets_of
 from core.progress import Cancelled, Progress, quiet
-from core.solver import Marks, Record
-from core.verdict import Verdict
 
-_SLICE = 0.012
-"""Seconds of turns between two frames: about one picture of a screen."""
+__all__ = ["Failure", "Frame", "LiveSolver"]
+
+_SLICE, _FIRST_SLICE = 0.012, 0.005
+"""Seconds of turns between two frames, about one picture of a screen; fewer before new lengths are seen."""
+
+_STALE = 0.1
+"""Seconds for which a frame of former lengths is kept back where that of the newest is about to come."""
 
 LARGE = 10_000
 """Moving vertices from which on compiled loops gain more in use than the second costs that they load in."""
 
 _NAP = 0.0005
 """A pause per frame in which the window's thread surely gets the interpreter."""
-
-
-@dataclass(frozen=True, eq=False)
-class Frame:
-    """What is shown: the moved part of the body and everything that is read off it.
-
-    ``points`` and ``normals`` (r, 3) belong to the body's vertices ``stages.moving.vertices``;
-    ``control_points`` (n, 3) [mm]; ``lengths`` [mm] of the lines' front parts; ``tracks`` the records of each
-    run so far; ``exact_marks`` what the exact answer ends at; ``at_work`` whether turns are still being made;
-    ``seconds`` spent on them since the design last changed, at turn ``changed_at``.
-    """
-
-    revision: int
-    stages: Stages
-    points: Points
-    normals: Points
-    control_points: Points
-    lengths: Mapping[str, float]
-    tracks: Mapping[str, tuple[Record, ...]]
-    exact_marks: Marks
-    verdict: Verdict
-    error_ml: float
-    marks: Marks
-    at_work: bool
-    seconds: float
-    changed_at: int
-
-
-@dataclass(frozen=True)
-class Failure:
-    """Why a design could not be turned into a frame; the last good frame still stands."""
-
-    revision: int
-    error: Exception
 
 
 @dataclass(frozen=True)
@@ -78,16 +47,18 @@ class _Request:
 class LiveSolver:
     """Solves the newest design in a thread of its own.
 
-    ``tell`` is called in that thread with the work in hand and the share done, or "" when it is done.
+    It waits once it is one frame ahead of who fetches them. ``tell`` is called in that thread with the work
+    in hand and the share done, or "" when it is done; ``ready`` when there is something to fetch.
     """
 
-    def __init__(self, tell: Progress = quiet) -> None:
-        self._tell = tell
+    def __init__(self, tell: Progress = quiet, ready: Callable[[], None] = lambda: None) -> None:
+        self._tell, self._ready = tell, ready
         self._at_work = 0
         self._unwanted = 0
         self._wake = threading.Condition()
         self._request: _Request | None = None
         self._frame: Frame | None = None
+        self._asked_at = self._fetched_at = 0.0
         self._failure: Failure | None = None
         self._revision = 0
         self._stopping = False
@@ -112,6 +83,7 @@ class LiveSolver:
             # A request that nobody has looked at yet must not lose its wish for new records.
             fresh = fresh or (self._request is not None and self._request.fresh)
             self._request = _Request(self._revision, design, fresh)
+            self._asked_at = time.perf_counter()
             self._wake.notify()
             return self._revision
 
@@ -122,12 +94,20 @@ class LiveSolver:
             self._unwanted = self._revision
 
     def latest(self) -> Frame | Failure | None:
-        """Return what has not been fetched yet, if anything: a failure first, else the newest frame."""
+        """Return what has not been fetched yet, if anything: a failure first, else the newest frame.
+
+        While lengths move, a frame of former ones counts only if none has been fetched for a while.
+        """
         with self._wake:
             if self._failure is not None:
                 failure, self._failure = self._failure, None
                 return failure
-            frame, self._frame = self._frame, None
+            frame, now = self._frame, time.perf_counter()
+            moving = now - min(self._asked_at, self._fetched_at) < _STALE
+            if frame is None or (moving and frame.revision < self._revision):
+                return None
+            self._frame, self._fetched_at = None, now
+            self._wake.notify()
             return frame
 
     def _hear(self, what: str, share: float) -> None:
@@ -178,7 +158,7 @@ class LiveSolver:
                         self._refuse_what_has_no_balance()
                         # Only now: the frames after a failure are still those of the design before it.
                         taken = asked
-                    self._advance()
+                    self._advance(_SLICE if request is None else _FIRST_SLICE)
                     self._refuse_what_has_no_balance()
                     if self._stages is not None and self._comparison is not None:
                         self._publish(make_frame(taken, self._stages, self._comparison, self._seconds))
@@ -202,7 +182,7 @@ class LiveSolver:
 
     def _something_to_do(self) -> bool:
         turning = self._comparison is not None and not self._comparison.resting
-        return self._called or turning
+        return self._called or (turning and self._frame is None)
 
     @property
     def _called(self) -> bool:
@@ -241,11 +221,11 @@ class LiveSolver:
             self._comparison.retarget(stages.model, targets, request.fresh)
         self._seconds = time.perf_counter() - start
 
-    def _advance(self) -> None:
+    def _advance(self, seconds: float) -> None:
         comparison = self._comparison
         if comparison is None:
             return
-        end = time.perf_counter() + _SLICE
+        end = time.perf_counter() + seconds
         while not comparison.resting and (start := time.perf_counter()) < end:
             if self._held:
                 time.sleep(_NAP)
@@ -270,30 +250,10 @@ class LiveSolver:
     def _publish(self, frame: Frame) -> None:
         with self._wake:
             self._frame = frame
+        self._ready()
 
     def _fail(self, failure: Failure) -> None:
         with self._wake:
             if failure.revision > self._unwanted:
                 self._failure = failure
-
-
-def make_frame(revision: int, stages: Stages, comparison: Comparison, seconds: float = 0.0) -> Frame:
-    """Shape the body after the comparison's shown state and read everything off it."""
-    control_points = stages.model.tensegric.expand(comparison.shown.moved)
-    change = stages.model.volume.volume(control_points) - stages.model.volume.rest_volume
-    shown = comparison.main or max(comparison.runs.values(), key=lambda run: run.changed_at)
-    return Frame(
-        revision,
-        stages,
-        *stages.shape(control_points),
-        control_points,
-        {line.name: line.length(control_points) for line in stages.model.lines},
-        {control: tuple(run.records) for control, run in comparison.runs.items()},
-        stages.watch(stages.model.tensegric.expand(comparison.exact.state.moved)),
-        comparison.verdict,
-        change / 1000.0,
-        stages.watch(control_points),
-        not comparison.resting,
-        seconds,
-        shown.changed_at,
-    )
+        self._ready()

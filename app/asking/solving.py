@@ -8,7 +8,7 @@ from core.design import Design
 from core.live import Failure, LiveSolver
 
 FRAME_INTERVAL = 16
-"""Milliseconds between two looks at the solver."""
+"""Milliseconds between two looks at the solver, which also says itself when there is something to see."""
 
 
 class Solving(QObject):
@@ -19,11 +19,16 @@ class Solving(QObject):
     answered = Signal(object)
     refused = Signal(object)
     working = Signal(str, float)
+    _ready = Signal()
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._work = self._work_told = ("", 1.0)
-        self._solver = LiveSolver(self._hear)
+        # What the hand has done meanwhile goes first.
+        self._soon = QTimer(self, interval=0, singleShot=True)
+        self._soon.timeout.connect(self._look)
+        self._ready.connect(self._soon.start)
+        self._solver = LiveSolver(self._hear, self._ready.emit)
         self._clock = QTimer(self, interval=FRAME_INTERVAL)
         self._clock.timeout.connect(self._look)
         self._clock.start()
@@ -42,9 +47,14 @@ class Solving(QObject):
         self._solver.cancel()
         self._work = ("", 1.0)
 
+    def set_pace(self, turns_per_second: float | None) -> None:
+        """Make turns no faster than this, or as fast as they go."""
+        self._solver.set_pace(turns_per_second)
+
     def close(self) -> None:
         """Stop the clock and the solver, and wait until it has ended."""
         self._clock.stop()
+        self._soon.stop()
         self._solver.stop()
 
     def _hear(self, what: str, share: float) -> None:
