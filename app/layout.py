@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QByteArray, QEvent, QObject, QSettings, Qt
 from PySide6.QtWidgets import QApplication, QHBoxLayout, QSplitter, QStackedWidget, QVBoxLayout, QWidget
 
+from app.dress.focus import FocusRing
+from app.wording.words import tr
+
 if TYPE_CHECKING:
     from app.main_window import MainWindow
 
@@ -32,6 +35,7 @@ class Layout(QObject):
         self.pages = QStackedWidget()
         self._across, self._down = QSplitter(Qt.Orientation.Horizontal), QSplitter(Qt.Orientation.Vertical)
         self._middle, self._right = QVBoxLayout(), QVBoxLayout()
+        self._ring = FocusRing(window)
         self._build()
         self._across.splitterMoved.connect(self._note_width)
         self._down.splitterMoved.connect(self._note_height)
@@ -47,6 +51,9 @@ class Layout(QObject):
             column.setSpacing(0)
             holder.setLayout(column)
         window.view.setMinimumSize(480, 300)
+        # Tab goes past the view, where it hides what lies around it: F6 and the pointer lead in.
+        window.view.viewport.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
+        window.view.viewport.setAccessibleName(tr("3D view"))
         for splitter, parts in (
             (self._down, (window.view, window.strip)),
             (self._across, (work, window.inspector)),
@@ -126,6 +133,8 @@ class Layout(QObject):
             target = window.view.viewport if pane is window.view else _first_of(pane)
             if target is not None:
                 target.setFocus(Qt.FocusReason.TabFocusReason)
+                if target is window.view.viewport:
+                    self._ring.show_round(target)
                 return
 
     # -- sizes

@@ -109,9 +109,10 @@ class Desk(QObject):
             if self._frame is not None:
                 self._window.scan_desk.show_found(self._frame.stages)
             return
-        logging.error("unexpected fault\n%s", "".join(traceback.format_exception(error)))
+        trace = "".join(traceback.format_exception(error))
+        logging.error("unexpected fault\n%s", trace)
         said = tr("Something went wrong inside Busk."), tr("Your design is kept. The log tells more.")
-        notices.show_notice("bad", *said, lasting=True)
+        notices.show_notice("bad", *said, lasting=True, details=trace)
 
     def show_saving(self, at_work: bool) -> None:
         """Say that the project is being saved, or no longer."""

@@ -9,6 +9,7 @@ from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QWhatsThis, QWidget
 
 from app.desks.machine import machine_facts
+from app.desks.whats_this import explain
 from app.panels.about import AboutSheet, DiagnosticsSheet
 from app.panels.commands import Command, CommandSheet
 from app.showing.gestures import chosen_gestures, gestures_in_words
@@ -31,6 +32,7 @@ class HelpDesk(QObject):
         self.palette = add("help", tr("Find a command…"), "Ctrl+K", said, do=self.find_command)
         window.rail.add_tool("search", self.palette)
         add("help", tr("Keyboard shortcuts"), "Ctrl+/", do=self.show_keys)
+        explain(window)
         said = tr("Then click on something, and read what it is for")
         add("help", tr("What's this?"), "Shift+F1", said, do=QWhatsThis.enterWhatsThisMode)
         window.actions_.rule("help")

@@ -106,6 +106,7 @@ class ModelPanel(QWidget):
         column.addWidget(self._limit)
         column.addStretch(1)
         area = QScrollArea()
+        area.setAccessibleName(tr("How the model works"))
         area.setWidgetResizable(True)
         area.setFrameShape(QFrame.Shape.NoFrame)
         area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)

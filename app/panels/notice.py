@@ -10,9 +10,10 @@ from html import escape
 
 from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
-from PySide6.QtWidgets import QHBoxLayout, QPushButton, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
 from app.dress.parts import IconLabel, ToolButton, button
+from app.dress.sheet import reading
 from app.dress.theme import label, tokens_of
 from app.wording.words import say, tr
 
@@ -35,6 +36,7 @@ class Notice:
     hint: str
     actions: tuple[Action, ...]
     lasting: bool
+    details: str = ""
 
 
 class NoticeBar(QWidget):
@@ -59,12 +61,14 @@ class NoticeBar(QWidget):
         hint: str = "",
         actions: Sequence[Action] = (),
         lasting: bool = False,
+        details: str = "",
     ) -> None:
         """Say ``sentence`` in the tone ok, info, warn or bad; the first action is the main one.
 
+        ``details`` unfold when they are asked for.
         A sentence that already stands or waits there is not said twice.
         """
-        notice = Notice(tone, sentence, hint, tuple(actions), lasting)
+        notice = Notice(tone, sentence, hint, tuple(actions), lasting, details)
         if any(each.sentence == sentence for each in (self._shown, *self._waiting) if each):
             return
         self._waiting.append(notice)
@@ -105,8 +109,11 @@ class NoticeBar(QWidget):
 
     def _build(self) -> None:
         self.setMinimumHeight(44)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(16, 5, 10, 6)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(16, 5, 10, 6)
+        column.setSpacing(4)
+        row = QHBoxLayout()
+        column.addLayout(row)
         row.setSpacing(8)
         self._icon = IconLabel("info", "info", 19)
         self._words, self._more = label("", "body"), label("", "caption")
@@ -118,9 +125,16 @@ class NoticeBar(QWidget):
         row.addWidget(self._more)
         self._buttons: list[QPushButton] = []
         self._row = row
+        self.unfold = button(tr("Details"), "quiet")
+        self.unfold.setCheckable(True)
+        self.unfold.toggled.connect(self._show_details)
+        row.addWidget(self.unfold)
         close = ToolButton("x", tr("Close"), size=14, room=28)
         close.clicked.connect(self.close_notice)
         row.addWidget(close)
+        self.details = reading("", tr("Details"), code=True)
+        self.details.setFixedHeight(120)
+        column.addWidget(self.details)
 
     def _next(self) -> None:
         self._timer.stop()
@@ -132,11 +146,20 @@ class NoticeBar(QWidget):
         said, hint = escape(say(notice.sentence)), escape(say(notice.hint))
         self._words.setText(f'<span style="font-weight:600">{said}</span>&nbsp; {hint}')
         self._set_buttons(notice.actions)
+        self.details.setPlainText(notice.details)
+        self.unfold.setChecked(False)
+        self.unfold.setVisible(bool(notice.details))
+        self.details.hide()
         self._show_waiting()
         if not notice.lasting:
             self._timer.start(_LEAVES_AFTER_MS)
         self.show()
         self.update()
+
+    def _show_details(self, shown: bool) -> None:
+        self.details.setVisible(shown)
+        # Whoever reads on is not to be hurried.
+        self._timer.stop()
 
     def _set_buttons(self, actions: tuple[Action, ...]) -> None:
         for old in self._buttons:
@@ -146,7 +169,7 @@ class NoticeBar(QWidget):
         for (text, act), kind in zip(actions, _BUTTON_KINDS, strict=False):
             each = button(text, kind)
             each.clicked.connect(lambda _=False, chosen=act: self._act(chosen))
-            self._row.insertWidget(self._row.count() - 1, each)
+            self._row.insertWidget(self._row.count() - 2, each)
             self._buttons.append(each)
 
     def _act(self, act: Callable[[], None]) -> None:

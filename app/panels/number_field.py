@@ -47,6 +47,7 @@ class NumberField(QLineEdit):
         self.setTextMargins(0, 0, self._unit_width(), 0)
         self.setFixedSize(self.sizeHint())
         self.setToolTip(tr("Type 94, −6%, −20mm, 692mm or 69.2cm; from 50 to 130 % of the length at rest."))
+        self.setAccessibleName(tr("Length in percent") if unit == "%" else tr("Length in millimetres"))
         self.textEdited.connect(lambda _: set_tag(self, "wrong", False))
 
     def sizeHint(self) -> QSize:

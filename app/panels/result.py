@@ -50,6 +50,7 @@ class ResultPanel(QWidget):
         rows.addWidget(self._note)
         rows.addStretch(1)
         self._area = QScrollArea()
+        self._area.setAccessibleName(tr("Measures"))
         self._area.setWidgetResizable(True)
         self._area.setFrameShape(QFrame.Shape.NoFrame)
         self._area.setWidget(inside)

@@ -119,6 +119,7 @@ class ScanPanel(QWidget):
         column.addWidget(another, alignment=Qt.AlignmentFlag.AlignLeft)
         column.addStretch(1)
         self._area = QScrollArea()
+        self._area.setAccessibleName(tr("Scan"))
         self._area.setWidgetResizable(True)
         self._area.setFrameShape(QFrame.Shape.NoFrame)
         self._area.setWidget(inside)

@@ -28,6 +28,7 @@ class Field(QWidget):
 
     def describe(self, title: str, tip: str) -> None:
         """Tell those who do not see the title what this is."""
+        self.setToolTip(f"<p>{tip}</p>")
         self._inside.setAccessibleName(title)
         self._inside.setAccessibleDescription(tip)
 

@@ -53,7 +53,11 @@ def say(english: str) -> str:
         if match:
             return translated.format(**{name: say(value) for name, value in match.groupdict().items()})
     sentences = _SENTENCE_END.split(english) if _messages else [english]
-    return english if len(sentences) == 1 else "".join(say(each) for each in sentences)
+    if len(sentences) > 1:
+        return "".join(say(each) for each in sentences)
+    # A sentence that begins with the name of a line; a name of a file, with its dot, stays as it is.
+    begins_small = english.endswith((".", "?")) and re.match(r"[a-z][a-z-]* ", english)
+    return english[0].upper() + english[1:] if begins_small else english
 
 
 def in_all_languages(shown: str) -> list[str]:

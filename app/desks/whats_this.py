@@ -1,0 +1,53 @@
+"""Why the parts of the window are there: what a click says after Shift+F1."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from app.wording.words import tr
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+
+
+def explain(window: MainWindow) -> None:
+    """Give each of the main parts its What's This."""
+    said = {
+        window.rail: tr(
+            "The way from a scan to a result. No step is locked: go back and forth as you like. A green tick "
+            "says that a step is done, an amber badge that something there wants a look."
+        ),
+        window.view: tr(
+            "The body as the model reshapes it. What you see moves at once while you drag a line, and is "
+            "right to a tenth of a millimetre when the verdict below says settled."
+        ),
+        window.strip: tr(
+            "The model comes to rest turn by turn. A garment whose model vibrates or folds tells nothing "
+            "yet: look at the verdict before you trust a shape. The dashed line is the exact answer."
+        ),
+        window.scan: tr(
+            "What Busk understood of the scan: unit, up and front. All lengths follow from the unit, so that "
+            "it is worth a look on a new scanner."
+        ),
+        window.landmarks: tr(
+            "Places on the body that the control mesh hangs on. Where the skin did not show one clearly, its "
+            "confidence is low: drag its pin to where you would put it."
+        ),
+        window.lines: tr(
+            "Each line stands for a band of the garment. Shorter than at rest it pulls; the skin gives way "
+            "as far as the volume of the body allows. Set and reached differ by what the body does not give."
+        ),
+        window.result: tr(
+            "The body measured before and after with the same tape in the same places, so that the change "
+            "is the garment's alone."
+        ),
+        window.model: tr(
+            "How lines, skin and volume act. The choices of the paper are marked; they change the result, "
+            "and are saved with the design."
+        ),
+        window.notices: tr(
+            "What needs your attention, one at a time, with what you can do. Nothing here covers your work."
+        ),
+    }
+    for part, why in said.items():
+        part.setWhatsThis(f"<p>{why}</p>")
