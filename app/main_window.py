@@ -15,6 +15,7 @@ from app.desks.flip_key import FlipKey
 from app.desks.help_desk import HelpDesk
 from app.desks.job_desk import JobDesk
 from app.desks.landmark_desk import LandmarkDesk
+from app.desks.limits_desk import LimitsDesk
 from app.desks.line_maker import LineMaker
 from app.desks.lines_desk import LinesDesk
 from app.desks.map_desk import MapDesk
@@ -66,7 +67,7 @@ class MainWindow(QMainWindow):
         self._fill_inspector()
         self.layout_ = Layout(self)
         self.pages = self.layout_.pages
-        self.job_desk = JobDesk(self)
+        self.job_desk, self.limits_desk = JobDesk(self), LimitsDesk(self)
         self.landmark_desk, self.scan_desk = LandmarkDesk(self), ScanDesk(self)
         self.desk = Desk(self)
         self.map_desk, self.section_desk = MapDesk(self), SectionDesk(self)

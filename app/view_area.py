@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
+from PySide6.QtCore import Signal
 from PySide6.QtGui import QAction, QImage
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from app.asking.background import Background
+from app.asking.jobs import Jobs
 from app.desks.body_view import BodyView
 from app.desks.comparison import Comparison
 from app.desks.pin_board import PinBoard
@@ -18,6 +20,7 @@ from app.seeing.body import bake_occlusion
 from app.showing.floating import Floating
 from app.showing.panes import Panes
 from app.showing.viewport import Viewport
+from app.wording.words import tr
 from core.body import Body
 from core.landmark import Landmark
 from core.live import Frame
@@ -27,11 +30,15 @@ from core.mesh import Floats
 class ViewArea(QWidget):
     """Shows frames; ``is_shaded`` says whether the soft shadows of the body have been worked out.
 
-    ``viewport`` is the view that is always there; ``comparison`` says what is seen beside it.
+    ``viewport`` is the view that is always there; ``comparison`` says what is seen beside it,
+    and ``compared`` that this has changed.
     """
 
-    def __init__(self) -> None:
+    compared = Signal()
+
+    def __init__(self, jobs: Jobs) -> None:
         super().__init__()
+        self._jobs = jobs
         self.viewport = Viewport()
         self.panes = Panes(self.viewport, self)
         self.tools = ViewTools(self)
@@ -40,7 +47,6 @@ class ViewArea(QWidget):
         self._main = BodyView(self.viewport)
         self.comparison = Comparison(self._main, self.panes)
         self.pins = PinBoard([self.viewport])
-        self._background = Background(self)
         self._shades: tuple[Body, Floats] | None = None
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
@@ -59,7 +65,6 @@ class ViewArea(QWidget):
         self.tools.set_view("three-quarter")
         self.tools.set_shown("bands", True)
         self.tools.set_shown("perspective", True)
-        self._background.finished.connect(self._shade)
         self.viewport.view_changed.connect(self._show_view)
 
     @property
@@ -128,6 +133,21 @@ class ViewArea(QWidget):
             for body in self.comparison.bodies:
                 body.set_layer(layer, shown)
 
+    def set_material(self, material: str) -> None:
+        """Paint the body as one of ``app.seeing.material.MATERIALS``."""
+        for body in self.comparison.bodies:
+            body.viewport.scene.set_material(material)
+            body.viewport.request_draw()
+
+    def frame_selection(self) -> None:
+        """Come close to the selected landmark, if it is shown, else to the selected line."""
+        _, place = self.pins.chosen()
+        bands = self.viewport.scene.bands
+        if place is not None:
+            self.viewport.frame_points(place[None])
+        elif self.selected_line in bands.names:
+            self.viewport.frame_points(bands.spine(self.selected_line)[0])
+
     # -- before and after
 
     @property
@@ -154,6 +174,7 @@ class ViewArea(QWidget):
         self.pins.set_viewports([body.viewport for body in self.comparison.live])
         for body in self.comparison.bodies[1:]:
             self._shade_or_bake(body)
+        self.compared.emit()
 
     # -- places, pictures, the end
 
@@ -167,7 +188,6 @@ class ViewArea(QWidget):
 
     def close_view(self) -> None:
         """Give everything back, before the window goes."""
-        self._background.close()
         self.panes.close_views()
 
     # -- inside
@@ -185,9 +205,13 @@ class ViewArea(QWidget):
         self._bake(body)
 
     def _bake(self, body: Body) -> None:
-        self._background.run(body, lambda: bake_occlusion(body.mesh))
+        self._jobs.run(
+            tr("Shading the body"),
+            lambda progress: bake_occlusion(body.mesh, progress=progress),
+            lambda occlusion: self._shade(body, occlusion),
+        )
 
-    def _shade(self, body: Body, occlusion: Floats) -> None:
+    def _shade(self, body: Body, occlusion: Any) -> None:
         if body is self._main.body:
             self._shades = body, occlusion
         for each in self.comparison.bodies:

@@ -26,6 +26,8 @@ def connect(window: MainWindow) -> None:
 def _connect_work(window: MainWindow) -> None:
     job_desk = window.job_desk
     window.session.working.connect(job_desk.show_work)
+    window.session.frame_ready.connect(window.limits_desk.follow)
+    window.lines_desk.feasible = window.limits_desk.feasible
     window.jobs.changed.connect(job_desk.show)
     window.view.busy.cancelled.connect(job_desk.cancel)
     window.status.job_cancelled.connect(job_desk.cancel)

@@ -12,16 +12,17 @@ from core.errors import UserError
 from core.live import Frame
 from core.mesh import Mesh
 from core.profile import Curve, Plane
+from core.progress import Progress, quiet
 from core.project import whole_file
 from core.tffd import deform
 
 FORMATS = ("ply", "obj", "stl")
 
 
-def write_mesh(path: str | os.PathLike[str], mesh: Mesh) -> None:
+def write_mesh(path: str | os.PathLike[str], mesh: Mesh, progress: Progress = quiet) -> None:
     """Write ``mesh`` [mm] as PLY, OBJ or STL by the name's ending.
 
-    Raises UserError for another ending, or a place that cannot be written to.
+    Raises UserError for another ending, or a place that cannot be written to; Cancelled leaves no file.
     """
     target = Path(path).absolute()
     kind = target.suffix.lower().lstrip(".")
@@ -30,13 +31,17 @@ def write_mesh(path: str | os.PathLike[str], mesh: Mesh) -> None:
     import trimesh  # noqa: PLC0415 (it takes long to load, and is needed here alone)
 
     data = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).export(file_type=kind)
+    progress("writing", 0.8)
     with whole_file(target) as partial:
         partial.write_bytes(data.encode() if isinstance(data, str) else data)
+        progress("writing", 1.0)
 
 
-def write_frame(path: str | os.PathLike[str], frame: Frame) -> None:
-    """Write the whole body as a frame shows it; see ``write_mesh``. Raises UserError."""
-    write_mesh(path, Mesh(deform(frame.stages.binding, frame.control_points), frame.stages.body.mesh.faces))
+def write_frame(path: str | os.PathLike[str], frame: Frame, progress: Progress = quiet) -> None:
+    """Write the whole body as a frame shows it; see ``write_mesh``. Raises UserError or Cancelled."""
+    places = deform(frame.stages.binding, frame.control_points)
+    progress("writing", 0.2)
+    write_mesh(path, Mesh(places, frame.stages.body.mesh.faces), progress)
 
 
 def write_control_points(path: str | os.PathLike[str], control: ControlMesh) -> None:

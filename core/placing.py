@@ -78,16 +78,31 @@ def laid_on(mesh: Mesh, placed: Mapping[str, Points]) -> dict[str, Landmark]:
     return {name: _laid(mesh, name, np.asarray(place, dtype=np.float64)) for name, place in placed.items()}
 
 
+def nearest_skin(mesh: Mesh, point: Points) -> Points:
+    """Return the place of the skin nearest to ``point``, both of shape (3,) [mm]."""
+    corners, reach = mesh.vertices[mesh.faces], REACH
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    while True:
+        near = (low <= point + reach).all(axis=1) & (high >= point - reach).all(axis=1)
+        spots = nearest_on(corners[near], np.broadcast_to(point, (int(near.sum()), 3)))
+        away = np.linalg.norm(spots - point, axis=1)
+        # Outside the box there may be a nearer face, unless this one lies within its ball.
+        if away.min(initial=np.inf) <= reach or near.all():
+            return np.asarray(spots[np.argmin(away)])
+        reach *= 2.0
+
+
+def mirrored(mesh: Mesh, point: Points, middle: float) -> Points:
+    """Return the place of the skin nearest to the mirror image of ``point`` in x = ``middle`` [mm]."""
+    return nearest_skin(mesh, np.array([2.0 * middle - point[0], point[1], point[2]]))
+
+
 def _laid(mesh: Mesh, name: str, point: Points) -> Landmark:
     check_place(name, point)
-    corners = mesh.vertices[mesh.faces]
-    near = (corners.min(axis=1) <= point + REACH).all(axis=1)
-    near &= (corners.max(axis=1) >= point - REACH).all(axis=1)
-    spots = nearest_on(corners[near], np.broadcast_to(point, (int(near.sum()), 3)))
-    away = np.linalg.norm(spots - point, axis=1)
-    if away.min(initial=np.inf) > REACH:
+    place = nearest_skin(mesh, point)
+    if np.linalg.norm(place - point) > REACH:
         raise LandmarkError(
             f"The landmark {name.replace('_', ' ')} was placed more than {REACH:.0f} mm off the skin.",
             "Place it on the skin of the body.",
         )
-    return Landmark(name, spots[np.argmin(away)], 1.0, PLACED, by_hand=True)
+    return Landmark(name, place, 1.0, PLACED, by_hand=True)

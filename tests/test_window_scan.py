@@ -147,7 +147,7 @@ def test_a_cancelled_edit_of_the_scan_leaves_no_trace(monkeypatch: pytest.Monkey
         window.scan.told.emit("front", "+y")
         yield window.view.busy.isVisible
         assert window.session.undo_stack.count() == 1
-        window.scan_desk.cancel()
+        window.job_desk.cancel()
         assert window.session.design == design
         assert window.session.undo_stack.count() == 0
         yield settled(window)

@@ -11,15 +11,11 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from app.asking.edit import Edit
 from app.asking.editing import Editing
 from app.asking.solving import Solving
-from app.wording.words import tr
 from core.design import Design, ScanSource
 from core.document import Document
 from core.errors import UserError
-from core.export import write_frame
 from core.live import Failure, Frame
-from core.mesh import Points
 from core.pipeline import StuckError
-from core.placing import in_file
 from core.project import is_project, open_project, save_project
 
 
@@ -80,12 +76,6 @@ class Session(Editing):
         self._preview, path = None, Path(scan.path) if scan.member else None
         self._opening = (document, path, self._solving.submit(document.design, fresh=True))
 
-    def place_landmark(self, name: str, title: str, position: Points) -> None:
-        """Place a landmark, shape (3,) [mm] on the body at rest; all that follows from it is made anew."""
-        if self.frame is not None:
-            place = in_file(position, self.frame.stages.body.pose.file_to_mm)
-            self.edit(lambda design: design.with_placed(name, place), tr("{name} placed").format(name=title))
-
     def save(self, path: str, picture: bytes | None) -> bool:
         """Save the project with its scan; returns whether it worked."""
         if self.document is None or self.frame is None:
@@ -98,17 +88,6 @@ class Session(Editing):
         self.path = Path(path).absolute()
         self.undo_stack.setClean()
         self.saved.emit(str(self.path))
-        return True
-
-    def export_body(self, path: str) -> bool:
-        """Write the body as it is shown; returns whether it worked."""
-        if self.frame is None:
-            return False
-        try:
-            write_frame(path, self.frame)
-        except UserError as error:
-            self.failed.emit(error)
-            return False
         return True
 
     def cancel(self) -> None:

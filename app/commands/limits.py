@@ -81,7 +81,7 @@ def _figures_of(found: Sequence[Limits], stages: Stages) -> dict[str, Any]:
             for limits in found
         },
         "notes": still_lines(stages),
-        "definition": "each line alone made shorter from 100 % on, the others as they are set; percent of "
+        "definition": "each line, and a linked partner, made shorter from 100 % on, others as set; % of "
         "rest_mm. On the control mesh: "
         + "; ".join(f"{sign}: {meaning}" for sign, meaning in MEANING.items()),
     }

@@ -21,7 +21,8 @@ class PinBoard:
         self._landmarks: Mapping[str, Landmark] = {}
         self._shown = False
         self._selected = ""
-        self._dragged: tuple[str, Points] | None = None
+        self._hovered = ""
+        self._carried: Mapping[str, Points] = {}
 
     def set_viewports(self, viewports: Sequence[Viewport]) -> None:
         """Show the pins on these from now on."""
@@ -29,9 +30,9 @@ class PinBoard:
         self._show()
 
     def set_landmarks(self, landmarks: Mapping[str, Landmark]) -> None:
-        """Show these landmarks; a pin that is being dragged drops back."""
+        """Show these landmarks; a pin that is being carried stays where it is."""
         if landmarks is not self._landmarks:
-            self._landmarks, self._dragged = landmarks, None
+            self._landmarks = landmarks
             self._show()
 
     def set_shown(self, shown: bool) -> None:
@@ -44,26 +45,35 @@ class PinBoard:
         self._selected = name
         self._show()
 
-    def drag(self, name: str, place: Points) -> None:
-        """Let a pin follow the pointer to a place of the body at rest, shape (3,) [mm]."""
-        self._dragged = name, place
+    def hover(self, name: str) -> None:
+        """Draw the curve that a landmark was read from instead of the selected one's; no name ends it."""
+        if name != self._hovered:
+            self._hovered = name
+            self._show()
+
+    def carry(self, places: Mapping[str, Points]) -> None:
+        """Let pins follow the pointer to places of the body at rest, each of shape (3,) [mm]."""
+        self._carried = dict(places)
         self._show()
 
     def put(self, name: str) -> None:
-        """Put the pin of a landmark that was not found in the middle of the view, to be dragged away."""
+        """Put the pin of a landmark that was not found in the middle of the view, to be carried away."""
         place = self._viewports[0].skin_in_the_middle()
         if place is not None:
-            self._selected, self._dragged = name, (name, place)
+            self._selected, self._carried = name, {name: place}
             self._show()
 
-    def dropped(self) -> tuple[str, Points] | None:
-        """Return which pin was let go and where, if it was moved."""
-        return self._dragged
+    def chosen(self) -> tuple[str, Points | None]:
+        """Return the selected pin and where it is, shape (3,) [mm], None if it is not shown."""
+        name = self._selected
+        found = self._landmarks.get(name)
+        place = self._carried.get(name, None if found is None else found.position)
+        return name, place if self._shown else None
 
     def drop_back(self) -> None:
-        """Put a dragged pin back to where its landmark is."""
-        if self._dragged is not None:
-            self._dragged = None
+        """Put carried pins back to where their landmarks are."""
+        if self._carried:
+            self._carried = {}
             self._show()
 
     def _show(self) -> None:
@@ -74,11 +84,9 @@ class PinBoard:
             for mark in found.values()
             if kind_of(mark.name) in PINNED or mark.by_hand or mark.name == self._selected
         }
-        if self._shown and self._dragged is not None:
-            name, place = self._dragged
-            sure = found[name].confidence if name in found else 0.0
-            pins[name] = Pin(name, landmark_title(name), place, sure)
-        chosen = None if self._dragged else found.get(self._selected)
+        for name, place in self._carried.items() if self._shown else ():
+            pins[name] = Pin(name, landmark_title(name), place, 1.0)
+        chosen = found.get(self._hovered or self._selected) if not self._carried else None
         for viewport in self._viewports:
             if viewport.scene.body is not None:
                 viewport.scene.show_trace(chosen.evidence if chosen else np.empty((0, 3)))

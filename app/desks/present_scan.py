@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from app.panels.landmarks import LandmarkView
+from app.panels.landmark_row import LandmarkView
 from app.panels.scan import ScanView
 from app.wording.words import number, tr
 from core.body import Body
 from core.design import ScanSource
-from core.landmark import NAMES, Landmark
+from core.doubts import ESSENTIAL
+from core.landmark import CERTAIN, NAMES, Landmark
 
 GROUPS = {
     "bust_point": "bust",
@@ -53,6 +54,14 @@ def landmark_title(name: str) -> str:
     return sides.get(name[len(kind) :], "{name}").format(name=titles.get(kind, kind.replace("_", " ")))
 
 
+def other_side(name: str) -> str:
+    """Return the same landmark of the other side, or an empty text if it has no side."""
+    for side, other in (("_left", "_right"), ("_right", "_left")):
+        if name.endswith(side):
+            return name.removesuffix(side) + other
+    return ""
+
+
 def landmark_views(points: Mapping[str, Landmark]) -> list[LandmarkView]:
     """Return the rows of the list of landmarks, those of the bust first; the absent ones are among them."""
     order = list(GROUPS)
@@ -66,7 +75,11 @@ def _landmark_view(name: str, mark: Landmark | None) -> LandmarkView:
     title, group = landmark_title(name), GROUPS.get(kind_of(name), "further")
     if mark is None:
         return LandmarkView(name, title, 0.0, tr("The scan does not show it."), group, absent=True)
-    return LandmarkView(name, title, mark.confidence, mark.rule, group, mark.by_hand)
+    weak = kind_of(name) in ESSENTIAL and not mark.by_hand and mark.confidence < CERTAIN
+    traced = len(mark.evidence) > 0
+    return LandmarkView(
+        name, title, mark.confidence, mark.rule, group, mark.by_hand, weak=weak, traced=traced
+    )
 
 
 def scan_view(source: ScanSource, body: Body) -> ScanView:
@@ -111,3 +124,16 @@ def work_words(what: str) -> str:
         "bind body": tr("Binding the body"),
     }
     return words.get(what, "")
+
+
+def work_steps() -> list[str]:
+    """Return what is said of a scan's way into the window, in order."""
+    names = (
+        "reading",
+        "repairing",
+        "finding up and front",
+        "find landmarks",
+        "fit control mesh",
+        "bind body",
+    )
+    return [work_words(name) for name in names]

@@ -1,34 +1,25 @@
-"""What the window does about the scan: the work on it, the question how it stands, its landmarks."""
+"""What the window does about the scan: how it was understood, and the question how it stands."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import logging
 from dataclasses import replace
-from functools import reduce
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 from PySide6.QtGui import QColor, QImage
 
-from app.asking.background import Background
-from app.desks.present_scan import (
-    kind_of,
-    landmark_title,
-    landmark_views,
-    scan_view,
-    work_words,
-)
-from app.dress.theme import tokens_of, tone_of
+from app.asking.jobs import Job
+from app.desks.present_scan import scan_view
+from app.dress.theme import tokens_of
 from app.panels.question import PICTURE, Answer
 from app.seeing.portrait import Picture
 from app.seeing.stage import LOOKS
 from app.seeing.ways import Way, pictures
-from app.wording.words import say, tr
+from app.wording.words import tr
 from core.body import Body
 from core.design import Design
-from core.doubts import ESSENTIAL, landmark_doubts, weak_sides
 from core.pipeline import Stages, StuckError
-from core.placing import in_file
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -46,30 +37,28 @@ class ScanDesk(QObject):
         self._window = window
         self._session = window.session
         self._asked_for: Design | None = None
-        self._asked_body: Body | None = None
         self.stuck: StuckError | None = None
-        self._painter = Background(self)
-        self._painter.finished.connect(self._show_question)
-        self._painter.failed.connect(self._show_no_question)
+        self._painting: Job | None = None
+
+    @property
+    def painting(self) -> bool:
+        """Whether the question's pictures are being painted."""
+        return self._painting is not None
 
     # -- the session speaks
 
     def show_found(self, stages: Stages) -> None:
         """Show what was understood of the scan, and found on it."""
-        window, landmarks = self._window, stages.landmarks
-        said = landmark_doubts(landmarks)
-        window.landmarks.set_landmarks(landmark_views(landmarks.points), said)
+        window = self._window
         window.scan.set_scan(scan_view(stages.design.scan, stages.body))
-        window.view.pins.drop_back()
-        weak = sum(len(weak_sides(landmarks, kind)) for kind in ESSENTIAL)
         window.rail.set_state("scan", "done" if stages.body.pose.sure else "look", 1)
-        window.rail.set_state("landmarks", "look" if weak or said else "done", weak or len(said))
+        window.landmark_desk.show_found(stages)
 
     def show_opened(self, stages: Stages) -> None:
         """Say what is unclear on a scan that has just been opened, and ask how it stands if need be."""
         self._forget_question()
         self.stuck = None
-        self._show_unclear(stages)
+        self._window.landmark_desk.show_unclear(stages)
         pose, source = stages.body.pose, stages.design.scan
         if pose.sure:
             return
@@ -78,19 +67,6 @@ class ScanDesk(QObject):
             self._window.notices.show_notice("warn", unsure, pose.reason, lasting=True)
         else:
             self._ask(stages.body, None)
-
-    def _show_unclear(self, stages: Stages) -> None:
-        """Say which of the landmarks that the control mesh hangs on could hardly be seen."""
-        marks = [mark for mark in stages.landmarks.points.values() if kind_of(mark.name) in ESSENTIAL]
-        worst = min(marks, key=lambda mark: mark.confidence)
-        if tone_of(worst.confidence) == "bad" or stages.landmarks.warnings:
-            said, *more = landmark_doubts(stages.landmarks)
-            look = (tr("Look at it"), lambda: self._look_at(worst.name))
-            self._window.notices.show_notice("warn", said, " ".join(map(say, more)), [look], lasting=True)
-
-    def _look_at(self, landmark: str) -> None:
-        self._window.desk.go_to("landmarks")
-        self._window.desk.select_landmark(landmark)
 
     def show_stuck(self, stuck: StuckError) -> None:
         """Show a scan that cannot go on if no document is open; ask how it stands if that is not sure."""
@@ -106,35 +82,19 @@ class ScanDesk(QObject):
     def _show_alone(self, stuck: StuckError) -> None:
         """Show a scan that cannot go on in the place of a document."""
         window, self.stuck = self._window, stuck
-        refused, lacks = stuck.kind == "refused", stuck.kind == "landmarks"
-        window.landmarks.set_landmarks(landmark_views(stuck.landmarks), [stuck.message], placing=not refused)
+        lacks = stuck.kind == "landmarks"
+        window.landmark_desk.show_stuck(stuck)
         window.scan.set_scan(scan_view(stuck.design.scan, stuck.body))
         window.view.show_stuck(stuck.body, stuck.landmarks)
         window.desk.go_to("landmarks" if lacks else "scan")
         window.rail.set_state("scan", "done" if lacks else "look")
-        window.rail.set_state("landmarks", "missing" if refused else "look")
 
     def _say_stuck(self, stuck: StuckError) -> None:
         notices = self._window.notices
         notices.withdraw("bad")
         notices.show_notice("bad", stuck.message, stuck.hint, lasting=True)
 
-    def show_work(self, what: str, share: float) -> None:
-        """Name the work that takes its time, and how much of it is done."""
-        words = work_words(what)
-        window = self._window
-        if what and not words:
-            return
-        window.status.set_job(words, share)
-        window.view.busy.show_work(words, share)
-        window.actions_.cancel.setEnabled(bool(words))
-
     # -- the user asks
-
-    def cancel(self) -> None:
-        """Let go of the work in hand; the window is as it was before."""
-        self._session.cancel()
-        self.show_work("", 1.0)
 
     def tell(self, key: str, value: str) -> None:
         """Read the scan again with its unit, up or front as told; an empty key forgets what was told."""
@@ -190,34 +150,6 @@ class ScanDesk(QObject):
         if self.stuck:
             self._say_stuck(self.stuck)
 
-    def put_pin(self, name: str) -> None:
-        """Give a landmark that was not found a pin to drag."""
-        self._window.view.pins.put(name)
-
-    def place_landmark(self, name: str) -> None:
-        """Keep where a landmark's pin was let go, as one undo step; a stuck scan is tried again with it."""
-        dropped = self._window.view.pins.dropped()
-        if dropped is None or dropped[0] != name:
-            return
-        if self.stuck:
-            place = in_file(dropped[1], self.stuck.body.pose.file_to_mm)
-            self._session.open_design(self.stuck.design.with_placed(name, place))
-        else:
-            self._session.place_landmark(name, landmark_title(name), dropped[1])
-
-    def reset_landmarks(self, names: Sequence[str]) -> None:
-        """Let landmarks be found again."""
-        if self.stuck:
-            again = reduce(lambda design, name: design.with_placed(name, None), names, self.stuck.design)
-            self._session.open_design(again)
-            return
-        text = tr("{name} found again").format(name=landmark_title(names[0]))
-        self._session.reset_landmarks(names, text if len(names) == 1 else tr("Landmarks found again"))
-
-    def close(self) -> None:
-        """Wait for pictures that are being painted."""
-        self._painter.close()
-
     # -- inside
 
     def _shown_up(self) -> str:
@@ -226,36 +158,42 @@ class ScanDesk(QObject):
         return body.pose.up if body is not None else "+z"
 
     def _forget_question(self) -> None:
-        self._asked_for = self._asked_body = None
+        self._asked_for = None
+        self._window.jobs.cancel(self._painting)
+        self._painting = None
         self._window.view.question.hide()
 
     def _ask(self, body: Body, waiting: Design | None) -> None:
         """Have a picture painted for each way the body may stand."""
-        self._asked_for, self._asked_body = waiting, body
+        self._asked_for = waiting
         if not body.pose.sure:
             unsure, ask = tr("Busk is not sure how this scan stands."), tr("Please choose a picture below.")
             self._window.notices.show_notice("warn", unsure, ask, lasting=True)
         clay = QColor(LOOKS[tokens_of(self._window).dark].clay)
         colour, scale = (clay.red(), clay.green(), clay.blue()), self._window.devicePixelRatioF()
         size = round(PICTURE[0] * scale), round(PICTURE[1] * scale)
-        self._painter.run(body, lambda: pictures(body, size, colour))
+        self._window.jobs.cancel(self._painting)
+        self._painting = self._window.jobs.run(
+            tr("Painting how the scan may stand"),
+            lambda progress: pictures(body, size, colour, progress),
+            self._show_question,
+            self._show_no_question,
+        )
 
-    def _show_question(self, body: object, painted: object) -> None:
-        if body is not self._asked_body or not isinstance(painted, list):
-            return
+    def _show_question(self, painted: object) -> None:
+        assert isinstance(painted, list)
+        self._painting = None
         self._window.view.question.ask(
             [Answer(way.up, way.front, _image(picture), _words(way)) for way, picture in painted]
         )
 
-    def _show_no_question(self, body: object) -> None:
+    def _show_no_question(self, error: Exception) -> None:
         """Without pictures nothing can be chosen below: the Scan step asks the same."""
-        if body is self._asked_body:
-            self._window.notices.withdraw("warn")
-            unsure, ask = (
-                tr("Busk is not sure how this scan stands."),
-                tr("Please check it at the Scan step."),
-            )
-            self._window.notices.show_notice("warn", unsure, ask, lasting=True)
+        logging.error("the pictures of the question failed", exc_info=error)
+        self._painting = None
+        self._window.notices.withdraw("warn")
+        unsure, ask = tr("Busk is not sure how this scan stands."), tr("Please check it at the Scan step.")
+        self._window.notices.show_notice("warn", unsure, ask, lasting=True)
 
 
 def _words(way: Way) -> str:

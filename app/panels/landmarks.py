@@ -4,52 +4,33 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
-from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPaintEvent, QPen
-from PySide6.QtWidgets import (
-    QAbstractButton,
-    QButtonGroup,
-    QFrame,
-    QHBoxLayout,
-    QScrollArea,
-    QSizePolicy,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtCore import QRectF, Qt, Signal
+from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPaintEvent
+from PySide6.QtWidgets import QButtonGroup, QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
-from app.dress.parts import Disclosure, EmptyState, button, hairline, paint_card, sentence
-from app.dress.theme import font, label, set_tag, tokens_of, tone_of
+from app.dress.parts import Disclosure, EmptyState, ToolButton, button, hairline, sentence
+from app.dress.theme import label, tokens_of
+from app.panels.landmark_row import LandmarkRow, LandmarkView
 from app.wording.words import say, tr
-
-
-@dataclass(frozen=True)
-class LandmarkView:
-    """What is shown of a landmark; ``confidence`` 0..1, ``group`` bust, under or further.
-
-    ``absent``: it was not found, and can be placed.
-    """
-
-    name: str
-    title: str
-    confidence: float
-    rule: str
-    group: str = "bust"
-    by_hand: bool = False
-    absent: bool = False
 
 
 class LandmarksPanel(QWidget):
     """All landmarks, one row each; under them the rule of the selected one.
 
-    ``reset_asked`` names the landmarks, a tuple, that are to be found again; ``place_asked`` one that was not
-    found and is to be placed.
+    ``reset_asked`` names the landmarks, a tuple, that are to be found again, ``confirmed`` those that are
+    right; ``place_asked`` one that was not found and is to be placed; ``hovered`` the one under the pointer,
+    or none. ``keys_asked``: the selected one is to be moved by keys. ``linked`` tells whether the other side
+    goes with one.
     """
 
     landmark_selected = Signal(str)
     place_asked = Signal(str)
     reset_asked = Signal(object)
+    confirmed = Signal(object)
+    hovered = Signal(str)
+    keys_asked = Signal()
+    linked = Signal(bool)
 
     def __init__(self) -> None:
         super().__init__()
@@ -58,20 +39,31 @@ class LandmarksPanel(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(14, 14, 14, 14)
         column.setSpacing(2)
-        heading = label(tr("Landmarks"), "heading")
-        heading.setContentsMargins(4, 0, 0, 0)
         self._summary = sentence()
         self._summary.setContentsMargins(4, 2, 0, 6)
+        self._doubts = Doubts()
         self._empty = EmptyState(
             "map-pin", tr("No landmarks yet"), tr("They are found on the scan. Open one first.")
         )
-        for each in (heading, self._summary, self._empty):
+        column.addLayout(self._head())
+        for each in (self._summary, self._doubts, self._empty):
             column.addWidget(each)
         column.addWidget(self._list(), 1)
         column.addWidget(self._foot())
         column.addStretch(0)
         self._group = QButtonGroup(self)
         self.set_landmarks([])
+
+    def _head(self) -> QHBoxLayout:
+        head = QHBoxLayout()
+        heading = label(tr("Landmarks"), "heading")
+        heading.setContentsMargins(4, 0, 0, 0)
+        self.link = ToolButton("link", tr("Place left and right together, as in a mirror"))
+        self.link.setCheckable(True)
+        self.link.toggled.connect(self.linked)
+        head.addWidget(heading, 1)
+        head.addWidget(self.link)
+        return head
 
     def _list(self) -> QScrollArea:
         inside = QWidget()
@@ -100,6 +92,7 @@ class LandmarksPanel(QWidget):
         self.further.hide()
         column.addStretch(1)
         self._area = QScrollArea()
+        self._area.setAccessibleName(tr("Landmarks"))
         self._area.setWidgetResizable(True)
         self._area.setFrameShape(QFrame.Shape.NoFrame)
         self._area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
@@ -113,13 +106,15 @@ class LandmarksPanel(QWidget):
         rule.setSpacing(3)
         self._rule_title, self._rule = sentence("", "name"), sentence()
         self._hint = sentence(role="caption")
-        self.place = button(tr("Place it"))
+        self.place, self.right = button(tr("Place it")), button(tr("It is right"))
+        self.right.setToolTip(tr("Keep it where it was found, and ask no more"))
         self.reset, self.reset_all = button(tr("Find it again")), button(tr("Find all again"), "quiet")
         self.place.clicked.connect(lambda: self.place_asked.emit(self._selected))
+        self.right.clicked.connect(lambda: self.confirmed.emit((self._selected,)))
         self.reset.clicked.connect(lambda: self.reset_asked.emit((self._selected,)))
         self.reset_all.clicked.connect(lambda: self.reset_asked.emit(self._placed()))
         buttons = QHBoxLayout()
-        for each in (self.place, self.reset, self.reset_all):
+        for each in (self.place, self.right, self.reset, self.reset_all):
             buttons.addWidget(each)
         buttons.addStretch(1)
         rule.addWidget(hairline())
@@ -142,10 +137,10 @@ class LandmarksPanel(QWidget):
             self._rebuild(landmarks)
         for view in landmarks:
             self.rows[view.name].show_view(view)
-        absent = any(view.absent for view in landmarks)
-        self._summary.setText(" ".join(map(say, doubts)) or tr("All found."))
-        set_tag(self._summary, "tone", "warn" if doubts else "")
-        self._summary.setVisible(bool(doubts) or (bool(landmarks) and not absent))
+        self.link.setVisible(bool(landmarks))
+        self._doubts.show_doubts(sum(view.weak for view in landmarks), doubts)
+        self._summary.setText(tr("Drag a pin over the skin: the model follows."))
+        self._summary.setVisible(bool(landmarks) and placing)
         self._empty.setVisible(not landmarks)
         self._area.setVisible(bool(landmarks))
         for name, head in self._heads.items():
@@ -163,13 +158,14 @@ class LandmarksPanel(QWidget):
             part.setVisible(name is not None)
         absent = name is not None and self.rows[name].view.absent
         self.place.setVisible(absent and self._placing)
+        self.right.setVisible(name is not None and self.rows[name].view.weak)
         self.reset.setVisible(name in placed)
         self.reset_all.setVisible(bool(placed) and placed != (name,))
         if name is not None:
             view = self.rows[name].view
             self._rule_title.setText(view.title)
-            self._rule.setText(say(view.rule))
-            drag = tr("Drag its pin over the skin to correct it.")
+            self._rule.setText(view.words())
+            drag = tr("Drag its pin to correct it, or press Enter and use the arrow keys: 1 mm, Shift 5 mm.")
             self._hint.setText(tr("Puts a pin in the middle of the view.") if absent else drag)
             self._hint.setVisible(self._placing or not absent)
             if view.group == "further":
@@ -178,6 +174,9 @@ class LandmarksPanel(QWidget):
     def keyPressEvent(self, event: QKeyEvent) -> None:
         step = {Qt.Key.Key_Up: -1, Qt.Key.Key_Down: 1}.get(Qt.Key(event.key()))
         names = [name for name, row in self.rows.items() if row.isVisible()]
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self._selected in names:
+            self.keys_asked.emit()
+            return
         if step is None or not names:
             super().keyPressEvent(event)
             return
@@ -204,69 +203,36 @@ class LandmarksPanel(QWidget):
         for name, row in self.rows.items():
             self._groups[row.view.group].addWidget(row)
             row.clicked.connect(lambda _=False, chosen=name: self._choose(chosen))
+            row.hovered.connect(lambda over, name=name: self.hovered.emit(name if over else ""))
 
     def _choose(self, name: str) -> None:
         self.select(name)
         self.landmark_selected.emit(name)
 
 
-class LandmarkRow(QAbstractButton):
-    """A landmark: dot, name, bar and percent of confidence."""
+class Doubts(QFrame):
+    """What wants a look, and what to do about it; it takes no room while all is well."""
 
-    def __init__(self, view: LandmarkView) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self.view = view
-        self.setCheckable(True)
-        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
-        # A button would rather widen the list than be narrower than it likes: the figures would be cut off.
-        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-        self.setMinimumHeight(34)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(12, 9, 12, 11)
+        column.setSpacing(4)
+        self._count, self._said = sentence("", "name"), sentence()
+        column.addWidget(self._count)
+        column.addWidget(self._said)
 
-    def sizeHint(self) -> QSize:
-        type_ = font("name")
-        self.setFont(type_)
-        return QSize(self.fontMetrics().horizontalAdvance(self.text()) + 150, 34)
-
-    def show_view(self, view: LandmarkView) -> None:
-        """Show new values of the same landmark."""
-        self.view = view
-        self.setText(view.title)
-        self.setToolTip(say(view.rule))
-        self.setAccessibleName(f"{view.title} {self._words()}")
-        self.update()
+    def show_doubts(self, count: int, doubts: Sequence[str]) -> None:
+        """Tell how many landmarks of the list are weak, and what is doubted."""
+        do = tr("Select each: drag its pin if it lies wrong, or say that it is right.")
+        self._count.setText(tr("{count} of them want a look.").format(count=count))
+        self._count.setVisible(bool(count))
+        self._said.setText(" ".join([*map(say, doubts), *[do] * bool(count)]))
+        self.setVisible(bool(doubts) or bool(count))
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        tokens = tokens_of(self)
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        paint_card(painter, self, "selected", 7)
-        tone = tokens.accent if self.view.by_hand else getattr(tokens, tone_of(self.view.confidence))
-        middle, right = self.height() / 2, self.width() - 10
-        painter.setPen(QPen(QColor(tokens.text_caption if self.view.absent else tokens.raised), 1.5))
-        painter.setBrush(Qt.BrushStyle.NoBrush if self.view.absent else QColor(tone))
-        painter.drawEllipse(QPointF(14, middle), 5.5, 5.5)
-        painter.setFont(font("name" if self.isChecked() else "body"))
-        painter.setPen(QColor(tokens.text_quiet if self.view.absent else tokens.text))
-        left = Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft
-        room = self.width() - 28 - (70 if self.view.by_hand else 90 if self.view.absent else 112)
-        title = painter.fontMetrics().elidedText(self.text(), Qt.TextElideMode.ElideRight, room)
-        painter.drawText(QRectF(28, 0, room, self.height()), left, title)
-        painter.setFont(font("secondary", tabular=True))
-        painter.setPen(QColor(tokens.text if self.isChecked() else tokens.text_quiet))
-        past = Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight
-        painter.drawText(QRectF(right - 110, 0, 110, self.height()), past, self._words())
-        if self.view.by_hand or self.view.absent:
-            return
         painter.setPen(Qt.PenStyle.NoPen)
-        bar = QRectF(right - 48 - 52, middle - 1.5, 52, 3)
-        painter.setBrush(QColor(tokens.groove))
-        painter.drawRoundedRect(bar, 1.5, 1.5)
-        bar.setWidth(52 * min(max(self.view.confidence, 0.0), 1.0))
-        painter.setBrush(QColor(tone))
-        painter.drawRoundedRect(bar, 1.5, 1.5)
-
-    def _words(self) -> str:
-        if self.view.absent:
-            return tr("not found")
-        return tr("by hand") if self.view.by_hand else f"{self.view.confidence * 100:.0f} %"
+        painter.setBrush(QColor(tokens_of(self).warn_fill))
+        painter.drawRoundedRect(QRectF(self.rect()), 8, 8)

@@ -5,16 +5,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import QRectF, Qt
+from PySide6.QtCore import QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
+from app.dress.parts import ToolButton
 from app.dress.theme import label, tokens_of
 from app.wording.words import number, tr
 
 
 class StatusBar(QWidget):
-    """Facts and volume on the left; the job and the saved time on the right."""
+    """Facts and volume on the left; the job and the saved time on the right.
+
+    ``job_cancelled`` when the user does not want the job that is shown any more.
+    """
+
+    job_cancelled = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -32,7 +38,9 @@ class StatusBar(QWidget):
         job.setContentsMargins(0, 0, 0, 0)
         job.setSpacing(8)
         self._job_name, self._bar = label("", "caption"), ProgressBar()
-        for each in (self._job_name, self._bar):
+        self.stop = ToolButton("x", tr("Cancel this work"), size=10, room=20)
+        self.stop.clicked.connect(self.job_cancelled)
+        for each in (self._job_name, self._bar, self.stop):
             job.addWidget(each)
         self._job.hide()
         self._saved = label("", "caption")

@@ -9,6 +9,7 @@ import numpy as np
 from app.seeing.portrait import Picture, portrait
 from core.body import Body
 from core.mesh import Floats, unit
+from core.progress import Progress, quiet
 from core.standing.told import AXES, nearest_axis
 from core.standing.upright import Pose
 
@@ -47,9 +48,15 @@ def ways(pose: Pose) -> list[Way]:
     return [_way(turn, turn @ now.T) for turn in found[:MOST]]
 
 
-def pictures(body: Body, size: tuple[int, int], clay: tuple[int, int, int]) -> list[tuple[Way, Picture]]:
-    """Return each way with a picture of the body as it would stand; see ``portrait``."""
-    return [(way, portrait(body.calm, way.turn, size, clay)) for way in ways(body.pose)]
+def pictures(
+    body: Body, size: tuple[int, int], clay: tuple[int, int, int], progress: Progress = quiet
+) -> list[tuple[Way, Picture]]:
+    """Return each way with a picture of the body as it would stand; see ``portrait``. Raises Cancelled."""
+    painted: list[tuple[Way, Picture]] = []
+    for way in ways(body.pose):
+        progress("painting", len(painted) / MOST)
+        painted.append((way, portrait(body.calm, way.turn, size, clay)))
+    return painted
 
 
 def _alike(turn: Floats, old: Floats) -> bool:

@@ -6,7 +6,17 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 import numpy as np
-from PySide6.QtCore import QEasingCurve, QEvent, QRectF, Qt, QTimer, QVariantAnimation, Signal
+from PySide6.QtCore import (
+    QEasingCurve,
+    QEvent,
+    QObject,
+    QPointF,
+    QRectF,
+    Qt,
+    QTimer,
+    QVariantAnimation,
+    Signal,
+)
 from PySide6.QtGui import QImage, QResizeEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
@@ -16,7 +26,7 @@ from app.seeing.scene import Scene
 from app.showing.canvas import draw, make_canvas
 from app.showing.overlay import BandLabel, Overlay, Pin
 from app.showing.pointer import Pointer
-from core.mesh import Floats
+from core.mesh import Floats, Points
 
 GLIDE = 220
 """Duration of a move to another view [ms]."""
@@ -24,7 +34,7 @@ GLIDE = 220
 REST = 250
 """Stillness after which the picture is drawn smooth [ms]."""
 
-_HEARD = ("band_clicked", "band_hovered", "pin_pressed", "pin_moved", "pin_released")
+_HEARD = ("band_clicked", "band_hovered", "pin_pressed", "pin_moved", "pin_released", "pin_hovered")
 
 
 class Viewport(QWidget):
@@ -32,7 +42,8 @@ class Viewport(QWidget):
 
     ``band_clicked`` and ``band_hovered`` name a line (hovering off all lines: an empty name).
     ``pin_pressed``, ``pin_moved`` (name, place (3,) [mm] on the body at rest) and ``pin_released`` follow
-    a dragged pin. ``view_changed`` says that the camera has moved. Belongs to the thread of the window.
+    a dragged pin, ``pin_hovered`` the pointer (off all pins: an empty name). ``view_changed`` says that the
+    camera has moved. Belongs to the thread of the window.
     """
 
     band_clicked = Signal(str)
@@ -40,6 +51,7 @@ class Viewport(QWidget):
     pin_pressed = Signal(str)
     pin_moved = Signal(str, object)
     pin_released = Signal(str)
+    pin_hovered = Signal(str)
     view_changed = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -170,6 +182,15 @@ class Viewport(QWidget):
         """Return the place of the body at rest, shape (3,) [mm], in the middle of the picture, or None."""
         return self._pointer.skin_at(QRectF(self._canvas.rect()).center())
 
+    def watch_keys(self, watcher: QObject) -> None:
+        """Let ``watcher`` filter the keys that are pressed while the view has the focus."""
+        for each in (self, self._canvas):
+            each.installEventFilter(watcher)
+
+    def skin_at(self, place: QPointF) -> Floats | None:
+        """Return the place of the body at rest, shape (3,) [mm], that is seen at a pixel, or None."""
+        return self._pointer.skin_at(place)
+
     def set_dark(self, dark: bool) -> None:
         """Repaint for the light or the dark theme."""
         self.scene.set_dark(dark)
@@ -203,6 +224,11 @@ class Viewport(QWidget):
         """Glide to where the whole body is in the picture, and keep it there when the size changes."""
         self._fit = self.scene.framing_all
         self._go(self._fit(self._aspect()))
+
+    def frame_points(self, points: Points) -> None:
+        """Glide to places on the body, shape (k, 3) [mm]."""
+        self._fit = None
+        self._go(self.scene.framing(points, self._aspect()))
 
     def frame_bust(self) -> None:
         """Glide to the bust, and keep it framed when the size changes."""

@@ -6,17 +6,20 @@ begins between two of them is closed in on.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from core.comparison import shape_of
+from core.design import Design
+from core.design_lines import WornLine
 from core.exact import solve_exact
 from core.lines import RATIO_LIMITS, Line
 from core.mesh import Floats
 from core.model import ConstrainedModel
 from core.pipeline import Stages, build, targets_of
+from core.progress import Progress, quiet
 from core.solving.condition import CALM_RANGE, FOLD_LIMIT, STRAIN_RANGE, Condition
 from core.solving.newton import Balance, energy_steps
 from core.solving.potential import Potential
@@ -62,10 +65,20 @@ class Limits:
     found: bool = True
 
 
-def shortest(model: ConstrainedModel, ratios: tuple[float, ...], name: str) -> Limits:
-    """Return how short the worn line ``name`` can be made, with ``ratios`` as set, one per line."""
-    index = [line.name for line in model.lines].index(name)
-    walk = _Walk(model, ratios, index)
+def shortest(
+    model: ConstrainedModel,
+    ratios: tuple[float, ...],
+    name: str,
+    partners: Collection[str] = (),
+    progress: Progress = quiet,
+) -> Limits:
+    """Return how short the worn line ``name`` can be made, with ``ratios`` as set, one per line.
+
+    ``partners`` are lines that share its length. ``progress`` hears each balance; raises Cancelled.
+    """
+    lines = [line.name for line in model.lines]
+    index = lines.index(name)
+    walk = _Walk(model, ratios, index, [lines.index(each) for each in partners], progress)
     line, present = model.lines[index], walk.solved(ratios[index])
     beyond = tuple(sign for sign in SIGNS if present is not None and present.shows(sign))
     if not line.constrains:
@@ -76,14 +89,27 @@ def shortest(model: ConstrainedModel, ratios: tuple[float, ...], name: str) -> L
     return Limits(line, length, beyond, begins, last, found=bool(stops))
 
 
+def limits_of(stages: Stages, name: str, progress: Progress = quiet) -> Limits:
+    """Return the limits of a line, worn or not, the others being as they are set.
+
+    A linked partner goes with it. Raises Cancelled.
+    """
+    both, worn = stages.design.linked(name), name in stages.design.worn()
+    tried = build(_wearing(stages.design, both), stages)
+    ratios, partners = targets_of(tried.design, tried).ratios, set(both) - {name}
+    limits = shortest(tried.model, ratios, name, partners, progress)
+    return limits if worn else replace(limits, present=None, beyond=())
+
+
 def all_limits(stages: Stages) -> Iterator[Limits]:
-    """Yield the limits of each line that moves anything, worn or not, the others being as they are set."""
-    for line in stages.model.lines:
-        if line.constrains:
-            worn = line.name in stages.design.worn()
-            tried = stages if worn else build(stages.design.with_line(line.name, 1.0), stages)
-            limits = shortest(tried.model, targets_of(tried.design, tried).ratios, line.name)
-            yield limits if worn else replace(limits, present=None, beyond=())
+    """Yield the limits of each line that moves anything, worn or not; see ``limits_of``."""
+    return (limits_of(stages, line.name) for line in stages.model.lines if line.constrains)
+
+
+def _wearing(design: Design, names: Collection[str]) -> Design:
+    """Return the design with these lines worn, whether they are locked or not."""
+    off = set(names) - design.worn()
+    return replace(design, lines=(*design.lines, *(WornLine(name, 1.0) for name in sorted(off))))
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,8 +136,17 @@ class _Stop:
 class _Walk:
     """The way of one line from its rest length down to the shortest that can be asked for."""
 
-    def __init__(self, model: ConstrainedModel, ratios: tuple[float, ...], index: int) -> None:
+    def __init__(
+        self,
+        model: ConstrainedModel,
+        ratios: tuple[float, ...],
+        index: int,
+        partners: Collection[int],
+        progress: Progress,
+    ) -> None:
         self._model, self._ratios, self._index = model, ratios, index
+        self._together = {index, *partners}
+        self._progress = progress
         self._shape = shape_of(model)
         self._snapped = False
 
@@ -130,7 +165,8 @@ class _Walk:
         return None if balance is None else self._stop(ratio, balance)
 
     def _with(self, ratio: float) -> tuple[float, ...]:
-        return (*self._ratios[: self._index], ratio, *self._ratios[self._index + 1 :])
+        self._progress("finding limits", 0.0)
+        return tuple(ratio if at in self._together else set_ for at, set_ in enumerate(self._ratios))
 
     def _stop(self, ratio: float, balance: Balance) -> _Stop:
         points = self._model.tensegric.expand(balance.state.moved)

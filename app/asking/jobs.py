@@ -1,0 +1,121 @@
+"""Jobs: named work in passing threads that tells how far it is and is let go of at once."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections.abc import Callable
+
+from PySide6.QtCore import QObject, QTimer, Signal
+
+from core.progress import Cancelled, Progress
+
+LOOKS = 100
+"""Milliseconds between two looks at how far the jobs are."""
+
+
+def _log(error: Exception) -> None:
+    logging.error("a job failed", exc_info=error)
+
+
+class Job:
+    """One piece of work: its ``words`` for the user, the ``share`` done (0..1, None while nobody knows).
+
+    ``waited`` tells that the user waits for it; ``wanted`` that nobody has cancelled it.
+    """
+
+    def __init__(
+        self,
+        words: str,
+        waited: bool,
+        done: Callable[[object], None],
+        failed: Callable[[Exception], None],
+    ) -> None:
+        self.words, self.waited = words, waited
+        self.done, self.failed = done, failed
+        self.share: float | None = None
+        self.wanted = True
+        self.began = time.monotonic()
+
+    def hear(self, what: str, share: float) -> None:
+        """Hear how far the work is, in its thread; raises Cancelled once nobody wants it any more."""
+        if not self.wanted:
+            raise Cancelled
+        self.share = share
+
+
+class Jobs(QObject):
+    """Runs plain functions in threads; what follows happens in the window's thread.
+
+    ``changed`` says that jobs came, went or got further.
+    """
+
+    changed = Signal()
+    _ended = Signal(object, object, object)
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._threads: dict[Job, threading.Thread] = {}
+        self._clock = QTimer(self, interval=LOOKS)
+        self._clock.timeout.connect(self.changed)
+        self._ended.connect(self._end)
+
+    def run(
+        self,
+        words: str,
+        work: Callable[[Progress], object],
+        done: Callable[[object], None],
+        failed: Callable[[Exception], None] = _log,
+        *,
+        waited: bool = False,
+    ) -> Job:
+        """Begin ``work``; then ``done`` takes its result, or ``failed`` what it raised: the log, if not said.
+
+        Neither is called once the job is cancelled. ``waited``: the user asked for it and waits.
+        """
+        job = Job(words, waited, done, failed)
+        thread = threading.Thread(target=self._work, args=(job, work), name="busk-job", daemon=True)
+        self._threads[job] = thread
+        thread.start()
+        self._clock.start()
+        self.changed.emit()
+        return job
+
+    def at_work(self) -> list[Job]:
+        """Return the jobs that are wanted, those first that the user waits for."""
+        return sorted((job for job in self._threads if job.wanted), key=lambda job: not job.waited)
+
+    def cancel(self, job: Job | None) -> None:
+        """Let go of a job at once; its thread ends when it next tells how far it is."""
+        if job is not None:
+            job.wanted = False
+            self.changed.emit()
+
+    def close(self) -> None:
+        """Let go of all jobs, and wait until their threads have ended."""
+        self._clock.stop()
+        for job in self._threads:
+            job.wanted = False
+        for thread in self._threads.values():
+            thread.join()
+
+    def _work(self, job: Job, work: Callable[[Progress], object]) -> None:
+        result, fault = None, None
+        try:
+            result = work(job.hear)
+        except Cancelled:
+            job.wanted = False
+        except Exception as error:
+            fault = error
+        self._ended.emit(job, result, fault)
+
+    def _end(self, job: Job, result: object, fault: Exception | None) -> None:
+        del self._threads[job]
+        if not self._threads:
+            self._clock.stop()
+        if job.wanted and fault is None:
+            job.done(result)
+        elif job.wanted and fault is not None:
+            job.failed(fault)
+        self.changed.emit()

@@ -1,0 +1,65 @@
+"""What the window does about work that takes its time: it names it, shows how far it is, lets go of it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+
+from app.desks.present_scan import work_steps, work_words
+
+if TYPE_CHECKING:
+    from app.asking.jobs import Job
+    from app.main_window import MainWindow
+
+AGE = 0.3
+"""Seconds that a job nobody waits for takes before it is worth a word."""
+
+
+class JobDesk(QObject):
+    """Shows the work in hand: what the solver's thread reads and builds, else the first of the jobs."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._session = window.session
+        self._built = ("", 1.0)
+
+    def show_work(self, what: str, share: float) -> None:
+        """Name what is read or built, and how much of it is done; an empty name ends it."""
+        words = work_words(what)
+        if words or not what:
+            self._built = words, share
+            self.show()
+
+    def show(self) -> None:
+        """Show the work that the user waits for, with a card, else a job beside it in the status bar."""
+        window = self._window
+        # While a pin is carried the model follows all the time: that is no work to wait for.
+        words, share = ("", 1.0) if window.landmark_desk.carries else self._built
+        job = None if words else self._shown_job()
+        waited = bool(words) or (job is not None and job.waited)
+        steps: Sequence[str] = work_steps() if words else ()
+        shown: float | None = share
+        if job is not None:
+            words, shown = job.words, job.share
+        window.status.set_job(words, shown)
+        window.view.busy.show_work(words if waited else "", shown, steps)
+        window.actions_.cancel.setEnabled(waited or window.landmark_desk.carries)
+
+    def cancel(self) -> None:
+        """Let go of the pin that is carried, else of the work that is shown; all is as it was before."""
+        if self._window.landmark_desk.let_go():
+            return
+        if self._built[0]:
+            self._session.cancel()
+            self.show_work("", 1.0)
+        else:
+            self._window.jobs.cancel(self._shown_job())
+
+    def _shown_job(self) -> Job | None:
+        now = time.monotonic()
+        jobs = self._window.jobs.at_work()
+        return next((job for job in jobs if job.waited or now - job.began > AGE), None)

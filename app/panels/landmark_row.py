@@ -1,0 +1,115 @@
+"""A landmark in the list: what it is called, how sure it is, and the rule it was found by."""
+
+# ruff: noqa: D102, N802 - Qt names its events and says what they are
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QEnterEvent, QPainter, QPaintEvent, QPen
+from PySide6.QtWidgets import QAbstractButton, QSizePolicy
+
+from app.dress.parts import paint_card
+from app.dress.theme import font, tokens_of, tone_of
+from app.wording.words import say, tr
+
+
+@dataclass(frozen=True)
+class LandmarkView:
+    """What is shown of a landmark; ``confidence`` 0..1, ``group`` bust, under or further.
+
+    ``absent``: it was not found, and can be placed. ``weak``: the control mesh hangs on it and it could
+    hardly be seen. ``traced``: it was read from a curve on the skin.
+    """
+
+    name: str
+    title: str
+    confidence: float
+    rule: str
+    group: str = "bust"
+    by_hand: bool = False
+    absent: bool = False
+    weak: bool = False
+    traced: bool = False
+
+    def words(self) -> str:
+        """Return the rule that it was found by, and what it was read from."""
+        read = tr("The curve that it was read from is drawn on the body.")
+        return f"{say(self.rule)}\n{read}" if self.traced else say(self.rule)
+
+
+class LandmarkRow(QAbstractButton):
+    """A landmark: dot, name, bar and percent of confidence; ``hovered`` while the pointer is over it."""
+
+    hovered = Signal(bool)
+
+    def __init__(self, view: LandmarkView) -> None:
+        super().__init__()
+        self.view = view
+        self.setCheckable(True)
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
+        # A button would rather widen the list than be narrower than it likes: the figures would be cut off.
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self.setMinimumHeight(34)
+
+    def sizeHint(self) -> QSize:
+        type_ = font("name")
+        self.setFont(type_)
+        return QSize(self.fontMetrics().horizontalAdvance(self.text()) + 150, 34)
+
+    def show_view(self, view: LandmarkView) -> None:
+        """Show new values of the same landmark."""
+        self.view = view
+        self.setText(view.title)
+        self.setToolTip(view.words())
+        self.setAccessibleName(f"{view.title} {self._words()}")
+        self.update()
+
+    def enterEvent(self, event: QEnterEvent) -> None:
+        self.hovered.emit(True)
+
+    def leaveEvent(self, event: QEvent) -> None:
+        self.hovered.emit(False)
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        tokens = tokens_of(self)
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        paint_card(painter, self, "selected", 7)
+        tone = getattr(tokens, self._tone())
+        middle, right = self.height() / 2, self.width() - 10
+        painter.setPen(QPen(QColor(tokens.text_caption if self.view.absent else tokens.raised), 1.5))
+        painter.setBrush(Qt.BrushStyle.NoBrush if self.view.absent else QColor(tone))
+        painter.drawEllipse(QPointF(14, middle), 5.5, 5.5)
+        painter.setFont(font("name" if self.isChecked() else "body"))
+        painter.setPen(QColor(tokens.text_quiet if self.view.absent else tokens.text))
+        left = Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft
+        room = self.width() - 28 - (70 if self.view.by_hand else 90 if self.view.absent else 112)
+        title = painter.fontMetrics().elidedText(self.text(), Qt.TextElideMode.ElideRight, room)
+        painter.drawText(QRectF(28, 0, room, self.height()), left, title)
+        painter.setFont(font("secondary", tabular=True))
+        painter.setPen(QColor(tokens.text if self.isChecked() else tokens.text_quiet))
+        past = Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight
+        painter.drawText(QRectF(right - 110, 0, 110, self.height()), past, self._words())
+        if self.view.by_hand or self.view.absent:
+            return
+        painter.setPen(Qt.PenStyle.NoPen)
+        bar = QRectF(right - 48 - 52, middle - 1.5, 52, 3)
+        painter.setBrush(QColor(tokens.groove))
+        painter.drawRoundedRect(bar, 1.5, 1.5)
+        bar.setWidth(52 * min(max(self.view.confidence, 0.0), 1.0))
+        painter.setBrush(QColor(tone))
+        painter.drawRoundedRect(bar, 1.5, 1.5)
+
+    def _tone(self) -> str:
+        """Return the token of its colour: amber and red are for what wants a look, and for nothing else."""
+        if self.view.by_hand:
+            return "accent"
+        tone = tone_of(self.view.confidence)
+        return tone if self.view.weak or tone == "ok" else "control"
+
+    def _words(self) -> str:
+        if self.view.absent:
+            return tr("not found")
+        return tr("by hand") if self.view.by_hand else f"{self.view.confidence * 100:.0f} %"
