@@ -11,7 +11,6 @@ from app.asking.housekeeping import Housekeeping
 from app.asking.jobs import Jobs
 from app.asking.session import Session
 from app.desks.desk import Desk
-from app.desks.flip_key import FlipKey
 from app.desks.help_desk import HelpDesk
 from app.desks.job_desk import JobDesk
 from app.desks.landmark_desk import LandmarkDesk
@@ -26,6 +25,7 @@ from app.desks.safe_mode import SafeMode
 from app.desks.scan_desk import ScanDesk
 from app.desks.section_desk import SectionDesk
 from app.desks.start_desk import StartDesk
+from app.desks.view_desk import ViewDesk
 from app.layout import Layout
 from app.panels.inspector import Inspector
 from app.panels.landmarks import LandmarksPanel
@@ -76,7 +76,7 @@ class MainWindow(QMainWindow):
         self.help = HelpDesk(self)
         self.preferences = PreferencesDesk(self)
         self.rescuer = Rescue(self)
-        self.flip_key = FlipKey(self, self.actions_.flip, self.view)
+        self.view_desk = ViewDesk(self)
         self.housekeeping = Housekeeping(self)
         connect(self)
 

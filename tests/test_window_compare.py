@@ -137,9 +137,9 @@ def bodies_side_by_side_share_one_camera(window: MainWindow) -> Script:
     tools["control-mesh"].trigger()
     assert left.scene.view == right.scene.view
     assert left.scene.is_visible("control")
-    window.desk.set_line_visible("mid-bust", False)
+    window.view.set_line_visible("mid-bust", False)
     assert "mid-bust" not in left.scene.bands.names
-    window.desk.set_line_visible("mid-bust", True)
+    window.view.set_line_visible("mid-bust", True)
     rest, shown = left.scene.body, right.scene.body
     assert rest is not None
     assert shown is not None

@@ -9,6 +9,7 @@ UNTIL_THEN = {
     "language": "en",
     "start": "page",  # what opens: the start page, the last project or the sample
     "mouse": "busk",  # one of app.showing.gestures.PRESETS
+    "material": "clay",  # one of app.seeing.material.MATERIALS
     "motion": "full",  # or reduced
     "autosave": "30",  # seconds
 }

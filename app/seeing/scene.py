@@ -12,18 +12,16 @@ from app.seeing.bands import Band, Bands
 from app.seeing.body import BodyActor, Ghost
 from app.seeing.camera import LENS, View
 from app.seeing.control import ControlActor
+from app.seeing.framing import NOBODY, box_of, depth_range, framing_bust, framing_points
+from app.seeing.material import CLAY, look_of
 from app.seeing.ribbon import Surface
 from app.seeing.section import SectionSheet
-from app.seeing.stage import LOOKS, Stage
+from app.seeing.stage import Look, Stage
 from app.seeing.trace import Trace
 from core.mesh import Flags, Floats, Indices, Mesh, Points
 
 PARTS = ("body", "bands", "control", "floor", "ghost")
 """What ``Scene.set_visible`` knows; the ghost is the fringe of the body at rest behind the moved one."""
-
-_ABOVE_BUST, _BELOW_BUST = 270.0, 350.0  # what a framed bust shows: from the neck to below the waist [mm]
-
-_BUST_HEIGHT = 0.56  # of a torso cut at the hips, used until the landmarks are known
 
 
 class Scene:
@@ -47,6 +45,7 @@ class Scene:
         self._control_points: tuple[Points, Points] | None = None
         self._visible = dict.fromkeys(PARTS, True) | {"control": False, "ghost": False}
         self._before = False
+        self._material = CLAY
         self._view = View()
         self.set_dark(dark)
         self.look_from(self._view)
@@ -58,7 +57,7 @@ class Scene:
         self.bands.clear()
         self._trace.show(np.empty((0, 3)))
         self._drop_control()
-        self.body = BodyActor(self.plotter, mesh, LOOKS[self._dark])
+        self.body = BodyActor(self.plotter, mesh, self._look)
         self._surface = Surface(mesh)
         low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
         self._stage.stand(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), low[2])
@@ -75,7 +74,7 @@ class Scene:
         """Show the control mesh on the body; ``fixed`` control points, shape (n,), are small and dark."""
         self._drop_control()
         self._control = ControlActor(self.plotter, control, fixed, self._laying_ground(), self._pixel_ratio)
-        self._control.set_look(LOOKS[self._dark])
+        self._control.set_look(self._look)
         self._control_points = (control.vertices, control.vertices)
         self._apply_visible()
 
@@ -143,7 +142,7 @@ class Scene:
     def set_dark(self, dark: bool) -> None:
         """Repaint everything for the light or the dark theme."""
         self._dark = dark
-        look = LOOKS[dark]
+        look = self._look
         self._stage.set_look(look)
         self._trace.set_dark(dark)
         self.section.set_dark(dark)
@@ -153,6 +152,20 @@ class Scene:
             self._control.set_look(look)
         if self._ghost is not None:
             self._ghost.actor.prop.color = look.ghost
+
+    @property
+    def material(self) -> str:
+        """What the body looks as if it were made of."""
+        return self._material
+
+    def set_material(self, material: str) -> None:
+        """Paint the body as one of ``app.seeing.material.MATERIALS``; raises KeyError for another word."""
+        self._material = material
+        self.set_dark(self._dark)
+
+    @property
+    def _look(self) -> Look:
+        return look_of(self._dark, self._material)
 
     @property
     def view(self) -> View:
@@ -167,9 +180,7 @@ class Scene:
         camera.view_angle = LENS
         camera.parallel_projection = view.parallel
         camera.parallel_scale = view.half_height
-        centre, radius = self._ball()
-        depth = float((view.eye - centre) @ view.axes[2])
-        camera.clipping_range = (max(depth - radius, 20.0), max(depth + radius, 40.0))
+        camera.clipping_range = depth_range(view, self._box())
         if self._ghost is not None:
             self._ghost.look_from(view)
 
@@ -195,12 +206,13 @@ class Scene:
 
     def framing_bust(self, aspect: float) -> View:
         """Return the view from the same side that shows bust and trunk, from the shoulders to the waist."""
-        box = self._box()
-        level = box[4] + _BUST_HEIGHT * (box[5] - box[4])
-        if self._control_points is not None:
-            level = float(self._control_points[0][:, 2].mean())
-        top, bottom = min(level + _ABOVE_BUST, box[5]), max(level - _BELOW_BUST, box[4])
-        return self._view.framing([*box[:4], bottom, top], aspect, margin=1.08)
+        laid = self._control_points
+        level = None if laid is None else float(laid[0][:, 2].mean())
+        return framing_bust(self._view, self._box(), level, aspect)
+
+    def framing(self, points: Points, aspect: float) -> View:
+        """Return the view from the same side of places on the body, shape (k, 3) [mm]."""
+        return framing_points(self._view, points, aspect)
 
     # -- what is under the pointer
 
@@ -271,7 +283,7 @@ class Scene:
             self._stage.show_floor(self._visible["floor"])
             if self._visible["ghost"] and self._ghost is None:
                 self._ghost = Ghost(self.plotter, self.body.rest)
-                self._ghost.actor.prop.color = LOOKS[self._dark].ghost
+                self._ghost.actor.prop.color = self._look.ghost
                 self._ghost.look_from(self._view)
         if self._ghost is not None:
             self._ghost.actor.SetVisibility(self._visible["ghost"] and not self._before)
@@ -279,16 +291,8 @@ class Scene:
             self._control.set_visible(self._visible["control"])
         self.bands.set_visible(self._visible["bands"])
 
-    def _box(self) -> list[float]:
-        if self.body is None:
-            return [-200.0, 200.0, -130.0, 130.0, 0.0, 560.0]
-        low, high = self.body.rest.vertices.min(axis=0), self.body.rest.vertices.max(axis=0)
-        return [float(x) for pair in zip(low, high, strict=True) for x in pair]
-
-    def _ball(self) -> tuple[Floats, float]:
-        """Return centre and radius of a ball round body and floor [mm]."""
-        box = np.array(self._box()).reshape(3, 2)
-        return box.mean(axis=1), float(np.hypot(np.linalg.norm(box[:, 1] - box[:, 0]) / 2.0, 700.0))
+    def _box(self) -> Floats:
+        return NOBODY if self.body is None else box_of(self.body.rest.vertices)
 
     def _aspect(self) -> float:
         width, height = self.plotter.window_size

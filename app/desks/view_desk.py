@@ -1,0 +1,42 @@
+"""What the window does about the view itself: the body's material, what is framed, the space bar."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+
+from app.desks.flip_key import FlipKey
+from app.dress.wishes import wish, wish_for
+from app.wording.words import tr
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+
+
+class ViewDesk(QObject):
+    """Adds to the menu of the view what has no button on it."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._view = window.view
+        do = window.actions_
+        FlipKey(window, do.flip, window.view)
+        said = tr("Come close to the selected line or landmark")
+        self.fit = do.add("view", tr("Fit the selection"), "F", said, do=self._view.frame_selection)
+        do.submenu("view", "material", tr("Material"))
+        titles = {"clay": tr("Clay"), "plaster": tr("Plaster"), "graphite": tr("Graphite")}
+        self.materials = do.group("material", titles)
+        for name, action in self.materials.items():
+            action.triggered.connect(lambda _=False, name=name: self.choose_material(name))
+        self._show_material(wish("material"))
+
+    def choose_material(self, name: str) -> None:
+        """Show the body in another material, now and in later sessions."""
+        wish_for("material", name)
+        self._show_material(name)
+
+    def _show_material(self, name: str) -> None:
+        name = name if name in self.materials else "clay"
+        self.materials[name].setChecked(True)
+        self._view.set_material(name)

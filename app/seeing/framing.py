@@ -1,0 +1,44 @@
+"""Which part of a body is framed by a view, from whatever side."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.seeing.camera import View
+from core.mesh import Floats, Points
+
+NOBODY = np.array([[-200.0, 200.0], [-130.0, 130.0], [0.0, 560.0]])
+"""The box of a torso, where there is none."""
+
+_ABOVE_BUST, _BELOW_BUST = 270.0, 350.0  # what a framed bust shows: from the neck to below the waist [mm]
+
+_BUST_HEIGHT = 0.56  # of a torso cut at the hips, used until the landmarks are known
+
+_CLOSEST = 90.0  # what is shown round a place, whatever its size [mm]
+
+
+def box_of(points: Points) -> Floats:
+    """Return the least and largest coordinates of points (n, 3), shape (3, 2) [mm]."""
+    return np.stack([points.min(axis=0), points.max(axis=0)], axis=1)
+
+
+def framing_bust(view: View, box: Floats, level: float | None, aspect: float) -> View:
+    """Return ``view`` of shoulders to waist; ``level`` is the height of the bust [mm], if it is known."""
+    low, high = box[2]
+    if level is None:
+        level = low + _BUST_HEIGHT * (high - low)
+    height = max(level - _BELOW_BUST, low), min(level + _ABOVE_BUST, high)
+    return view.framing(np.stack([*box[:2], height]), aspect, margin=1.08)
+
+
+def framing_points(view: View, points: Points, aspect: float) -> View:
+    """Return ``view`` of ``points``, shape (k, 3) [mm], with some of what lies round them."""
+    around = np.array([-_CLOSEST, _CLOSEST])
+    return view.framing(box_of(points) + around, aspect)
+
+
+def depth_range(view: View, box: Floats) -> tuple[float, float]:
+    """Return between which distances from the eye a body in ``box`` and its floor lie [mm]."""
+    radius = float(np.hypot(np.linalg.norm(box[:, 1] - box[:, 0]) / 2.0, 700.0))
+    depth = float((view.eye - box.mean(axis=1)) @ view.axes[2])
+    return max(depth - radius, 20.0), max(depth + radius, 40.0)
