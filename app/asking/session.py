@@ -105,6 +105,10 @@ class Session(Editing):
         elif opening is not None or not self._take_back():
             self._submit(self.document.design)
 
+    def set_pace(self, turns_per_second: float | None) -> None:
+        """Make turns no faster than this, so that each can be seen, or as fast as they go."""
+        self._solving.set_pace(turns_per_second)
+
     def close(self) -> None:
         """Stop the solver, and wait until it has ended."""
         self._solving.close()

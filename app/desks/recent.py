@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
+import time
+import zipfile
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
-from PySide6.QtCore import QSettings
+from PySide6.QtCore import QDateTime, QLocale, QSettings
+from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QMenu
 
+from app.desks.project_picture import STATE
+from app.panels.project_card import ProjectView
+from app.showing.verdict_chip import TONES, state_title
 from app.wording.words import tr
+from core.project import is_project
 
 _KEY = "recent"
-_MOST = 10
+_TOURED = "toured"
+_MOST = 12
+_LARGEST_PICTURE = 8_000_000
 
 
 def recent_files() -> list[str]:
@@ -27,6 +37,27 @@ def remember_file(path: str) -> None:
     QSettings().setValue(_KEY, [path, *(other for other in recent_files() if other != path)][:_MOST])
 
 
+def forget_file(path: str) -> None:
+    """Take a file off the list."""
+    QSettings().setValue(_KEY, [other for other in recent_files() if other != path])
+
+
+def is_first_start() -> bool:
+    """Tell whether nobody has worked here yet: no file was opened, and the tour neither seen nor skipped."""
+    return not recent_files() and not QSettings().contains(_TOURED)
+
+
+def end_first_start() -> None:
+    """Say that the tour was seen, or not wanted."""
+    QSettings().setValue(_TOURED, True)
+
+
+def file_at_start() -> str:
+    """Return the file to go on with, if the user wants to go on with the last one, or an empty text."""
+    last = next(iter(recent_files()), "") if QSettings().value("start") == "last" else ""
+    return last if last and Path(last).exists() else ""
+
+
 def fill_recent_menu(menu: QMenu, open_file: Callable[[str], None]) -> None:
     """List the last files in a menu; those that are gone are grey."""
     menu.clear()
@@ -37,3 +68,45 @@ def fill_recent_menu(menu: QMenu, open_file: Callable[[str], None]) -> None:
         action.triggered.connect(lambda _=False, chosen=path: open_file(chosen))
     if menu.isEmpty():
         menu.addAction(tr("Nothing yet")).setEnabled(False)
+
+
+def project_views() -> list[ProjectView]:
+    """Return the last files as they are shown on the start page, newest first."""
+    return [_view_of(Path(path)) for path in recent_files()]
+
+
+def _view_of(path: Path) -> ProjectView:
+    name = path.stem if is_project(path) else path.name
+    try:
+        changed = path.stat().st_mtime
+    except OSError:
+        return ProjectView(str(path), name, "", gone=True)
+    picture = picture_of(path) if is_project(path) else None
+    state = picture.text(STATE) if picture is not None else ""
+    look = "" if state in ("", "settled") or state not in TONES else state_title(state)
+    return ProjectView(str(path), name, day_of(changed, time.time()), picture, look=look)
+
+
+def picture_of(path: Path) -> QImage | None:
+    """Return the picture in a project, or None; a file that is no whole project says so when it is opened."""
+    with (
+        suppress(OSError, KeyError, ValueError, RuntimeError, zipfile.BadZipFile),
+        zipfile.ZipFile(path) as file,
+    ):
+        if file.getinfo("preview.png").file_size <= _LARGEST_PICTURE:
+            image = QImage.fromData(file.read("preview.png"))
+            return None if image.isNull() else image
+    return None
+
+
+def day_of(then: float, now: float) -> str:
+    """Return when something was in words, both in seconds since 1970: today with its time, else the day."""
+    moment, today = (QDateTime.fromSecsSinceEpoch(int(each)) for each in (then, now))
+    days = moment.date().daysTo(today.date())
+    if days == 0:
+        return tr("Today {time}").format(time=moment.toString("HH:mm"))
+    if days == 1:
+        return tr("Yesterday")
+    # As it is written in the window's language, whatever that of the computer is.
+    form = tr("d MMM") if moment.date().year() == today.date().year() else tr("d MMM yyyy")
+    return QLocale(QLocale.Language.English).toString(moment.date(), form)

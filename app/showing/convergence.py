@@ -64,7 +64,8 @@ class Strip(QWidget):
         self.error_plot, self.height_plot = LivePlot(error_quantities()), LivePlot(height_quantities())
         self._run: tuple[Mapping[str, Track], str, Exact | None] = ({}, "adaptive", None)
         self._events: tuple[Event, ...] = ()
-        for plot in self.plots:
+        for plot, name in zip(self.plots, ("error", "height"), strict=True):
+            plot.setObjectName(name)
             for other in self.plots:
                 plot.pointed.connect(other.point_at)
                 plot.zoomed.connect(other.show_turns)

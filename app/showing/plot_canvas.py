@@ -68,9 +68,9 @@ class PlotCanvas(QWidget):
         """Return the first and the last turn in view."""
         return self.zoom or self.plotted.turns()
 
-    def scale(self) -> Scale:
-        """Return how turns and values lie on the widget."""
-        return Scale(plot_area(QRectF(self.rect())), *self.turns(), *self._values)
+    def scale(self, area: QRectF | None = None) -> Scale:
+        """Return how turns and values lie on the widget, or on another ``area`` [px]."""
+        return Scale(area or plot_area(QRectF(self.rect())), *self.turns(), *self._values)
 
     def point_at(self, turn: float | None) -> None:
         """Read the curves at the turn nearest to this one, or read no more."""

@@ -1,0 +1,99 @@
+"""The start page at work: when it is shown, what its cards do, and files that are dropped on the window."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QEvent, QObject
+from PySide6.QtGui import QDragEnterEvent
+
+from app.desks.dialogs import ask_open
+from app.desks.recent import forget_file, project_views, remember_file
+from app.desks.tour import Tour
+from app.panels.drop_zone import DropVeil
+from app.panels.start_page import StartPage
+from app.wording.samples import sample_path
+from app.wording.words import tr
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+
+
+class StartDesk(QObject):
+    """Puts the start page in the place of the work, and the work back once a file is being opened."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self.page = StartPage()
+        self.tour = Tour(window)
+        self.veil = DropVeil(window)
+        window.pages.addWidget(self.page)
+        window.installEventFilter(self)
+        said = tr("Begin with a scan, or go on with what was open before")
+        window.actions_.add("file", tr("Start page"), "Ctrl+Shift+N", said, do=self.show_page)
+        window.actions_.add("help", tr("Tour"), tip=tr("The window in four steps"), do=self.take_tour)
+
+    def show_page(self) -> None:
+        """Show the start page; what is open stays as it is."""
+        window = self._window
+        self.tour.mark.leave()
+        self.page.set_document(window.session.name if window.session.frame is not None else "")
+        self.page.set_projects(project_views())
+        window.pages.setCurrentWidget(self.page)
+        self.page.zone.choose.setFocus()
+
+    def leave_page(self) -> None:
+        """Show the work again."""
+        if self._window.pages.currentWidget() is self.page:
+            self._window.layout_.show_work()
+            self._window.view.viewport.setFocus()
+
+    def show_work(self, what: str, _share: float) -> None:
+        """Leave the page as soon as a body is being read: its progress is shown beside the view."""
+        if what:
+            self.leave_page()
+
+    def show_opened(self) -> None:
+        """Remember what was opened, unless it is a sample."""
+        self.leave_page()
+        session = self._window.session
+        if session.path is not None:
+            remember_file(str(session.path))
+            return
+        scan = session.design.scan if session.design is not None else None
+        if scan is not None and not scan.member and Path(scan.path).parent != sample_path("").parent:
+            remember_file(scan.path)
+
+    def take_tour(self) -> None:
+        """Lead through the window, on what is open or else on the sample."""
+        window = self._window
+        if window.session.frame is None:
+            window.desk.open_sample("mannequin")
+            self.tour.begin_when_settled()
+        else:
+            self.leave_page()
+            self.tour.begin()
+
+    def locate(self, path: str) -> None:
+        """Ask where a file that is gone has moved to, and open it there."""
+        found = ask_open(self._window)
+        if found:
+            forget_file(path)
+            self._window.desk.open_file(found)
+
+    def forget(self, path: str) -> None:
+        """Take a file off the list."""
+        forget_file(path)
+        self.page.set_projects(project_views())
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+        """Say over the whole window what letting go of a file will do."""
+        if isinstance(event, QDragEnterEvent) and event.type() == QEvent.Type.DragEnter:
+            files = [url.fileName() for url in event.mimeData().urls() if url.isLocalFile()]
+            if files:
+                self.veil.show_for(files[0])
+        elif event.type() in (QEvent.Type.DragLeave, QEvent.Type.Drop):
+            self.veil.hide()
+        return False

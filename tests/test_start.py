@@ -1,0 +1,120 @@
+"""How the program starts: with the sample and a tour at first, later with what was open before."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import QMimeData, QPoint, QSettings, Qt, QUrl
+from PySide6.QtGui import QDragEnterEvent, QDragLeaveEvent
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+from window_tools import Script, run_main, settled
+
+import app.desks.desk
+import app.desks.start_desk
+from app.desks.recent import day_of, file_at_start, recent_files, remember_file
+from app.main_window import MainWindow
+from app.panels.project_card import ProjectCard
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+def cards(window: MainWindow) -> dict[str, ProjectCard]:
+    """The cards of the start page by the names on them."""
+    return {card.view.name: card for card in window.start_desk.page.shelf.cards}
+
+
+def at_start(window: MainWindow) -> bool:
+    return window.start_desk.page.isVisible()
+
+
+def test_the_first_start_leads_through_the_sample_and_later_ones_go_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, person: Path
+) -> None:
+    saved, gone = tmp_path / "customer 0412.busk", tmp_path / "customer 0340.busk"
+    answers = iter(["", str(saved)])
+    monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(saved))
+    monkeypatch.setattr(app.desks.start_desk, "ask_open", lambda *_: next(answers))
+
+    def first(window: MainWindow) -> Script:
+        yield settled(window)
+        assert window.session.name == "mannequin"
+        assert not at_start(window)
+        yield lambda: window.start_desk.tour.place == 0
+        the_tour_stops_beside_four_parts(window)
+        window.desk.save_as()
+        yield lambda: window.session.path == saved
+
+    def second(window: MainWindow) -> Script:
+        yield lambda: at_start(window)
+        assert window.session.design is None
+        assert window.start_desk.tour.place == -1
+        the_cards_show_what_was_open(window)
+        a_file_over_the_window_is_named_until_it_leaves(window)
+        cards(window)["customer 0340"].click()
+        assert at_start(window), "nothing was chosen"
+        QTest.keyClick(cards(window)["customer 0340"], Qt.Key.Key_Delete)
+        assert recent_files() == [str(saved)]
+        QTest.keyClick(cards(window)["customer 0412"], Qt.Key.Key_Return)
+        yield settled(window)
+        assert not at_start(window)
+        assert window.session.path == saved
+        window.desk.open_file(str(person))
+        yield lambda: window.session.name == "person"
+        assert recent_files() == [str(saved)], "samples can always be had"
+        window.start_desk.show_page()
+        assert at_start(window)
+        QTest.keyClick(window.start_desk.page, Qt.Key.Key_Escape)
+        assert not at_start(window)
+
+    run_main([], first)
+    remember_file(str(gone))
+    run_main([], second)
+    QSettings().setValue("start", "last")
+    assert file_at_start() == str(saved)
+
+
+def the_tour_stops_beside_four_parts(window: MainWindow) -> None:
+    tour, stops = window.start_desk.tour, []
+    while tour.place >= 0:
+        stops.append(tour.place)
+        card, ring = tour.mark.geometry(), tour.mark.ring.geometry()
+        assert tour.mark.isVisible()
+        assert window.rect().contains(card)
+        assert not card.adjusted(10, 8, -10, -12).intersects(ring)
+        QTest.keyClick(tour.mark, Qt.Key.Key_Return)
+    assert stops == [0, 1, 2, 3]
+    assert not tour.mark.isVisible()
+
+
+def the_cards_show_what_was_open(window: MainWindow) -> None:
+    assert list(cards(window)) == ["customer 0340", "customer 0412"]
+    card, missing = cards(window)["customer 0412"].view, cards(window)["customer 0340"].view
+    assert missing.gone
+    assert (card.gone, card.look) == (False, "")
+    assert card.picture is not None
+    assert (card.picture.width(), card.picture.text("Verdict")) == (480, "settled")
+    assert card.day.startswith("Today")
+
+
+def a_file_over_the_window_is_named_until_it_leaves(window: MainWindow) -> None:
+    data, veil = QMimeData(), window.start_desk.veil
+    data.setUrls([QUrl.fromLocalFile(str(Path.home() / "customer.ply"))])
+    no_button, no_key = Qt.MouseButton.NoButton, Qt.KeyboardModifier.NoModifier
+    event = QDragEnterEvent(QPoint(200, 200), Qt.DropAction.CopyAction, data, no_button, no_key)
+    QApplication.sendEvent(window, event)
+    assert veil.isVisible()
+    assert veil.geometry() == window.rect()
+    assert "customer.ply" in veil.accessibleName()
+    QApplication.sendEvent(window, QDragLeaveEvent())
+    assert not veil.isVisible()
+
+
+def test_a_day_is_said_as_people_say_it() -> None:
+    noon = 1_763_812_800.0
+    day = 86_400.0
+    assert day_of(noon, noon + 60).startswith("Today ")
+    assert day_of(noon - day, noon) == "Yesterday"
+    assert day_of(noon - 3 * day, noon) == "19 Nov"
+    assert day_of(noon - 365 * day, noon) == "22 Nov 2024"
