@@ -148,21 +148,6 @@ class ViewArea(QWidget):
         elif self.selected_line in bands.names:
             self.viewport.frame_points(bands.spine(self.selected_line)[0])
 
-    def set_material(self, material: str) -> None:
-        """Paint the body as one of ``app.seeing.material.MATERIALS``."""
-        for body in self.comparison.bodies:
-            body.viewport.scene.set_material(material)
-            body.viewport.request_draw()
-
-    def frame_selection(self) -> None:
-        """Come close to the selected landmark, if it is shown, else to the selected line."""
-        _, place = self.pins.chosen()
-        bands = self.viewport.scene.bands
-        if place is not None:
-            self.viewport.frame_points(place[None])
-        elif self.selected_line in bands.names:
-            self.viewport.frame_points(bands.spine(self.selected_line)[0])
-
     # -- before and after
 
     @property

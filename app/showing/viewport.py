@@ -230,11 +230,6 @@ class Viewport(QWidget):
         self._fit = None
         self._go(self.scene.framing(points, self._aspect()))
 
-    def frame_points(self, points: Points) -> None:
-        """Glide to places on the body, shape (k, 3) [mm]."""
-        self._fit = None
-        self._go(self.scene.framing(points, self._aspect()))
-
     def frame_bust(self) -> None:
         """Glide to the bust, and keep it framed when the size changes."""
         self._fit = self.scene.framing_bust
