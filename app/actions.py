@@ -83,7 +83,9 @@ class Actions(Menus):
         self.add_menu = self.menus["lines"]
         self.add_lines = {name: self.add("lines", title, of_document=True) for name, title in titles.items()}
         self.rule("lines")
-        self.own_line = self.add("lines", tr("Draw a line…"), of_document=True)
+        said = tr("Click on the body from place to place; the line snaps to the control mesh")
+        self.draw_line = self.add("lines", tr("Draw a line on the body"), "N", said, of_document=True)
+        self.own_line = self.add("lines", tr("Line through control points…"), of_document=True)
 
     def _fill_solve(self) -> None:
         titles = {

@@ -12,21 +12,27 @@ from app.asking.jobs import Jobs
 from app.asking.session import Session
 from app.desks.desk import Desk
 from app.desks.help_desk import HelpDesk
+from app.desks.history_desk import HistoryDesk
 from app.desks.job_desk import JobDesk
 from app.desks.landmark_desk import LandmarkDesk
+from app.desks.line_drawing import LineDrawing
 from app.desks.limits_desk import LimitsDesk
 from app.desks.line_maker import LineMaker
+from app.desks.line_routing import LineRouting
 from app.desks.lines_desk import LinesDesk
 from app.desks.map_desk import MapDesk
 from app.desks.plot_desk import PlotDesk
 from app.desks.preferences_desk import PreferencesDesk
+from app.desks.recovery_desk import RecoveryDesk
 from app.desks.rescue import Rescue
+from app.desks.safe_desk import SafeDesk
 from app.desks.safe_mode import SafeMode
 from app.desks.scan_desk import ScanDesk
 from app.desks.section_desk import SectionDesk
 from app.desks.start_desk import StartDesk
 from app.desks.view_desk import ViewDesk
 from app.layout import Layout
+from app.panels.history import HistoryPanel
 from app.panels.inspector import Inspector
 from app.panels.landmarks import LandmarksPanel
 from app.panels.lines import LinesPanel
@@ -63,16 +69,19 @@ class MainWindow(QMainWindow):
         self.scan, self.landmarks = ScanPanel(), LandmarksPanel()
         self.lines, self.result = LinesPanel(), ResultPanel()
         self.model, self.door = ModelPanel(), ModelDoor()
-        self.inspector = Inspector()
+        self.history, self.inspector = HistoryPanel(), Inspector()
         self._fill_inspector()
         self.layout_ = Layout(self)
         self.pages = self.layout_.pages
         self.job_desk, self.limits_desk = JobDesk(self), LimitsDesk(self)
         self.landmark_desk, self.scan_desk = LandmarkDesk(self), ScanDesk(self)
         self.desk = Desk(self)
+        self.safe_desk, self.recovery_desk = SafeDesk(self), RecoveryDesk(self)
+        self.history_desk = HistoryDesk(self, self.history)
         self.map_desk, self.section_desk = MapDesk(self), SectionDesk(self)
         self.start_desk, self.plot_desk = StartDesk(self), PlotDesk(self)
         self.lines_desk, self.line_maker = LinesDesk(self), LineMaker(self)
+        self.line_drawing, self.line_routing = LineDrawing(self), LineRouting(self)
         self.help = HelpDesk(self)
         self.preferences = PreferencesDesk(self)
         self.rescuer = Rescue(self)
@@ -91,6 +100,7 @@ class MainWindow(QMainWindow):
         self.inspector.add("landmarks", self.landmarks)
         self.inspector.add("lines", lines, tr("Lines"))
         self.inspector.add("result", self.result, tr("Measures"))
+        self.inspector.add("history", self.history, tr("History"))
         self.inspector.add("model", self.model)
 
     def is_settled(self) -> bool:
@@ -104,7 +114,7 @@ class MainWindow(QMainWindow):
 
     def rescue(self) -> str:
         """Keep the design aside after a fault; returns where, or an empty text if it was not kept."""
-        return ""
+        return self.safe_desk.rescue()
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:  # noqa: N802
         """Take files that are dragged onto the window."""
@@ -128,8 +138,11 @@ class MainWindow(QMainWindow):
         # The solver may be in the middle of reading a scan: nobody has to watch the window wait for it.
         self.hide()
         self.desk.close()
+        self.history_desk.close()
+        self.recovery_desk.close()
         self.jobs.close()
         self.session.close()
+        self.safe_desk.close()
         self.view.close_view()
         self.housekeeping.close()
         self.rescuer.close()

@@ -19,6 +19,7 @@ def connect(window: MainWindow) -> None:
     _connect_view(window)
     _connect_actions(window)
     _connect_start(window)
+    _connect_safe(window)
     _connect_plots(window)
     _connect_maps(window)
 
@@ -61,6 +62,28 @@ def _connect_session(window: MainWindow) -> None:
     session.undo_stack.cleanChanged.connect(desk.show_title)
 
 
+def _connect_safe(window: MainWindow) -> None:
+    session, safe, recovery, history = (
+        window.session,
+        window.safe_desk,
+        window.recovery_desk,
+        window.history_desk,
+    )
+    stack = session.undo_stack
+    session.saving.connect(window.desk.show_saving)
+    session.opened.connect(safe.show_opened)
+    session.opened.connect(recovery.show_opened)
+    session.opened.connect(history.show_opened)
+    session.saved.connect(safe.show_saved)
+    session.design_changed.connect(safe.note)
+    session.design_changed.connect(history.show_snapshots)
+    session.frame_ready.connect(history.note)
+    stack.cleanChanged.connect(safe.note)
+    stack.indexChanged.connect(history.show_edits)
+    window.history.jumped.connect(history.jump)
+    window.history.restored.connect(history.restore)
+
+
 def _connect_panels(window: MainWindow) -> None:
     session, desk, scan_desk = window.session, window.desk, window.scan_desk
     window.rail.step_chosen.connect(desk.go_to)
@@ -73,6 +96,8 @@ def _connect_panels(window: MainWindow) -> None:
     window.lines.reset_all.connect(session.reset_lines)
     window.strip.control_chosen.connect(session.choose_control)
     window.lines.add_asked.connect(window.line_maker.show_menu)
+    window.lines.draw_asked.connect(window.line_drawing.begin)
+    window.lines.path_asked.connect(window.line_routing.begin)
     window.lines.removed.connect(window.lines_desk.remove)
     window.door.clicked.connect(desk.show_model)
     window.model.left.connect(lambda: desk.go_to("lines"))
@@ -128,8 +153,8 @@ def _connect_maps(window: MainWindow) -> None:
     view.viewport.pin_pressed.connect(section.follow_landmark)
     # What the view shows of a frame is there before it is painted and cut.
     for shown in (window.session.frame_ready, view.compared, window.lines.visibility_changed):
-        shown.connect(lambda *_: maps.refresh())
-        shown.connect(lambda *_: section.refresh())
+        shown.connect(lambda *_: maps.follow())
+        shown.connect(lambda *_: section.follow())
 
 
 def _connect_actions(window: MainWindow) -> None:
@@ -143,6 +168,7 @@ def _connect_actions(window: MainWindow) -> None:
     _connect_layout(window)
     do.strip.toggled.connect(lambda on: window.strip.set_folded(not on))
     window.strip.folded.connect(lambda folded: do.strip.setChecked(not folded))
+    do.draw_line.triggered.connect(window.line_drawing.begin)
     do.own_line.triggered.connect(window.line_maker.ask)
     do.model.triggered.connect(desk.show_model)
     do.recent.aboutToShow.connect(lambda: fill_recent_menu(do.recent, desk.open_file))

@@ -151,8 +151,11 @@ class Design:
 
     def with_own_line(self, line: OwnLine) -> Design:
         """Return the design with an own line, in the place of one of the same name if there is one."""
-        others = tuple(each for each in self.own_lines if each.name != line.name)
-        return replace(self, own_lines=(*others, line))
+        if line.name in {each.name for each in self.own_lines}:
+            self._check_unlocked(line.name)
+            own = tuple(line if each.name == line.name else each for each in self.own_lines)
+            return replace(self, own_lines=own)
+        return replace(self, own_lines=(*self.own_lines, line))
 
     def without_own_line(self, name: str) -> Design:
         """Return the design without an own line and what was decided of it. Raises LineError if locked."""

@@ -41,7 +41,7 @@ OUTSIDE = {
     **dict.fromkeys(ANATOMY, NUMBERS),
     "mechanics": NUMBERS,
     "solving": NUMBERS | {"threadpoolctl"},
-    "document": NUMBERS | {"trimesh", "threadpoolctl", "platformdirs"},
+    "document": NUMBERS | {"trimesh", "threadpoolctl", "platformdirs", "potpourri3d"},
     "seeing": NUMBERS | {"pyvista", "vtkmodules"},
     "wording": set(),
     "printing": NUMBERS | {"pyvista", "matplotlib"},
@@ -51,7 +51,7 @@ OUTSIDE = {
     | {"PySide6.QtWidgets", "PySide6.QtOpenGLWidgets"},
     "roof": NUMBERS
     | {"PySide6", "pyvista", "pyvistaqt", "platformdirs", "threadpoolctl", "PySide6.QtCore", "PySide6.QtGui"}
-    | {"PySide6.QtWidgets", "PySide6.QtPrintSupport"},
+    | {"PySide6.QtWidgets", "PySide6.QtPrintSupport", "PySide6.QtSvg"},
 }
 PANELS = ("lines", "landmarks", "model", "rail", "result", "scan", "status", "top_bar", "view_tools")
 STRANGERS = (

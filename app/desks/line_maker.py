@@ -33,7 +33,7 @@ class LineMaker(QObject):
         """Add a pair of ready-made lines of a kind."""
         design = self._window.session.design
         if design is not None:
-            self._take(ready_made(read_template(design.template))[kind])
+            self.take(ready_made(read_template(design.template))[kind])
 
     def ask(self) -> None:
         """Let a line be drawn, and add it."""
@@ -42,9 +42,10 @@ class LineMaker(QObject):
             names = {*LINE_COLOURS, *(line.name for line in session.design.own_lines)}
             line = ask_own_line(self._window, read_template(session.design.template), names)
             if line is not None:
-                self._take((line,))
+                self.take((line,))
 
-    def _take(self, lines: tuple[OwnLine, ...]) -> None:
+    def take(self, lines: tuple[OwnLine, ...]) -> None:
+        """Add lines, and select the first."""
         session = self._window.session
         if session.design is None:
             return

@@ -1,0 +1,102 @@
+"""What drawing a line and leading one elsewhere share: the hand, the sketch on the body, and the card."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtCore import QObject, QPointF
+
+from app.panels.draw_card import DrawCard
+from app.seeing.ribbon import Surface
+from app.seeing.sketch import Sketch
+from app.showing.hand import Hand
+from core.body import Body
+from core.mesh import Points
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+
+_PIECES = 8  # pieces that the path from one control point to the next is laid on the skin with
+
+
+class Sketching(QObject):
+    """Takes places on the body at rest [mm], and draws them where they are on the shown one."""
+
+    def __init__(self, window: MainWindow, owner: QObject) -> None:
+        super().__init__(owner)
+        self._window = window
+        viewport = window.view.viewport
+        canvas = viewport.overlay.parentWidget()
+        assert canvas is not None
+        self.hand = Hand(viewport, canvas)
+        self.card = DrawCard(window.view)
+        window.view.place(self.card, "bottom")
+        self._sketch: Sketch | None = None
+        self._surface: tuple[Body, Surface] | None = None
+        self._drawn: tuple[Points, Points, Points, str] | None = None
+        window.session.frame_ready.connect(self._follow)
+        window.session.opened.connect(lambda _: self.end())
+
+    @property
+    def at_work(self) -> bool:
+        """Whether something is being drawn."""
+        return self.hand.at_work
+
+    def begin(self) -> None:
+        """Take the pointer, and show the card."""
+        self.hand.begin()
+        self.card.show()
+
+    def end(self) -> None:
+        """Give the pointer back, and take everything away."""
+        if self.at_work:
+            self.hand.end()
+            self.card.hide()
+            self._drawn = None
+            if self._sketch is not None:
+                self._sketch.clear()
+            self._window.view.viewport.request_draw()
+
+    def draw(self, curve: Points, path: Points, points: Points, colour: str) -> None:
+        """Draw a curve (k, 3), a path (p, 3) in ``colour`` and points (n, 3) to hold; each may be empty."""
+        self._drawn = curve, path, points, colour
+        scene = self._window.view.viewport.scene
+        self._sketch = self._sketch or Sketch(scene.plotter)
+        there = [scene.carried(part) if len(part) else part for part in (curve, path, points)]
+        self._sketch.show(there[0], there[1], there[2], colour)
+        self._window.view.viewport.request_draw()
+
+    def laid(self, corners: Points) -> Points:
+        """Return the way through control points, shape (c, 3), on the skin at rest, shape (k, 3) [mm]."""
+        frame = self._window.session.frame
+        if frame is None or len(corners) < 2:
+            return corners
+        body = frame.stages.body
+        if self._surface is None or self._surface[0] is not body:
+            self._surface = body, Surface(body.mesh)
+        part = np.arange(_PIECES)[:, None] / _PIECES
+        pieces = [start + part * (end - start) for start, end in pairwise(corners)]
+        return self._surface[1].lay(np.concatenate([*pieces, corners[-1:]]))[0]
+
+    def nearest(self, points: Points, at: QPointF, reach: float) -> int:
+        """Return which of ``points`` (n, 3) is seen nearest to a pixel, -1 if none within ``reach`` [px].
+
+        Points behind the body are not seen.
+        """
+        scene, overlay = self._window.view.viewport.scene, self._window.view.viewport.overlay
+        shown = scene.carried(points)
+        spots = scene.view.to_picture(shown, overlay.width(), overlay.height())
+        away = np.hypot(spots[:, 0] - at.x(), spots[:, 1] - at.y())
+        for place in np.argsort(away):
+            if away[place] > reach:
+                break
+            if not scene.hidden(shown[place]):
+                return int(place)
+        return -1
+
+    def _follow(self, _: object) -> None:
+        """Stay on the body while it moves."""
+        if self.at_work and self._drawn is not None:
+            self.draw(*self._drawn)

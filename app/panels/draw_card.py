@@ -1,0 +1,61 @@
+"""The card that goes with a line while it is drawn: what to do next, how well it lies, keep or leave."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QVBoxLayout, QWidget
+
+from app.dress.parts import FloatingPanel, ToolButton, button, sentence
+from app.dress.theme import font, label
+from app.wording.words import tr
+
+WIDTH = 380
+"""Width of the sentences [px]."""
+
+
+class DrawCard(FloatingPanel):
+    """Says what to do; ``kept``, ``back`` and ``left`` at its buttons."""
+
+    kept = Signal()
+    back = Signal()
+    left = Signal()
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        column = QVBoxLayout()
+        column.setSpacing(4)
+        head = QHBoxLayout()
+        self._title = label("", "heading")
+        head.addWidget(self._title, 1)
+        close = ToolButton("x", tr("Leave without a change (Esc)"), size=14, room=26)
+        close.clicked.connect(self.left)
+        head.addWidget(close)
+        self._what, self._keys = sentence(""), sentence("", "caption")
+        self._what.setFixedWidth(WIDTH)
+        self.both = QCheckBox(tr("Mirror to the other side, linked"))
+        self.both.setFont(font("body"))
+        foot = QHBoxLayout()
+        foot.setSpacing(8)
+        self.keep, self.undo = button(tr("Keep line"), "primary"), button(tr("One step back"), "quiet")
+        for each in (self.keep, self.undo):
+            each.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click leaves the keys to the hand that draws
+        self.keep.clicked.connect(self.kept)
+        self.undo.clicked.connect(self.back)
+        foot.addStretch(1)
+        foot.addWidget(self.undo)
+        foot.addWidget(self.keep)
+        column.addLayout(head)
+        for part in (self._what, self._keys, self.both):
+            column.addWidget(part)
+        column.addSpacing(4)
+        column.addLayout(foot)
+        self.row.setContentsMargins(28, 20, 24, 28)
+        self.row.addLayout(column)
+        self.hide()
+
+    def say(self, title: str, what: str, keys: str) -> None:
+        """Show a title, what to do or how the line lies, and the keys that do it."""
+        self._title.setText(title)
+        self._what.setText(what)
+        self._keys.setText(keys)
+        self.adjustSize()

@@ -1,0 +1,121 @@
+"""Lines are drawn on the body by clicks, kept with their mirror image, and led through other control points."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+from window_tools import Script, run_main, settled
+
+from app.main_window import MainWindow
+from core.own_lines import mirrored
+from core.template import read_template
+
+TEMPLATE = read_template("168")
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+def spot(window: MainWindow, point: int) -> QPoint:
+    """Where a control point is seen."""
+    scene, overlay = window.view.viewport.scene, window.view.viewport.overlay
+    places = scene.carried(window.session.frame.stages.control.mesh.vertices[[point]])
+    x, y, _ = scene.view.to_picture(places, overlay.width(), overlay.height())[0]
+    return QPoint(round(x), round(y))
+
+
+def click(window: MainWindow, *points: int) -> None:
+    """Click on control points as they are seen."""
+    canvas = window.view.viewport.overlay.parentWidget()
+    for point in points:
+        QTest.mouseMove(canvas, spot(window, point))
+        QTest.mouseClick(canvas, Qt.MouseButton.LeftButton, pos=spot(window, point))
+
+
+def press(window: MainWindow, key: Qt.Key) -> None:
+    QTest.keyClick(window.view.viewport, key)
+
+
+def at(row: int, column: int) -> int:
+    return TEMPLATE.point(row, column)
+
+
+def test_a_line_is_drawn_by_clicks_and_snaps_to_the_control_mesh_on_both_sides() -> None:
+    path = tuple(at(row, 2) for row in (2, 3, 4, 5, 6))
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        window.view.viewport.set_view("front")
+        drawing, card = window.line_drawing, window.line_drawing._sketching.card
+        window.actions_.draw_line.trigger()
+        assert card.isVisible()
+        click(window, path[0])  # before the skin is ready the first points are joined straight
+        yield lambda: drawing._ways is not None
+        press(window, Qt.Key.Key_Return)
+        assert drawing._snapped is None, "one point is no line"
+        click(window, at(4, 4))
+        press(window, Qt.Key.Key_Backspace)
+        click(window, path[2], path[-1])
+        skin = window.session.frame.stages.body.mesh
+        curve = np.concatenate(drawing._curve)
+        assert len(curve) > 20, "it follows the skin"
+        assert np.abs(curve - skin.vertices.mean(axis=0)).max() < 400.0
+        window.view.viewport.setFocus()
+        press(window, Qt.Key.Key_Return)
+        assert drawing._snapped.path == path
+        assert drawing._snapped.off < 15.0
+        card.both.setChecked(True)
+        press(window, Qt.Key.Key_Return)
+        assert not card.isVisible()
+        yield lambda: "line 1 left" in window.lines.rows and window.is_settled()
+        own = {line.name: line.points for line in window.session.design.own_lines}
+        assert own == {"line 1 left": path, "line 1 right": mirrored(path, TEMPLATE)}
+        assert window.session.undo_stack.undoText() == "Line 1 added"
+        assert window.lines.rows["line 1 left"].view.sides, "drawn on both sides, it is linked"
+        yield from led_elsewhere(window, path)
+        window.actions_.undo.trigger()
+        yield lambda: "line 1 left" not in window.lines.rows
+        yield from a_ring(window)
+
+    run_main([], script)
+
+
+def led_elsewhere(window: MainWindow, path: tuple[int, ...]) -> Script:
+    """Drag one point of the line to its neighbour, and take its last one out; the mirror image follows."""
+    canvas = window.view.viewport.overlay.parentWidget()
+    window.lines.rows["line 1 left"].details.asked.emit("path")
+    here, there = spot(window, path[2]), spot(window, at(4, 3))
+    QTest.mousePress(canvas, Qt.MouseButton.LeftButton, pos=here)
+    for part in (0.4, 1.0):
+        QTest.mouseMove(canvas, here + (there - here) * part)
+    QTest.mouseRelease(canvas, Qt.MouseButton.LeftButton, pos=there)
+    click(window, path[-1])
+    led = (path[0], path[1], at(4, 3), path[3])
+    assert window.line_routing._steps[-1] == led
+    click(window, path[-1])
+    assert window.line_routing._steps[-1] == (*led, path[-1])
+    press(window, Qt.Key.Key_Backspace)
+    press(window, Qt.Key.Key_Return)
+    own = {line.name: line.points for line in window.session.design.own_lines}
+    assert own == {"line 1 left": led, "line 1 right": mirrored(led, TEMPLATE)}
+    assert window.session.undo_stack.undoText() == "Line 1 led elsewhere"
+    window.actions_.undo.trigger()
+    assert window.session.design.own_lines[0].points == path
+    yield settled(window)
+
+
+def a_ring(window: MainWindow) -> Script:
+    """A click on the first point closes a line; Esc leaves without one."""
+    drawing = window.line_drawing
+    ring = [at(2, 3), at(3, 4), at(4, 3), at(3, 2)]
+    window.activateWindow()
+    yield window.isActiveWindow
+    press(window, Qt.Key.Key_N)
+    click(window, *ring, ring[0])
+    assert drawing._snapped.closed
+    assert set(ring) <= set(drawing._snapped.path)
+    press(window, Qt.Key.Key_Escape)
+    assert not drawing._sketching.at_work
+    assert window.session.design.own_lines == ()
+    yield settled(window)
