@@ -230,7 +230,7 @@ class Desk(QObject):
     def _preview(self) -> bytes:
         """Return a small picture of the view, for the project file."""
         state = self._frame.verdict.state if self._frame is not None else ""
-        return project_picture(self._window.view.viewport.picture(), state)
+        return project_picture(self._window.view.viewport.picture(labels=False), state)
 
     def plot_now(self) -> None:
         """Bring the live plot up to date, if there is a frame that it has not shown."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from functools import reduce
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt, QTimer
@@ -15,8 +16,8 @@ from app.wording.words import tr
 if TYPE_CHECKING:
     from app.main_window import MainWindow
 
-Stop = tuple[str, str, Callable[[], QWidget]]
-"""Title, sentence, and the part of the window that they speak of."""
+Stop = tuple[str, str, Callable[[], Sequence[QWidget]]]
+"""Title, sentence, and the parts of the window that they speak of."""
 
 
 class Tour(QObject):
@@ -84,8 +85,9 @@ class Tour(QObject):
 
     def _point(self) -> None:
         if self._place >= 0:
-            part = self._stops()[self._place][2]()
-            self.mark.point_at(QRect(part.mapTo(self._window, QPoint(0, 0)), part.size()))
+            parts = self._stops()[self._place][2]()
+            places = [QRect(part.mapTo(self._window, QPoint(0, 0)), part.size()) for part in parts]
+            self.mark.point_at(reduce(QRect.united, places))
 
     def _stops(self) -> tuple[Stop, ...]:
         window = self._window
@@ -93,7 +95,7 @@ class Tour(QObject):
             (
                 tr("Four steps"),
                 tr("From the scan to the result. Nothing is locked: go to any of them at any time."),
-                lambda: window.rail,
+                lambda: list(window.rail.items.values()),
             ),
             (
                 tr("Drag a line"),
@@ -101,12 +103,12 @@ class Tour(QObject):
                     "Pull the handle of a line to the left: it gets shorter, and the body follows at once. "
                     "You can type a number as well."
                 ),
-                lambda: window.lines.rows.get(window.view.selected_line, window.lines),
+                lambda: [window.lines.rows.get(window.view.selected_line, window.lines)],
             ),
             (
                 tr("Before and after"),
                 tr("Press Space, or click here, to see the body as it was scanned, and reshaped again."),
-                lambda: window.view.compare,
+                lambda: [window.view.compare],
             ),
             (
                 tr("Does it come to rest?"),
@@ -114,6 +116,6 @@ class Tour(QObject):
                     "Each turn brings every point nearer to its balance. The word says how the body stands, "
                     "the plots how far the volume is kept and the bust is lifted."
                 ),
-                lambda: window.strip,
+                lambda: [window.strip],
             ),
         )

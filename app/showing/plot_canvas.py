@@ -191,8 +191,9 @@ class PlotCanvas(QWidget):
         values = max(wide(value) for _, value, _ in rows)
         width = max(names + values + 40, max(wide(name) for name, _, _ in rows) + 14)
         box = QRectF(x + 10, scale.area.top(), width, _ROW * len(rows) + 6)
-        if box.right() > self.width():
-            box.moveRight(max(x - 10.0, box.width()))
+        if x > self.width() / 2:
+            box.moveRight(x - 10.0)
+        box.moveLeft(min(max(box.left(), 0.0), max(self.width() - width, 0.0)))
         box.moveBottom(min(box.bottom(), float(self.height())))
         fill = QColor(tokens.raised)
         fill.setAlphaF(0.94)

@@ -106,13 +106,16 @@ class Viewport(QWidget):
         self._place_label()
         draw(self._canvas)
 
-    def picture(self) -> QImage:
-        """Return what is seen now at its best, labels included, in device pixels."""
+    def picture(self, labels: bool = True) -> QImage:
+        """Return what is seen now at its best, with its labels or without, in device pixels."""
         self.request_draw()
         self._rest.stop()
         self._smooth("ssaa")
         draw(self._canvas)
-        return self.grab().toImage()
+        self.overlay.setVisible(labels)
+        image = self.grab().toImage()
+        self.overlay.show()
+        return image
 
     def _refine(self) -> None:
         """Draw once more without stairs at the outlines, which is too slow while things move."""
