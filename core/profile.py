@@ -14,7 +14,7 @@ AXES = ("x", "y", "z")
 """What a plane stands across: the body from side to side, from front to back, or upright."""
 
 _FLAT = {"x": (1, 2), "y": (0, 2), "z": (0, 1)}
-_REACH = 60.0  # no vertex of a body under a garment moves so far [mm]
+_REACH = 40.0  # no vertex of a body under a garment moves so far [mm]
 _SHARPNESS = 1.0  # [mm]
 
 
@@ -68,10 +68,12 @@ class Slicer:
     def __init__(self, rest: Mesh, plane: Plane) -> None:
         self.plane = plane
         side = rest.vertices[:, plane.number] - plane.at
-        low, high = (choose(side[rest.faces], axis=1) for choose in (np.min, np.max))
-        near = rest.faces[(low < _REACH) & (high > -_REACH)]
-        self._vertices, faces = np.unique(near, return_inverse=True)
-        self._faces = faces.reshape(near.shape)
+        zone = np.digitize(side, [-_REACH, _REACH]).astype(np.int8)[rest.faces.T]  # beyond, near or beyond
+        faces = rest.faces[(zone[0] != zone[1]) | (zone[1] != zone[2]) | (zone[0] == 1)]
+        used = np.zeros(len(side), dtype=bool)
+        used[faces] = True
+        self._vertices = np.flatnonzero(used)
+        self._faces = (np.cumsum(used) - 1)[faces]
         self._normals = rest.vertex_normals[self._vertices]
 
     def curves(self, places: Points) -> tuple[Curve, ...]:

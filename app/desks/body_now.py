@@ -35,6 +35,11 @@ class BodyNow:
         self.places[rows], self.normals[rows] = frame.points, frame.normals
 
     @cached_property
+    def box(self) -> tuple[Points, Points]:
+        """The lowest and the highest coordinates of the body at rest, (3,) [mm]."""
+        return self.rest.vertices.min(axis=0), self.rest.vertices.max(axis=0)
+
+    @cached_property
     def sides(self) -> Sides:
         """Its left laid over its right."""
         stages = self.stages

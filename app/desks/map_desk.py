@@ -129,25 +129,30 @@ class MapDesk(QObject):
     # -- what is shown
 
     def refresh(self) -> None:
-        """Bring legend, colours and flags up to date with the frame of the session."""
+        """Bring legend, colours and flags up to date with the session's frame, and have the view drawn."""
+        self.follow()
+        for body in self._view.comparison.live:
+            body.viewport.request_draw()
+
+    def follow(self) -> None:
+        """Bring legend, colours and flags up to date; the view is being drawn anyway."""
         frame = self._window.session.frame
         shown = bool(self.name) and frame is not None
         self._view.tools.set_shown("map", shown)
         self.legend.setVisible(shown)
         self.flags.listening = shown
         if frame is not None and shown:
-            self._follow(frame)
+            self._take(frame)
             self._read(frame)
         elif not self._laid:
             return
         for body in self._view.comparison.live:
             self._paint_skin(body)
             self._paint_bands(body)
-            body.viewport.request_draw()
         self._laid = shown
         self._show_flags()
 
-    def _follow(self, frame: Frame) -> None:
+    def _take(self, frame: Frame) -> None:
         if self.now is not None and self.now.is_of(frame):
             self.now.follow(frame)
         else:

@@ -105,7 +105,13 @@ class SectionDesk(QObject):
     # -- what is shown
 
     def refresh(self) -> None:
-        """Cut the body of the session's frame, and show the curves."""
+        """Cut the body of the session's frame, show the curves, and have the view drawn."""
+        self.follow()
+        for body in self._view.comparison.live:
+            body.viewport.request_draw()
+
+    def follow(self) -> None:
+        """Cut the body of the session's frame, and show the curves; the view is being drawn anyway."""
         frame = self._window.session.frame
         shown = self.is_on and frame is not None
         self._view.tools.set_shown("section", shown)
@@ -113,10 +119,8 @@ class SectionDesk(QObject):
         if frame is not None and shown:
             self._cut(frame)
             self._draw()
-        for body in self._view.comparison.live:
-            if not shown and body.viewport.scene.body is not None:
-                body.viewport.scene.section.set_visible(False)
-            body.viewport.request_draw()
+        for body in () if shown else self._view.comparison.live:
+            body.viewport.scene.section.set_visible(False)
 
     def _cut(self, frame: Frame) -> None:
         if self._now is None or not self._now.is_of(frame):
@@ -147,8 +151,7 @@ class SectionDesk(QObject):
     def _draw(self) -> None:
         assert self._now is not None
         assert self._slicer is not None
-        plane, rest = self._slicer.plane, self._now.rest.vertices
-        low, high = rest.min(axis=0), rest.max(axis=0)
+        plane, (low, high) = self._slicer.plane, self._now.box
         for body in self._view.comparison.live:
             curves = self.curves["after" if body.after else "before"]
             body.viewport.scene.section.show(plane, low, high, curves)

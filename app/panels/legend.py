@@ -241,7 +241,8 @@ class LegendBar(QWidget):
         if self._signed and start > BAR.center().y():
             down = -down  # the lower end goes the other way
         if is_high:
-            self.pulled.emit(True, low + (high - low) * float(np.exp(-down / _PULL)))
+            fixed = 0.0 if self._signed else low
+            self.pulled.emit(True, fixed + (high - fixed) * float(np.exp(-down / _PULL)))
         else:
             self.pulled.emit(False, high - (high - low) * float(np.exp(down / _PULL)))
 

@@ -11,7 +11,8 @@ import pyvista as pv
 from app.seeing.ribbon import ACROSS, NO_BACK, Ribbon, Surface, build_casing, build_ribbon
 from app.seeing.sight import Sight
 from app.seeing.stage import rgb
-from core.mesh import Floats, Indices, Points, area_vectors, incidence, unit
+from core import kernels
+from core.mesh import Floats, Indices, Points, unit
 
 _SHADE = np.array([0.62, 0.62, 0.86, 1.0, 1.0, 0.86, 0.62, 0.62])
 _SEAM = 0.72  # how dark the seam is where front part and back part meet
@@ -37,7 +38,8 @@ class RibbonActor:
 
     def __init__(self, plotter: pv.BasePlotter, ribbon: Ribbon, name: str) -> None:
         self.ribbon = ribbon
-        self._sum_at_vertices = incidence(ribbon.mesh.faces, len(ribbon.mesh.vertices))
+        self._corners = np.ascontiguousarray(ribbon.mesh.faces.T)
+        self._still = np.zeros_like(ribbon.mesh.vertices)
         self.data = pv.PolyData.from_regular_faces(ribbon.mesh.vertices.astype(np.float32), ribbon.mesh.faces)
         self.data.point_data["Normals"] = ribbon.mesh.vertex_normals.astype(np.float32)
         self.data.point_data["Colour"] = np.full(ribbon.mesh.vertices.shape, 255, dtype=np.uint8)
@@ -81,10 +83,9 @@ class RibbonActor:
 
     def move(self, displacement: Points) -> None:
         """Follow the body: displacement of each body vertex, shape (n, 3) [mm]."""
-        mesh = self.ribbon.mesh
-        points = mesh.vertices + self.ribbon.follow @ displacement
+        points = self.ribbon.mesh.vertices + self.ribbon.follow @ displacement
         self.data.points[:] = points
-        self.data.point_data["Normals"][:] = unit(self._sum_at_vertices @ area_vectors(points, mesh.faces))
+        self.data.point_data["Normals"][:] = kernels.normals(points, self._corners, self._still)
         self.data.GetPoints().Modified()
         self.data.GetPointData().GetNormals().Modified()
         self.sight.forget()

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QColor,
@@ -17,7 +18,6 @@ from PySide6.QtGui import (
     QPainterPath,
     QPaintEvent,
     QPen,
-    QPolygonF,
     QWheelEvent,
 )
 from PySide6.QtWidgets import QWidget
@@ -85,6 +85,11 @@ class ProfilePlot(QWidget):
         self._mark = None if former is None or present is None else (former, present, text)
         self.update()
 
+    @property
+    def gap(self) -> str:
+        """What is written of how far the curves are apart, if anything."""
+        return "" if self._mark is None else self._mark[2]
+
     def to_pixels(self, places: Floats) -> Floats:
         """Return where flat places [mm] are drawn [px], both (k, 2)."""
         middle = self._room().center()
@@ -114,8 +119,9 @@ class ProfilePlot(QWidget):
             for places in self._drawn.curves.get(role, ()):
                 painter.drawPath(self._path(places))
         painter.setPen(QPen(QColor(tokens.floating), 1.5))
+        old = tokens.warn_mark if "other" in self._drawn.curves else tokens.ghost_curve
         for former, present in self._drawn.apexes:
-            for place, colour in ((former, tokens.ghost_curve), (present, tokens.accent)):
+            for place, colour in ((former, old), (present, tokens.accent)):
                 painter.setBrush(QColor(colour))
                 painter.drawEllipse(self._spot(place), 4.0, 4.0)
         painter.setClipping(False)
@@ -175,9 +181,7 @@ class ProfilePlot(QWidget):
         painter.drawText(pill, Qt.AlignmentFlag.AlignCenter, text)
 
     def _path(self, places: Floats) -> QPainterPath:
-        path = QPainterPath()
-        path.addPolygon(QPolygonF([QPointF(x, y) for x, y in self.to_pixels(places).tolist()]))
-        return path
+        return QPainterPath(pg.arrayToQPath(*self.to_pixels(places).T))
 
     def _spot(self, place: Floats) -> QPointF:
         x, y = self.to_pixels(place)[0].tolist()
