@@ -60,7 +60,7 @@ def test_the_rail_says_what_is_chosen_not_what_is_set(qtbot: QtBot) -> None:
 def test_every_view_tool_has_name_tip_and_key(qtbot: QtBot) -> None:
     tools = ViewTools()
     qtbot.addWidget(tools)
-    assert len({action.shortcut().toString() for action in tools.actions_by_name.values()}) == 12
+    assert len({action.shortcut().toString() for action in tools.actions_by_name.values()}) == 14
     assert all(action.text() and action.toolTip() for action in tools.actions_by_name.values())
     with qtbot.waitSignal(tools.view_chosen) as said:
         tools.actions_by_name["back"].trigger()
