@@ -227,9 +227,10 @@ class LiveSolver:
             return
         end = time.perf_counter() + seconds
         while not comparison.resting and (start := time.perf_counter()) < end:
-            if self._held:
+            if self._held and not self._called:
                 time.sleep(_NAP)
-            elif self._pause > 0.0:
+                end = max(end, time.perf_counter() + _NAP)
+            elif self._held or self._pause > 0.0:
                 return
             else:
                 self._turned_at = start

@@ -84,6 +84,8 @@ class Stage:
         self._lamps = [
             pv.Light(position=at, color=colour, light_type="camera light") for at, colour in _LAMPS
         ]
+        # Nothing seen through lies behind something else seen through; to mix that in any order is dear.
+        plotter.renderer.SetUseOIT(False)
         plotter.remove_all_lights()
         for lamp in self._lamps:
             plotter.add_light(lamp)

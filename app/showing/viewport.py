@@ -22,8 +22,9 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.dress.theme import tokens_of
 from app.seeing.camera import View
+from app.seeing.quick_light import QuickLight
 from app.seeing.scene import Scene
-from app.showing.canvas import draw, make_canvas
+from app.showing.canvas import PaintedCanvas, draw, make_canvas
 from app.showing.overlay import BandLabel, Overlay, Pin
 from app.showing.pointer import Pointer
 from core.mesh import Floats, Points
@@ -65,7 +66,7 @@ class Viewport(QWidget):
         self.scene = Scene(self._plotter, tokens_of(self).dark, self.devicePixelRatioF())
         self.overlay = Overlay(self._canvas)
         self._pointer = Pointer(self._canvas, self.scene, self.overlay)
-        self._smoothing = ""
+        self._smoothing, self._light = "", QuickLight(self._plotter)
         self._rest = QTimer(self, singleShot=True, interval=REST)
         self._rest.timeout.connect(self._refine)
         self._glide = QVariantAnimation(self)
@@ -124,7 +125,9 @@ class Viewport(QWidget):
         draw(self._canvas)
 
     def _smooth(self, kind: str) -> None:
-        """Let outlines be smoothed by one of VTK's filters, or by none."""
+        """Let outlines be smoothed by one of VTK's filters, or by none while things move."""
+        if isinstance(self._canvas, PaintedCanvas):
+            self._light.use(quickly=not kind)
         if kind != self._smoothing:
             self._smoothing = kind
             if kind:
