@@ -38,6 +38,7 @@ def run_window(file: str | None = None, safe: bool = False) -> int:
         window.tell_graphics(why)
         window.layout_.restore()
         window.show()
+        window.recovery_desk.look()
         if first:
             window.start_desk.tour.begin_when_settled()
         code = app.exec()

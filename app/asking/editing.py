@@ -67,9 +67,8 @@ class Editing(QObject):
             return
         worn = None if at_rest_length(ratio) else ratio
         text = tr("{line} off") if worn is None else tr("{line} {percent} %")
-        self._commit(
-            self.design.with_linked(name, worn), text.format(line=title, percent=number(100.0 * ratio, 1))
-        )
+        said = text.format(line=title, percent=number(100.0 * ratio, 1))
+        self.edit(lambda design: design.with_linked(name, worn), said, what=f"length of {name}")
 
     def reset_lines(self) -> None:
         """Take every line off: the body as scanned."""
@@ -87,7 +86,9 @@ class Editing(QObject):
 
     def change(self, changes: Mapping[str, Any], text: str) -> None:
         """Change fields of the design as one undo step."""
-        self.edit(lambda design: replace(design, **changes), text)
+        turned = all(isinstance(value, float) for value in changes.values())
+        what = f"values of {sorted(changes)}" if turned else ""
+        self.edit(lambda design: replace(design, **changes), text, what)
 
     def add_own_lines(self, lines: Sequence[OwnLine], text: str) -> None:
         """Add lines of the designer's own."""
@@ -114,8 +115,11 @@ class Editing(QObject):
         self._submit(document.design)
         self.design_changed.emit(document.design)
 
-    def edit(self, edit: Callable[[Design], Design], text: str) -> None:
-        """Make an edit that the design may refuse: then all that is shown goes back to what is."""
+    def edit(self, edit: Callable[[Design], Design], text: str, what: str = "") -> None:
+        """Make an edit that the design may refuse: then all that is shown goes back to what is.
+
+        Quick edits of the same ``what`` are one step.
+        """
         if self.design is None:
             return
         try:
@@ -124,7 +128,7 @@ class Editing(QObject):
             self.failed.emit(error)
             self.design_changed.emit(self.design)
         else:
-            self._commit(after, text)
+            self._commit(after, text, what)
 
     def show_variant(self, name: str) -> None:
         """Show another variant of the design; one that is not there yet begins as the shown one is."""
@@ -141,6 +145,9 @@ class Editing(QObject):
         edit = self.undo_stack.command(self.undo_stack.index() - 1) if self.undo_stack.canUndo() else None
         if not isinstance(edit, Edit) or edit.after is not self.document:
             return False
+        if edit.step_back():
+            self.take(edit.after)
+            return True
         before = edit.before
         edit.setObsolete(True)
         # Qt drops an obsolete command without undoing it.
@@ -148,19 +155,21 @@ class Editing(QObject):
         self.take(before)
         return True
 
-    def _commit(self, after: Design, text: str) -> None:
+    def _commit(self, after: Design, text: str, what: str = "") -> None:
         if self.document is None:
             return
         if after != self.document.design:
-            self._push(self.document.with_design(after), text)
+            self._push(self.document.with_design(after), text, what)
         elif self._preview is not None:
             self._preview = None
             self._submit(self.document.design)
 
-    def _push(self, after: Document, text: str) -> None:
+    def _push(self, after: Document, text: str, what: str = "") -> None:
         previewing, self._preview = self._preview is not None, None
         if self.document is not None and after != self.document:
-            self.undo_stack.push(Edit(self, self.document, after, text, shown=previewing))
+            # A drag is an entry of its own, however soon it follows another.
+            what = "" if previewing else what
+            self.undo_stack.push(Edit(self, self.document, after, text, previewing, what))
 
     def _submit(self, design: Design, fresh: bool = False) -> None:
         """Have a committed design solved."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import logging
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
@@ -11,12 +12,28 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from app.asking.edit import Edit
 from app.asking.editing import Editing
 from app.asking.solving import Solving
+from app.asking.writing import Writing
+from core.backups import MOST, back_up
 from core.design import Design, ScanSource
 from core.document import Document
 from core.errors import UserError
 from core.live import Failure, Frame
 from core.pipeline import StuckError
-from core.project import is_project, open_project, save_project
+from core.project import ScanFile, is_project, open_project, save_project
+
+Stamp = tuple[int, int, int]
+"""What tells one state of a file from another: when it was changed, its size and its number on the disk."""
+
+
+@dataclass(frozen=True)
+class _Opening:
+    """A document on its way in."""
+
+    document: Document
+    path: Path | None
+    stamp: Stamp | None
+    unsaved: bool
+    revision: int
 
 
 class Session(Editing):
@@ -24,20 +41,25 @@ class Session(Editing):
 
     Verbs (open, preview, commit, save ...) are called by the window; what follows is told by signals.
     ``working`` tells the work in hand and the share done; ``asked`` hands out the StuckError of a scan
-    that was opened and cannot go on before somebody says how it stands or places its landmarks.
+    that was opened and cannot go on before somebody says how it stands or places its landmarks; ``saving``
+    says that a project is being written, or that this has failed.
     """
 
     opened = Signal(object)
     frame_ready = Signal(object)
     asked = Signal(object)
     working = Signal(str, float)
+    saving = Signal(bool)
     saved = Signal(str)
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.frame: Frame | None = None
         self.path: Path | None = None
-        self._opening: tuple[Document, Path | None, int] | None = None
+        self.most_backups = MOST
+        self._stamp: Stamp | None = None
+        self._opening: _Opening | None = None
+        self._saving = Writing(self)
         self._oldest = 0
         self._revision = 0
         self._solving = Solving(self)
@@ -68,27 +90,61 @@ class Session(Editing):
         """Open a design that has no file of its own yet, such as the sample."""
         self.open_document(Document.of(design))
 
-    def open_document(self, document: Document) -> None:
-        """Open a document; the present one stays until the new one has a first frame."""
+    def open_document(self, document: Document, path: Path | None = None, unsaved: bool = False) -> None:
+        """Open a document; the present one stays until the new one has a first frame.
+
+        Unless told otherwise its project is the file that its scan lies in. One that is ``unsaved`` counts as
+        changed from the first.
+        """
         if self._opening is not None:
             self._solving.cancel()
         scan = document.design.scan
-        self._preview, path = None, Path(scan.path) if scan.member else None
-        self._opening = (document, path, self._solving.submit(document.design, fresh=True))
+        path = path or (Path(scan.path) if scan.member and not unsaved else None)
+        self._preview = None
+        revision = self._solving.submit(document.design, fresh=True)
+        self._opening = _Opening(document, path, stamp_of(path), unsaved, revision)
+
+    @property
+    def unsaved(self) -> bool:
+        """Whether there is something to lose."""
+        return not self.undo_stack.isClean() or self._saving.at_work
+
+    @property
+    def changed_elsewhere(self) -> bool:
+        """Whether the project's file is no longer what was opened or saved here last."""
+        return self.path is not None and stamp_of(self.path) not in (None, self._stamp)
 
     def save(self, path: str, picture: bytes | None) -> bool:
-        """Save the project with its scan; returns whether it worked."""
+        """Begin to save the project; returns whether it begins. ``saved`` or ``failed`` follows."""
         if self.document is None or self.frame is None:
             return False
-        try:
-            save_project(path, self.document, self.frame.stages.scan, picture)
-        except UserError as error:
-            self.failed.emit(error)
-            return False
-        self.path = Path(path).absolute()
+        target, document, scan = Path(path).absolute(), self.document, self.frame.stages.scan
+        self._saving.run(
+            partial(_write, target, document, scan, picture, self.most_backups), partial(self._saved, target)
+        )
+        # Edits that follow are not in the file.
         self.undo_stack.setClean()
-        self.saved.emit(str(self.path))
+        self.saving.emit(True)
         return True
+
+    def finish_saving(self) -> bool:
+        """Wait until the project is written; returns whether nothing is left to save."""
+        self._saving.wait()
+        return not self.unsaved
+
+    def detach(self) -> None:
+        """Go on with a copy that has no file yet; the project stays as it is."""
+        self.path = self._stamp = None
+        self.undo_stack.resetClean()
+
+    def _saved(self, path: Path, fault: Exception | None) -> None:
+        if fault is not None:
+            self.undo_stack.resetClean()
+            self.saving.emit(False)
+            self.failed.emit(fault)
+            return
+        self.path, self._stamp = path, stamp_of(path)
+        self.saved.emit(str(path))
 
     def cancel(self) -> None:
         """Let go of what is being read or built; what stood before stays."""
@@ -110,8 +166,9 @@ class Session(Editing):
         self._solving.set_pace(turns_per_second)
 
     def close(self) -> None:
-        """Stop the solver, and wait until it has ended."""
+        """Stop the solver, and wait until it has ended, and the last file is written."""
         self._solving.close()
+        self._saving.wait()
 
     def _try(self, design: Design, fresh: bool) -> bool:
         if self._opening is None:
@@ -123,23 +180,11 @@ class Session(Editing):
         if self._opening is None:
             self._revision = self._solving.submit(design, fresh)
 
-    def _edit(self, edit: Callable[[Design], Design], text: str) -> None:
-        """Make an edit that the design may refuse: then all that is shown goes back to what is."""
-        if self.design is None:
-            return
-        try:
-            after = edit(self.design)
-        except UserError as error:
-            self.failed.emit(error)
-            self.design_changed.emit(self.design)
-        else:
-            self._commit(after, text)
-
     def _answer(self, frame: Frame) -> None:
         if frame.revision < self._oldest:
             return
         if self._opening is not None:
-            if frame.revision < self._opening[2]:
+            if frame.revision < self._opening.revision:
                 return
             self._adopt(frame)
         self.frame = frame
@@ -148,15 +193,18 @@ class Session(Editing):
     def _adopt(self, frame: Frame) -> None:
         if self._opening is None:
             return
-        self.document, self.path, self._oldest = self._opening
-        self._opening = None
+        opening, self._opening = self._opening, None
+        self.document, self.path, self._stamp = opening.document, opening.path, opening.stamp
+        self._oldest = opening.revision
         self.frame = frame
         self.undo_stack.clear()
+        if opening.unsaved:
+            self.undo_stack.resetClean()
         self.opened.emit(frame)
         self.design_changed.emit(self.document.design)
 
     def _fail(self, failure: Failure) -> None:
-        if self._opening is not None and failure.revision >= self._opening[2]:
+        if self._opening is not None and failure.revision >= self._opening.revision:
             self._opening = None
             if self.design is not None:
                 self._submit(self.design)
@@ -174,3 +222,21 @@ class Session(Editing):
             if told:
                 return
         self.failed.emit(failure.error)
+
+
+def stamp_of(path: Path | None) -> Stamp | None:
+    """Return the stamp of a file, or None if there is none."""
+    try:
+        stat = path.stat() if path is not None else None
+    except OSError:
+        return None
+    return (stat.st_mtime_ns, stat.st_size, stat.st_ino) if stat is not None else None
+
+
+def _write(path: Path, document: Document, scan: ScanFile, picture: bytes | None, most_backups: int) -> None:
+    try:
+        back_up(path, most_backups)
+    except (OSError, UserError):
+        # Without a backup is better than not at all.
+        logging.exception("the former version could not be kept")
+    save_project(path, document, scan, picture)

@@ -1,0 +1,38 @@
+"""A lock beside a project, so that two windows do not overwrite each other unknowingly."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtCore import QDateTime, QFileInfo, QLockFile
+
+
+class ProjectLock:
+    """Locks one project at a time; a lock whose program is gone is taken over."""
+
+    def __init__(self) -> None:
+        self._lock: QLockFile | None = None
+
+    def take(self, path: Path | None) -> QDateTime | None:
+        """Lock a project in the place of the last one; returns since when another window has it, if one does.
+
+        Where no lock can be written there is none.
+        """
+        self.release()
+        if path is None:
+            return None
+        name = str(path.with_name(f".{path.name}.lock"))
+        lock = QLockFile(name)
+        # A designer may have a project open all day: only the end of the program makes a lock stale.
+        lock.setStaleLockTime(0)
+        if lock.tryLock(0):
+            self._lock = lock
+        elif lock.error() == QLockFile.LockError.LockFailedError:
+            return QFileInfo(name).lastModified()
+        return None
+
+    def release(self) -> None:
+        """Let others have the project."""
+        if self._lock is not None:
+            self._lock.unlock()
+            self._lock = None

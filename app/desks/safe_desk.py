@@ -1,0 +1,172 @@
+"""Nothing is lost: what is not saved is kept aside, found after a crash, and projects are not overwritten
+unknowingly.
+"""
+
+from __future__ import annotations
+
+import logging
+from functools import partial
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, QSettings, QTimer
+
+from app.asking.project_lock import ProjectLock
+from app.asking.writing import Writing
+from app.desks.project_picture import project_picture
+from app.wording.words import tr
+from core.backups import MOST
+from core.document import Document
+from core.errors import UserError
+from core.project import ScanFile
+from core.recovery import Recovery
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from app.main_window import MainWindow
+
+AUTOSAVE, BACKUPS = "autosave", "backups"
+"""Settings: seconds after an edit until it is kept aside, and former versions kept of a project."""
+
+SECONDS = 10.0
+"""Seconds after an edit until it is kept aside, unless the user has chosen others."""
+
+
+class SafeDesk(QObject):
+    """Keeps the document aside while it is not saved, and the project to itself.
+
+    The recovery folder is this window's own as long as it runs; it goes when the window closes in order.
+    """
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._session = window.session
+        self._recovery: Recovery | None = None
+        self._kept: Document | None = None
+        self._told = False
+        self._lock = ProjectLock()
+        self._writing = Writing(self)
+        self._clock = QTimer(self, singleShot=True)
+        self._clock.timeout.connect(self.keep)
+        self._session.most_backups = round(_setting(BACKUPS, MOST))
+
+    def note(self) -> None:
+        """Hear that something was edited, or saved."""
+        if not self._session.unsaved:
+            self._forget()
+        elif self._session.document is not self._kept and not self._clock.isActive():
+            self._clock.start(round(1000 * _setting(AUTOSAVE, SECONDS)))
+
+    def keep(self) -> None:
+        """Keep the document aside, in a passing thread."""
+        document, frame = self._session.document, self._session.frame
+        if document is None or frame is None or not self._session.unsaved:
+            return
+        if self._writing.at_work:
+            self._clock.start(1000)
+            return
+        write = partial(self._write, document, frame.stages.scan, self._session.name, self._session.path)
+        self._writing.run(partial(write, self._picture()), partial(self._note_kept, document))
+
+    def rescue(self) -> str:
+        """Keep the document aside at once, whatever has happened; returns where, or "" if it was not kept."""
+        try:
+            self._writing.wait()
+            document, frame = self._session.document, self._session.frame
+            if document is None or frame is None:
+                return ""
+            self._write(document, frame.stages.scan, self._session.name, self._session.path, None)
+            return str(self._recovery.folder) if self._recovery is not None else ""
+        except Exception:
+            logging.exception("the document could not be kept aside")
+            return ""
+
+    def show_opened(self) -> None:
+        """Hold the project that was opened; what was kept of the one before is no longer wanted."""
+        self._forget()
+        self._hold_project()
+        self.note()
+
+    def show_saved(self) -> None:
+        """Hold the project that was saved, and go on with what was edited meanwhile."""
+        self._hold_project()
+        self.note()
+
+    def adopt(self, recovery: Recovery) -> None:
+        """Go on in the folder that the present document was restored from: it is kept there already."""
+        self._writing.wait()
+        if self._recovery is not None:
+            self._recovery.end()
+        self._clock.stop()
+        self._recovery, self._kept = recovery, self._session.document
+
+    def close(self) -> None:
+        """Let nothing stay behind: whoever closes a window in order has saved, or does not want to."""
+        self._clock.stop()
+        self._writing.wait()
+        if self._recovery is not None:
+            self._recovery.end()
+        self._lock.release()
+
+    def _forget(self) -> None:
+        self._clock.stop()
+        self._kept = None
+        self._writing.wait()
+        if self._recovery is not None:
+            self._recovery.forget()
+
+    def _write(
+        self, document: Document, scan: ScanFile, name: str, path: Path | None, picture: bytes | None
+    ) -> None:
+        if self._recovery is None:
+            self._recovery = Recovery.new()
+        self._recovery.keep(document, scan, name, path, picture)
+
+    def _note_kept(self, document: Document, fault: Exception | None) -> None:
+        self._kept = document if fault is None else None
+        if fault is None:
+            self._told = False
+            self.note()
+            return
+        logging.error("the document could not be kept aside", exc_info=fault)
+        if not self._told:
+            said = (fault.message, fault.hint) if isinstance(fault, UserError) else (str(fault), "")
+            self._window.notices.show_notice("warn", *said, lasting=True)
+        self._told = True
+        self._clock.start(60_000)
+
+    def _picture(self) -> bytes | None:
+        view, frame = self._window.view, self._session.frame
+        if frame is None or not view.isVisible():
+            return None
+        return project_picture(view.picture(), frame.verdict.state)
+
+    def _hold_project(self) -> None:
+        since = self._lock.take(self._session.path)
+        if since is None:
+            return
+        sentence = tr("{name} is open in another window since {time}.")
+        self._window.notices.show_notice(
+            "warn",
+            sentence.format(name=self._session.name, time=since.toString("HH:mm")),
+            tr("Who saves last replaces what the other has saved."),
+            ((tr("Open as a copy"), self._detach), (tr("Open anyway"), _do_nothing)),
+            lasting=True,
+        )
+
+    def _detach(self) -> None:
+        self._session.detach()
+        self._window.desk.show_title()
+
+
+def _setting(name: str, usual: float) -> float:
+    value = QSettings().value(name, usual)
+    try:
+        return max(float(str(value)), 0.0)
+    except ValueError:
+        return usual
+
+
+def _do_nothing() -> None:
+    """The user knows: the notice goes."""
