@@ -1,4 +1,4 @@
-"""Lines are drawn on the body by clicks, kept with their mirror image, and led through other control points."""
+"""Lines are drawn on the body by clicks, kept with their mirror image, led through other control points."""
 
 from __future__ import annotations
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtCore import QObject, QPointF
 
-from app.desks.present_lines import LINE_COLOURS, OWN_COLOURS
+from app.desks.present_lines import LINE_COLOURS, line_colours
 from app.desks.sketching import Sketching
 from app.wording.words import number, tr
 from core.body import Body
@@ -188,6 +188,12 @@ class LineDrawing(QObject):
             card.say(tr("Keep this line?"), off, tr("Enter: keep · Backspace: draw on · Esc: leave"))
         self._draw(self._curve)
 
+    def _next_colour(self) -> str:
+        """Return the colour that a new line will have."""
+        design = self._window.session.design
+        names = [line.name for line in design.own_lines] if design is not None else []
+        return line_colours([*names, "new"])["new"]
+
     def _draw(self, curve: list[Points]) -> None:
         frame, snapped = self._window.session.frame, self._snapped
         path = np.empty((0, 3))
@@ -196,4 +202,4 @@ class LineDrawing(QObject):
             path = self._sketching.laid(frame.stages.control.mesh.vertices[corners])
         drawn = np.concatenate(curve) if curve else np.empty((0, 3))
         points = np.array(self._places).reshape(-1, 3) if snapped is None else np.empty((0, 3))
-        self._sketching.draw(drawn, path, points, OWN_COLOURS[0])
+        self._sketching.draw(drawn, path, points, self._next_colour())

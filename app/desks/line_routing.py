@@ -32,7 +32,7 @@ class LineRouting(QObject):
         self._sketching = Sketching(window, self)
         self._line: OwnLine | None = None
         self._steps: list[tuple[int, ...]] = []
-        self._held = -1
+        self._held, self._mesh_shown = -1, False
         hand, card = self._sketching.hand, self._sketching.card
         hand.grabs = self._grab
         hand.clicked.connect(self._click)
@@ -52,6 +52,7 @@ class LineRouting(QObject):
         self._line, self._steps = own[name], [own[name].points]
         self._window.desk.go_to("lines")
         self._window.desk.select_line(name)
+        self._mesh_shown = self._window.view.tools.actions_by_name["control-mesh"].isChecked()
         self._window.view.set_layer("control-mesh", True)
         self._sketching.card.both.hide()
         self._sketching.begin()
@@ -66,7 +67,7 @@ class LineRouting(QObject):
     def leave(self) -> None:
         """Edit no longer; nothing is kept."""
         if self._sketching.at_work:
-            self._window.view.set_layer("control-mesh", False)
+            self._window.view.set_layer("control-mesh", self._mesh_shown)
         self._sketching.end()
 
     def keep(self) -> None:

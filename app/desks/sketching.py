@@ -37,6 +37,7 @@ class Sketching(QObject):
         self._surface: tuple[Body, Surface] | None = None
         self._drawn: tuple[Points, Points, Points, str] | None = None
         window.session.frame_ready.connect(self._follow)
+        viewport.view_changed.connect(self._look)
         window.session.opened.connect(lambda _: self.end())
 
     @property
@@ -66,6 +67,7 @@ class Sketching(QObject):
         self._sketch = self._sketch or Sketch(scene.plotter)
         there = [scene.carried(part) if len(part) else part for part in (curve, path, points)]
         self._sketch.show(there[0], there[1], there[2], colour)
+        self._sketch.look_from(scene.view)
         self._window.view.viewport.request_draw()
 
     def laid(self, corners: Points) -> Points:
@@ -95,6 +97,10 @@ class Sketching(QObject):
             if not scene.hidden(shown[place]):
                 return int(place)
         return -1
+
+    def _look(self) -> None:
+        if self.at_work and self._sketch is not None:
+            self._sketch.look_from(self._window.view.viewport.scene.view)
 
     def _follow(self, _: object) -> None:
         """Stay on the body while it moves."""
