@@ -23,7 +23,7 @@ class DropZone(QFrame):
         super().__init__()
         self.setMinimumHeight(212)
         column = QVBoxLayout(self)
-        column.setContentsMargins(20, 24, 20, 24)
+        column.setContentsMargins(10, 24, 10, 24)
         column.setSpacing(6)
         column.addStretch(1)
         column.addWidget(IconLabel("drop-file", "text_quiet", 30), alignment=Qt.AlignmentFlag.AlignHCenter)

@@ -98,6 +98,7 @@ class Strip(QWidget):
     def set_events(self, events: Sequence[Event]) -> None:
         """Mark from now on where something was changed."""
         self._events = tuple(events)
+        self._draw(refit=not self._settling)
 
     def show_turns(self, turns: Turns | None) -> None:
         """Show these turns in both plots, or all."""

@@ -1,0 +1,101 @@
+"""The live plot through the real main(): edits on its axis, turns slow enough to see, what is saved."""
+
+from __future__ import annotations
+
+import csv
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QSettings
+from PySide6.QtGui import QImage
+from PySide6.QtSvg import QSvgRenderer
+from window_tools import Script, drag, run_main, settled
+
+import app.desks.plot_desk
+from app.main_window import MainWindow
+from core.live import Frame
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+def test_turns_can_be_watched_marked_and_saved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(app.desks.plot_desk, "ask_save", lambda *given: str(tmp_path / given[2]))
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        yield from each_turn_is_seen_while_they_are_slow(window)
+        yield from an_edit_is_marked_where_it_was_made(window)
+        the_saved_table_holds_every_turn(window, tmp_path)
+        what_is_plotted_is_saved_as_it_is_seen(window, tmp_path)
+
+    run_main([], script)
+
+
+def each_turn_is_seen_while_they_are_slow(window: MainWindow) -> Script:
+    seen: list[Frame] = []
+    window.plot_desk.slow.trigger()
+    window.lines.length_committed.emit("mid-bust", 0.9)
+    design = window.session.design
+    window.session.frame_ready.connect(seen.append)
+    yield lambda: len([frame for frame in seen if frame.stages.design is design]) > 8
+    shown = [frame for frame in seen if frame.stages.design is design]
+    turns = [frame.tracks["adaptive"][-1].turn for frame in shown]
+    assert np.diff(turns).tolist() == [1] * (len(turns) - 1), "no turn is left out"
+    moves = [np.abs(one.points - other.points).max() for one, other in pairwise(shown)]
+    assert min(moves) > 0.0, "each is to be seen on the body"
+    assert {frame.verdict.motion for frame in shown} == {"settling"}, "and the verdict waits"
+    window.session.frame_ready.disconnect(seen.append)
+    window.plot_desk.slow.trigger()
+    yield settled(window)
+
+
+def an_edit_is_marked_where_it_was_made(window: MainWindow) -> Script:
+    plot = window.strip.error_plot.canvas
+    window.desk.plot_now()
+    (mark,) = plot.plotted.events
+    assert mark.turn == 0.0
+    assert "90.0 %" in mark.words
+    drag(window, "mid-bust", -20, release=False)
+    yield lambda: (frame := window.session.frame) is not None and frame.tracks["adaptive"][-1].turn > 3
+    drag(window, "mid-bust", -24)
+    yield settled(window)
+    window.desk.plot_now()
+    frame, words = window.session.frame, window.session.undo_stack.undoText()
+    assert frame is not None
+    assert (plot.plotted.events[-1].turn, plot.plotted.events[-1].words) == (frame.changed_at, words)
+    plot.point_at(float(frame.changed_at))
+    assert plot.readout()[-1][0] == words
+
+
+def the_saved_table_holds_every_turn(window: MainWindow, folder: Path) -> None:
+    window.strip.export_asked.emit("csv")
+    with open(folder / "mannequin-turns.csv", newline="", encoding="utf-8-sig") as file:
+        heading, *rows = csv.reader(file)
+    frame = window.session.frame
+    assert frame is not None
+    assert heading[:4] == ["run", "turn", "volume error [%]", "volume error [ml]"]
+    made = {control: [row for row in rows if row[0] == control] for control in frame.tracks}
+    for control, records in frame.tracks.items():
+        assert [int(row[1]) for row in made[control]] == [record.turn for record in records]
+        assert [float(row[3]) for row in made[control]] == [record.error_ml for record in records]
+        assert [float(row[7]) for row in made[control]] == [record.lengths[0] for record in records]
+    rest = frame.stages.rest_marks.apex_z
+    assert float(made["adaptive"][-1][5]) == frame.marks.apex_z - rest
+
+
+def what_is_plotted_is_saved_as_it_is_seen(window: MainWindow, folder: Path) -> None:
+    ml = next(each for each in window.strip.error_plot.title.menu.actions() if "ml" in each.text())
+    ml.trigger()
+    assert QSettings().value("plot/error") == "error_ml"
+    for kind in ("png", "svg"):
+        window.strip.export_asked.emit(kind)
+    image = QImage(str(folder / "mannequin-turns.png"))
+    assert (image.width(), image.height()) == (2880, 1020)
+    inked = {image.pixelColor(x, y).name() for x in range(0, 2880, 3) for y in range(0, 1020, 3)}
+    assert {"#ffffff", "#2459cf"} <= inked
+    assert QSvgRenderer(str(folder / "mannequin-turns.svg")).isValid()
+    drawn = (folder / "mannequin-turns.svg").read_text("utf-8")
+    assert "Volume error" in drawn
+    assert ">ml<" in drawn
