@@ -17,6 +17,7 @@ from app.desks import flip_key
 from app.main_window import MainWindow
 from app.showing.viewport import Viewport
 from app.showing.wipe import REACH
+from core.live import Frame
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -27,10 +28,12 @@ def test_before_and_after_are_flipped_wiped_and_put_side_by_side(monkeypatch: py
         window.activateWindow()
         yield window.isActiveWindow
         yield lambda: window.view.is_shaded
+        first = window.session.frame
+        assert first is not None
         the_space_bar_flips_and_lets_peek(window, monkeypatch)
         a_wipe_shows_both_pictures_with_a_handle_between(window)
         beside = yield from bodies_side_by_side_share_one_camera(window)
-        yield from variants_are_put_side_by_side(window)
+        variants_are_put_side_by_side(window, first)
         key(window, Qt.Key.Key_D)
         key(window, Qt.Key.Key_D)
         assert window.view.comparison.way == "after"
@@ -145,31 +148,24 @@ def bodies_side_by_side_share_one_camera(window: MainWindow) -> Script:
     assert shown is not None
     former = shown.shown_points.copy()
     window.lines_desk.commit_length("mid-bust", 0.9)
-    yield settled(window)
-    assert np.abs(shown.shown_points - former).max() > 1.0
+    yield lambda: bool(np.abs(shown.shown_points - former).max() > 1.0)
     assert np.array_equal(rest.shown_points, rest.rest.vertices)
     return weakref.ref(left.scene), weakref.ref(left.scene.plotter), weakref.ref(rest)
 
 
-def variants_are_put_side_by_side(window: MainWindow) -> Script:
-    view, other = window.view, window.session.frame
-    assert other is not None
-    window.lines_desk.commit_length("mid-bust", 1.0)
-    yield settled(window)
+def variants_are_put_side_by_side(window: MainWindow, other: Frame) -> None:
+    view = window.view
     view.show_variants([("A", other), ("B", None), ("C", other)])
     first, own, last = view.panes.viewports
     assert own is view.viewport
     assert not view.compare.actions_by_name["side"].isChecked()
     assert [title.text for title in view.panes.titles] == ["A", "B", "C"]
-    moving = other.stages.moving.vertices
-    for viewport in (first, last):
+    frame = window.session.frame
+    assert frame is not None
+    for viewport, shown in ((first, other), (own, frame), (last, other)):
         body = viewport.scene.body
         assert body is not None
-        assert np.array_equal(body.shown_points[moving], other.points)
-    frame, body = window.session.frame, own.scene.body
-    assert frame is not None
-    assert body is not None
-    assert np.array_equal(body.shown_points[moving], frame.points)
+        assert np.array_equal(body.shown_points[shown.stages.moving.vertices], shown.points)
     assert clear_of_the_tools(window)
 
 

@@ -41,7 +41,8 @@ class Comparison:
             self._panes.show_alone()
             self.bodies = self.live = (self._main,)
             return
-        rest = self._beside(frame, after=False)
+        rest = next((body for body in self.live if body is not self._main), None)
+        rest = rest or self._beside(frame, after=False)
         if way == "wipe":
             self._panes.show_wipe((tr("Before"), rest.viewport), tr("After"))
         else:
