@@ -17,7 +17,7 @@ from app.seeing.bands import Bands
 from app.seeing.body import BodyActor
 from app.seeing.paint import Ramp
 from app.showing.flags import Flag, Flags
-from app.wording.words import number
+from app.wording.words import number, tr
 from core.live import Frame
 from core.mesh import Floats
 
@@ -163,6 +163,8 @@ class MapDesk(QObject):
         assert self.now is not None
         if self.name == "pull":
             self._pulls, self._values = self.now.pulls(), np.empty(0)
+            silent = tr("No worn line pulls like a spring.")
+            self.legend.show_note(self._kinds[self.name].note if self._pulls else silent)
         else:
             self._pulls, self._values = {}, self.now.values(self.name)
         by_hand, (low, high) = self._by_hand.get(self.name), automatic_range(self.name, self._values)

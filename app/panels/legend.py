@@ -95,9 +95,12 @@ class Legend(FloatingPanel):
         self._kind = kind = self._kinds[name]
         self.title.show_quantity(Quantity(kind.name, kind.title, kind.unit, 0.0))
         self.title.setToolTip(kind.tip)
-        self._note.setText(kind.note)
-        self._note.setVisible(bool(kind.note))
+        self.show_note(kind.note)
         self.bar.set_kind(kind)
+
+    def show_note(self, note: str) -> None:
+        """Say under the bar what the values are."""
+        self._note.setText(note)
 
     def show_range(self, low: float, high: float, stops: Sequence[str], by_hand: bool) -> None:
         """Show the ends of the range and the colours from low to high."""

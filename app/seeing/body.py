@@ -25,6 +25,9 @@ _DIM_INSIDE = """//VTK::Color::Impl
 """
 """What is seen from inside, through an open neck or arm, lies in its own shadow."""
 
+DIFFUSE, _EVENLY = 0.86, 0.18
+"""How much of the lamps' light the skin throws back, and how much of that comes from all sides in a map."""
+
 PLATE_AREA = 1500.0
 """Smallest flat area that counts as a cut plate and not as skin [mm^2]."""
 
@@ -171,7 +174,7 @@ class BodyActor:
             name="body",
             reset_camera=False,
             render=False,
-            diffuse=0.86,
+            diffuse=DIFFUSE,
             specular=0.10,
             specular_power=14,
         )
@@ -189,7 +192,7 @@ class BodyActor:
     def set_look(self, look: Look) -> None:
         """Repaint for one theme."""
         self._look = look
-        self.actor.prop.ambient = look.ambient
+        self._light()
         self._paint(np.arange(len(self._skin.source)))
 
     def set_occlusion(self, occlusion: Floats) -> None:
@@ -200,6 +203,7 @@ class BodyActor:
     def show_map(self, colours: Floats | None) -> None:
         """Lay a map over the clay: the colour of each body vertex, shape (n, 3) 0..255; None takes it off."""
         self._map = None if colours is None else np.array(colours)
+        self._light()
         self._paint(np.arange(len(self._skin.source)))
 
     def recolour(self, indices: Indices, colours: Floats) -> None:
@@ -228,6 +232,11 @@ class BodyActor:
     def shown_points(self) -> Points:
         """The positions on the screen, shape (n, 3) [mm]."""
         return self.rest.vertices if self._before else self.points
+
+    def _light(self) -> None:
+        """Light a map more evenly than clay, so that its colours can be told in the shade too."""
+        evenly = 0.0 if self._map is None else _EVENLY
+        self.actor.prop.ambient, self.actor.prop.diffuse = self._look.ambient + evenly, DIFFUSE - evenly
 
     def _paint(self, rows: Indices) -> None:
         """Colour some of the drawn vertices anew."""
