@@ -13,6 +13,8 @@ from PySide6.QtGui import (
     QPainter,
     QPaintEvent,
     QPen,
+    QPixmap,
+    QResizeEvent,
     QWheelEvent,
 )
 from PySide6.QtWidgets import QSizePolicy, QWidget
@@ -49,6 +51,7 @@ class PlotCanvas(QWidget):
         self._values = (0.0, 1.0)
         self.zoom: Turns | None = None
         self._turn: float | None = None
+        self._drawn: QPixmap | None = None
         self._held: tuple[float, Turns] | None = None
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
@@ -57,12 +60,12 @@ class PlotCanvas(QWidget):
     def set_plotted(self, plotted: Plotted, values: Turns, smooth: bool) -> None:
         """Show something else, with room for these values."""
         self.plotted, self._values, self.smooth = plotted, values, smooth
-        self.update()
+        self._forget()
 
     def set_turns(self, turns: Turns | None) -> None:
         """Show these turns, or all of them."""
         self.zoom = turns
-        self.update()
+        self._forget()
 
     def turns(self) -> Turns:
         """Return the first and the last turn in view."""
@@ -101,7 +104,10 @@ class PlotCanvas(QWidget):
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
         if event.type() == QEvent.Type.PaletteChange:
-            self.update()
+            self._forget()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        self._forget()
 
     # -- touched
 
@@ -167,8 +173,11 @@ class PlotCanvas(QWidget):
     # -- painted
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        tokens, scale, painter = tokens_of(self), self.scale(), QPainter(self)
-        paint_plot(painter, self.plotted, scale, tokens, self.smooth)
+        tokens, scale = tokens_of(self), self.scale()
+        if self._drawn is None or self._drawn.devicePixelRatioF() != self.devicePixelRatioF():
+            self._drawn = self._draw(scale)
+        painter = QPainter(self)
+        painter.drawPixmap(0, 0, self._drawn)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         if self._turn is not None and scale.first <= self._turn <= scale.last:
             self._paint_cursor(painter, scale)
@@ -176,6 +185,21 @@ class PlotCanvas(QWidget):
             painter.setPen(QPen(QColor(tokens.accent), 2))
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawRoundedRect(QRectF(self.rect()).adjusted(1, 1, -1, -1), 5, 5)
+
+    def _draw(self, scale: Scale) -> QPixmap:
+        """Draw the plot once: under a moving pointer only what is read is painted anew."""
+        ratio = self.devicePixelRatioF()
+        result = QPixmap(self.size() * ratio)
+        result.setDevicePixelRatio(ratio)
+        result.fill(Qt.GlobalColor.transparent)
+        painter = QPainter(result)
+        paint_plot(painter, self.plotted, scale, tokens_of(self), self.smooth)
+        painter.end()
+        return result
+
+    def _forget(self) -> None:
+        self._drawn = None
+        self.update()
 
     def _paint_cursor(self, painter: QPainter, scale: Scale) -> None:
         tokens, turn = tokens_of(self), self._turn or 0.0

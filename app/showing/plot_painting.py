@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QPainter, QPen, QPolygonF
+from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen
 
 from app.dress.theme import font
 from app.showing.plot_curves import Curve, Plotted, envelope, flips_every_turn
@@ -95,19 +95,19 @@ def _paint_curve(painter: QPainter, curve: Curve, scale: Scale, tokens: Tokens) 
     ghost, color = curve.role == "ghost", getattr(tokens, ROLE_COLORS[curve.role])
     strong = QPen(faded(color, 0.62 if ghost else 1.0), 1 if ghost else 2)
     painter.setBrush(Qt.BrushStyle.NoBrush)
-    pieces = scale.polygons(curve.turns, curve.values)
-    if is_dense(curve, scale) and len(pieces) == 1:
-        edges = [scale.polygons(curve.turns, each)[0] for each in envelope(curve.values)]
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(faded(color, 0.10 if ghost else 0.22))
-        painter.drawPolygon(QPolygonF([*edges[0].toList(), *reversed(edges[1].toList())]))
+    paths = [scale.path(curve.turns, curve.values)]
+    if is_dense(curve, scale):
+        lower, upper = (scale.path(curve.turns, each) for each in envelope(curve.values))
+        area = QPainterPath(lower)
+        area.connectPath(upper.toReversed())
+        painter.fillPath(area, faded(color, 0.10 if ghost else 0.22))
         painter.setPen(QPen(faded(color, 0.2 if ghost else 0.45), 1))
-        painter.drawPolyline(pieces[0])
+        painter.drawPath(paths[0])
         strong.setWidthF(1.0 if ghost else 1.6)
-        pieces = edges
+        paths = [lower, upper]
     painter.setPen(strong)
-    for piece in pieces:
-        painter.drawPolyline(piece)
+    for path in paths:
+        painter.drawPath(path)
     if not ghost and np.isfinite(curve.values[-1]):
         paint_dot(painter, scale, curve.turns[-1], curve.values[-1], color, tokens)
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from PySide6.QtCore import QPointF, QRectF
-from PySide6.QtGui import QPolygonF
+import pyqtgraph as pg
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QPainterPath
 
 from app.showing.plot_curves import Numbers
 
@@ -41,17 +42,11 @@ class Scale:
         """Width of one turn [px]."""
         return self.area.width() / ((1.0 + _END) * max(self.last - self.first, 1e-9))
 
-    def polygons(self, turns: Numbers, values: Numbers) -> list[QPolygonF]:
-        """Return a curve in pieces, broken where a value is not finite."""
+    def path(self, turns: Numbers, values: Numbers) -> QPainterPath:
+        """Return a curve [px], broken where a value is not finite."""
         x = self.area.left() + (turns - self.first) * self.turn_width
         y = self.area.bottom() - ((values - self.low) / self._span + _ROOM) * self._height
-        pieces: list[list[QPointF]] = [[]]
-        for across, down in zip(x.tolist(), y.tolist(), strict=True):
-            if math.isfinite(down):
-                pieces[-1].append(QPointF(across, down))
-            elif pieces[-1]:
-                pieces.append([])
-        return [QPolygonF(piece) for piece in pieces if len(piece) > 1]
+        return QPainterPath(pg.arrayToQPath(x, y, connect="finite"))
 
     def levels(self) -> list[float]:
         """Return the round values that get a line and a number."""
