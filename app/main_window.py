@@ -15,14 +15,15 @@ from app.desks.help_desk import HelpDesk
 from app.desks.history_desk import HistoryDesk
 from app.desks.job_desk import JobDesk
 from app.desks.landmark_desk import LandmarkDesk
-from app.desks.line_drawing import LineDrawing
 from app.desks.limits_desk import LimitsDesk
+from app.desks.line_drawing import LineDrawing
 from app.desks.line_maker import LineMaker
 from app.desks.line_routing import LineRouting
 from app.desks.lines_desk import LinesDesk
 from app.desks.map_desk import MapDesk
 from app.desks.plot_desk import PlotDesk
 from app.desks.preferences_desk import PreferencesDesk
+from app.desks.preset_desk import PresetDesk
 from app.desks.recovery_desk import RecoveryDesk
 from app.desks.rescue import Rescue
 from app.desks.safe_desk import SafeDesk
@@ -82,6 +83,7 @@ class MainWindow(QMainWindow):
         self.start_desk, self.plot_desk = StartDesk(self), PlotDesk(self)
         self.lines_desk, self.line_maker = LinesDesk(self), LineMaker(self)
         self.line_drawing, self.line_routing = LineDrawing(self), LineRouting(self)
+        self.preset_desk = PresetDesk(self)
         self.help = HelpDesk(self)
         self.preferences = PreferencesDesk(self)
         self.rescuer = Rescue(self)
@@ -115,6 +117,10 @@ class MainWindow(QMainWindow):
     def rescue(self) -> str:
         """Keep the design aside after a fault; returns where, or an empty text if it was not kept."""
         return self.safe_desk.rescue()
+
+    def focusNextPrevChild(self, next: bool) -> bool:  # noqa: N802
+        """Lead the keyboard in the order that eyes read, whenever the parts were made."""
+        return self.layout_.next_stop(next)
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:  # noqa: N802
         """Take files that are dragged onto the window."""

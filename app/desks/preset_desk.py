@@ -1,0 +1,78 @@
+"""The desk of presets: named sets of lines are worn, and the lines of a design are kept as one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+from PySide6.QtWidgets import QInputDialog
+
+from app.wording.words import say, tr
+from core.design_lines import LONGEST_TITLE
+from core.errors import UserError
+from core.presets import Preset, built_in, own_presets, preset_from, save_preset, with_preset
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+
+
+class PresetDesk(QObject):
+    """Fills the menu of presets, each time anew: files may have come."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._menu = window.actions_.submenu("lines", "presets", tr("Presets"))
+        self._menu.aboutToShow.connect(self.fill)
+        self.fill()
+
+    def fill(self) -> None:
+        """List our presets, one's own, those that cannot be read, and how to keep one."""
+        menu = self._menu
+        menu.clear()
+        opened = self._window.session.design is not None
+        own, problems = own_presets()
+        for group in (built_in(), own):
+            for preset in group:
+                action = menu.addAction(say(preset.title), lambda preset=preset: self.wear(preset))
+                action.setToolTip(say(preset.leaves_out) if preset.leaves_out else "")
+                action.setEnabled(opened)
+            menu.addSeparator()
+        for problem in problems:
+            action = menu.addAction(say(problem.message))
+            action.setToolTip(say(problem.hint))
+            action.setEnabled(False)
+        menu.addAction(tr("Save lines as preset…"), self.ask).setEnabled(opened)
+
+    def wear(self, preset: Preset) -> None:
+        """Wear the lines of a preset in place of the present ones; say what it leaves out."""
+        session = self._window.session
+        before = session.design
+        if before is None:
+            return
+        session.edit(
+            lambda design: with_preset(design, preset), tr("Preset {name}").format(name=say(preset.title))
+        )
+        self._window.desk.go_to("lines")
+        if session.design is not before and preset.leaves_out:
+            self._window.notices.show_notice("info", say(preset.title), say(preset.leaves_out))
+
+    def ask(self) -> None:
+        """Ask for a name, and keep the present lines as a preset."""
+        title, given = QInputDialog.getText(
+            self._window, tr("Save lines as preset"), tr("Name of the preset"), text=self._window.session.name
+        )
+        if given and title.strip():
+            self.save(title.strip()[:LONGEST_TITLE])
+
+    def save(self, title: str) -> None:
+        """Keep the present lines as a preset."""
+        session = self._window.session
+        if session.design is None:
+            return
+        try:
+            path = save_preset(preset_from(session.design, title))
+        except UserError as problem:
+            session.failed.emit(problem)
+            return
+        self._window.notices.show_notice("ok", tr("Preset {name} saved.").format(name=title), str(path))

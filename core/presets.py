@@ -1,0 +1,197 @@
+"""Presets: named sets of lines as data files, ours and those that a designer saves."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, replace
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import platformdirs
+
+from core.design import Design, ScanSource
+from core.design_lines import LineTraits, OwnLine, partner_of
+from core.errors import LineError, UserError
+from core.own_lines import own_line, place_of, ready_made
+from core.project import safe_name, whole_file
+from core.template import Template, read_template
+
+FORMAT = 1
+"""The newest format of a preset that is read."""
+
+_LARGEST = 1_000_000  # bytes of a preset's file
+
+
+@dataclass(frozen=True)
+class PresetLine:
+    """A line of a preset: one of the template, a ready-made pair ("straps"), or one through ``places``.
+
+    ``places`` are written as for ``own_line``. ``length`` [1] is where it starts, None leaves it off;
+    ``width`` [mm], ``title`` and ``colour`` as in ``LineTraits``.
+    """
+
+    line: str
+    places: str = ""
+    length: float | None = None
+    width: float | None = None
+    title: str = ""
+    colour: str = ""
+
+
+@dataclass(frozen=True)
+class Preset:
+    """A set of lines by its ``title``; ``leaves_out`` says what it cannot hold.
+
+    ``template`` is that of the places, empty if it names none: then it goes with every template.
+    """
+
+    title: str
+    lines: tuple[PresetLine, ...]
+    leaves_out: str = ""
+    template: str = ""
+
+    def laid(self, template: Template) -> Iterator[tuple[PresetLine, tuple[OwnLine, ...]]]:
+        """Yield each line with the own lines that it is, none for one of the template. Raises LineError."""
+        pairs = ready_made(template)
+        for line in self.lines:
+            if line.places:
+                yield line, (own_line(f"{line.line}={line.places}", template),)
+            elif line.line in pairs:
+                yield line, pairs[line.line]
+            elif line.line in template.lines:
+                yield line, ()
+            else:
+                known = ", ".join([*template.lines, *pairs])
+                raise LineError(f"There is no line '{line.line}'.", f"The lines are: {known}.")
+
+
+def read_preset(path: Path) -> Preset:
+    """Read a preset's file. Raises LineError, which says what is wrong in it."""
+    try:
+        if path.stat().st_size > _LARGEST:
+            raise ValueError("it is far too large")
+        return preset_of(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, UserError) as problem:
+        why = problem.message if isinstance(problem, UserError) else str(problem)
+        raise LineError(
+            f"The preset {path.name} cannot be read: {why}.", "Correct the file or remove it."
+        ) from problem
+
+
+def preset_of(text: str) -> Preset:
+    """Return the preset that a file's text describes. Raises ValueError or LineError if it is none."""
+    try:
+        values = dict(json.loads(text))
+        if values.pop("format") != FORMAT:
+            raise ValueError(f"it is not of format {FORMAT}")
+        lines = tuple(_line(each) for each in values.pop("lines"))
+        preset = Preset(str(values.pop("title")), lines, **{key: str(text) for key, text in values.items()})
+    except (KeyError, TypeError, AttributeError, RecursionError) as problem:
+        raise ValueError(f"{type(problem).__name__} {problem}") from problem
+    if not preset.title.strip() or not preset.lines:
+        raise ValueError("it needs a title and lines")
+    # Laid once on a template, so that a fault is told now and not when it is wanted.
+    design = Design(ScanSource(""), template=preset.template or "168")
+    with_preset(design, preset)
+    return preset
+
+
+def _line(values: Mapping[str, Any]) -> PresetLine:
+    line = PresetLine(**values)
+    texts = (line.line, line.places, line.title, line.colour)
+    numbers = (line.length, line.width)
+    if not all(isinstance(text, str) for text in texts) or any(isinstance(each, str) for each in numbers):
+        raise TypeError(f"in line {line.line}")
+    return line
+
+
+def built_in() -> tuple[Preset, ...]:
+    """Return the presets that come with Busk."""
+    folder = resources.files("resources") / "presets"
+    files = sorted((each for each in folder.iterdir() if each.name.endswith(".json")), key=lambda f: f.name)
+    return tuple(preset_of(each.read_text(encoding="utf-8")) for each in files)
+
+
+def own_folder() -> Path:
+    """Return where a designer's own presets lie."""
+    return Path(platformdirs.user_data_path("Busk", appauthor=False)) / "presets"
+
+
+def own_presets() -> tuple[list[Preset], list[LineError]]:
+    """Return the designer's own presets, and why some of them cannot be read."""
+    presets, problems = [], []
+    for path in sorted(own_folder().glob("*.json")):
+        try:
+            presets.append(read_preset(path))
+        except LineError as problem:
+            problems.append(problem)
+    return presets, problems
+
+
+def save_preset(preset: Preset) -> Path:
+    """Write a preset into the designer's own folder, over one of the same name. Raises ProjectError."""
+    folder = own_folder()
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{safe_name(preset.title)}.json"
+    with whole_file(path) as partial:
+        text = json.dumps({"format": FORMAT, **asdict(preset)}, indent=1, ensure_ascii=False)
+        partial.write_text(text, encoding="utf-8")
+    return path
+
+
+def preset_from(design: Design, title: str) -> Preset:
+    """Return the lines of a design as a preset: those that are worn, and all own ones."""
+    template = read_template(design.template)
+    own = {line.name: line for line in design.own_lines}
+    names = sorted(design.worn() - own.keys()) + list(own)
+    lines = tuple(_as_preset(name, design, own.get(name), template) for name in names)
+    if not lines:
+        raise LineError("There are no lines to keep as a preset.", "Set a line shorter or add one first.")
+    return Preset(title, lines, template=design.template if own else "")
+
+
+def _as_preset(name: str, design: Design, line: OwnLine | None, template: Template) -> PresetLine:
+    traits = design.traits_of(name)
+    places = ""
+    if line is not None:
+        words = [place_of(point, template) for point in line.points]
+        places = ",".join([*words, *["closed"] * line.closed])
+    length = design.ratio(name) if name in design.worn() else None
+    return PresetLine(name, places, length, traits.width, traits.title, traits.colour)
+
+
+def with_preset(design: Design, preset: Preset) -> Design:
+    """Return the design with the lines of a preset; its other lines stay, and are taken off unless locked.
+
+    Raises LineError if the preset's places are those of another template, or a line of it is locked.
+    """
+    if preset.template not in ("", design.template):
+        raise LineError(
+            f"The preset {preset.title} belongs to the control mesh of {preset.template} polygons.",
+            "Choose that control mesh first.",
+        )
+    after = design.at_rest()
+    for line, own in preset.laid(read_template(design.template)):
+        names = [each.name for each in own] or [line.line]
+        present = {each.name: each for each in after.own_lines}
+        for each in own:
+            if each != present.get(each.name):
+                after = after.with_own_line(each)
+        for name in names:
+            if after.traits_of(name).locked:
+                continue
+            usual = after.traits_of(name)
+            after = after.with_line(name, line.length).with_traits(_dressed(usual, line))
+    return after
+
+
+def _dressed(traits: LineTraits, line: PresetLine) -> LineTraits:
+    return replace(
+        traits,
+        title=line.title or traits.title,
+        colour=line.colour or traits.colour,
+        width=line.width if line.width is not None else traits.width,
+        linked=bool(partner_of(traits.name)) or traits.linked,
+    )

@@ -1,0 +1,109 @@
+"""Presets: each that is shipped can be worn, own ones are saved and read, broken files say what is wrong."""
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from core.comparison import shape_of
+from core.design_lines import LineTraits, OwnLine
+from core.errors import LineError
+from core.exact import solve_exact
+from core.own_lines import ready_made
+from core.pipeline import build, targets_of
+from core.presets import (
+    FORMAT,
+    Preset,
+    PresetLine,
+    built_in,
+    own_folder,
+    own_presets,
+    preset_from,
+    preset_of,
+    read_preset,
+    save_preset,
+    with_preset,
+)
+from core.template import read_template
+
+GOOD = {"format": FORMAT, "title": "X", "lines": [{"line": "mid-bust", "length": 0.97}]}
+
+
+@pytest.mark.parametrize("sample", ["mannequin", "person"])
+@pytest.mark.parametrize("preset", built_in(), ids=lambda preset: preset.title)
+def test_every_shipped_preset_can_be_worn(preset, sample, built):
+    stages = built(sample)
+    bare = replace(stages.design, lines=())
+    design = with_preset(bare, preset)
+    assert preset.leaves_out
+    assert with_preset(design, preset) == design
+    worn = build(design, stages)
+    balance = solve_exact(worn.model, targets_of(design, worn).ratios)
+    assert balance.found
+    condition = worn_condition(worn, balance)
+    shown = [sign for sign in ("overstrained", "folded", "inverted") if getattr(condition, sign)]
+    assert shown == []
+
+
+def worn_condition(stages, balance):
+    return shape_of(stages.model).condition(stages.model.tensegric.expand(balance.state.moved))
+
+
+def test_a_preset_takes_other_lines_off_but_keeps_them_and_leaves_locked_ones(built):
+    left, right = ready_made(read_template("168"))["slings"]
+    design = replace(built("mannequin").design, lines=()).with_own_line(left).with_own_line(right)
+    design = design.with_line("sling left", 0.9).with_line("full-bust", 0.95).with_line("mid-bust", 0.92)
+    design = design.with_traits(LineTraits("mid-bust", locked=True))
+    after = with_preset(
+        design,
+        Preset("X", (PresetLine("full-bust", length=0.98, width=9.0), PresetLine("mid-bust", length=0.99))),
+    )
+    assert after.worn() == {"full-bust", "mid-bust"}
+    assert (after.ratio("full-bust"), after.ratio("mid-bust")) == (0.98, 0.92)
+    assert after.own_lines == design.own_lines
+    assert after.traits_of("full-bust").width == 9.0
+
+
+def test_the_lines_of_a_design_come_back_from_their_preset(built, monkeypatch, tmp_path):
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
+    bare = replace(built("mannequin").design, lines=())
+    design = bare.with_own_line(OwnLine("v", (81, 45, 87))).with_line("v", 0.95).with_line("mid-bust", 0.97)
+    design = design.with_own_line(OwnLine("ring", (34, 35, 49, 48), closed=True))
+    design = design.with_traits(LineTraits("v", title="My V", colour="#112233", width=7.5))
+    save_preset(preset_from(design, "Mine / ours"))
+    (preset,), problems = own_presets()
+    assert (preset.title, problems) == ("Mine / ours", [])
+    assert with_preset(bare, preset) == design
+    with pytest.raises(LineError, match="control mesh of 168"):
+        with_preset(replace(bare, template="120"), preset)
+    (own_folder() / "broken.json").write_text("{", encoding="utf-8")
+    presets, problems = own_presets()
+    assert (len(presets), len(problems)) == (1, 1)
+    assert problems[0].message.startswith("The preset broken.json cannot be read")
+    with pytest.raises(LineError, match="no lines"):
+        preset_from(bare, "none")
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ({"format": 9}, "format 1"),
+        ({"lines": []}, "title and lines"),
+        ({"title": " "}, "title and lines"),
+        ({"lines": [{"line": "waist"}]}, "no line 'waist'"),
+        ({"lines": [{"line": "mid-bust", "length": 3.0}]}, "300.0 %"),
+        ({"lines": [{"line": "mid-bust", "colour": "red"}]}, "no colour"),
+        ({"lines": [{"line": "mid-bust", "width": 900}]}, "900 mm"),
+        ({"lines": [{"line": "a", "places": "r99c0,r1c0"}]}, "no place"),
+        ({"lines": [{"line": "mid-bust", "length": "0.9"}]}, "TypeError"),
+        ({"lines": [{"name": "mid-bust"}]}, "TypeError"),
+        ({"lines": 3}, "TypeError"),
+        ({"template": "9"}, "no template"),
+    ],
+)
+def test_a_broken_preset_says_what_is_wrong(change, why, tmp_path):
+    path = tmp_path / "x.json"
+    path.write_text(json.dumps(GOOD | change), encoding="utf-8")
+    with pytest.raises(LineError, match=f"x.json cannot be read: .*{why}"):
+        read_preset(path)
+    assert preset_of(json.dumps(GOOD)).lines == (PresetLine("mid-bust", length=0.97),)
