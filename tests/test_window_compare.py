@@ -7,6 +7,7 @@ import weakref
 
 import numpy as np
 import pytest
+import pyvista as pv
 from PySide6.QtCore import QCoreApplication, QEvent, QPoint, QPointF, Qt
 from PySide6.QtGui import QImage, QWheelEvent
 from PySide6.QtTest import QTest
@@ -14,6 +15,7 @@ from PySide6.QtWidgets import QAbstractButton, QApplication
 from window_tools import Script, run_main, settled
 
 from app.desks import flip_key
+from app.dress.wishes import wish
 from app.main_window import MainWindow
 from app.showing.viewport import Viewport
 from app.showing.wipe import REACH
@@ -30,6 +32,7 @@ def test_before_and_after_are_flipped_wiped_and_put_side_by_side(monkeypatch: py
         yield lambda: window.view.is_shaded
         first = window.session.frame
         assert first is not None
+        the_body_is_of_another_material_and_the_line_is_framed(window)
         the_space_bar_flips_and_lets_peek(window, monkeypatch)
         a_wipe_shows_both_pictures_with_a_handle_between(window)
         beside = yield from bodies_side_by_side_share_one_camera(window)
@@ -41,6 +44,23 @@ def test_before_and_after_are_flipped_wiped_and_put_side_by_side(monkeypatch: py
         assert window.view.panes.viewports == (window.view.viewport,)
 
     assert run_main([], script) == 0
+
+
+def the_body_is_of_another_material_and_the_line_is_framed(window: MainWindow) -> None:
+    view, body = window.view.viewport, window.view.viewport.scene.body
+    assert body is not None
+    far, clay = view.scene.view, colours_of(body.actor)
+    window.view_desk.materials["plaster"].trigger()
+    assert wish("material") == "plaster"
+    red, _, blue = (colours_of(body.actor) - clay).mean(axis=0)
+    assert blue > red + 10.0  # clay is warm, plaster is grey
+    window.view.select_line("mid-bust")
+    key(window, Qt.Key.Key_F)
+    line = view.scene.view.to_picture(view.scene.bands.spine("mid-bust")[0], view.width(), view.height())
+    assert view.scene.view.distance < far.distance
+    assert ((line[:, :2] > 0) & (line[:, :2] < [view.width(), view.height()])).all()
+    key(window, Qt.Key.Key_Home)
+    assert view.scene.view.distance > far.distance
 
 
 def the_space_bar_flips_and_lets_peek(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -94,6 +114,7 @@ def a_wipe_shows_both_pictures_with_a_handle_between(window: MainWindow) -> None
     assert view.compare.actions_by_name["wipe"].isChecked()
     assert handle.hasFocus()
     rest, width = view.comparison.bodies[1].viewport, panes.width()
+    assert rest.scene.material == "plaster"
     drag_handle(window, round(0.42 * width))
     line = round(width * handle.share())
     assert handle.share() == pytest.approx(0.42, abs=0.002)
@@ -167,6 +188,10 @@ def variants_are_put_side_by_side(window: MainWindow, other: Frame) -> None:
         assert body is not None
         assert np.array_equal(body.shown_points[shown.stages.moving.vertices], shown.points)
     assert clear_of_the_tools(window)
+
+
+def colours_of(actor: pv.Actor) -> np.ndarray:
+    return np.array(actor.mapper.dataset.point_data["Colour"], dtype=np.float64)
 
 
 def nothing_is_left_of(things: tuple[weakref.ref[object], ...]) -> bool:

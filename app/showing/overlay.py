@@ -177,11 +177,16 @@ class Overlay(QWidget):
         x, y, _ = self._spots([band.anchor])[0]
         reach = float(self._spots(band.spine)[:, 0].max())
         width = _width(band.text, band.detail)
-        left = min(max(reach + 18.0, x + 60.0), self.width() - MARGIN - width)
-        top = min(max(y + 18.0, MARGIN), self.height() - MARGIN - PILL)
+        beside = max(reach + 18.0, x + 60.0)
+        left = min(beside, self.width() - MARGIN - width)
+        # Where there is no room beside the body, the label hangs under the line instead of lying on it.
+        drop = 18.0 if left == beside else 64.0
+        top = min(max(y + drop, MARGIN), self.height() - MARGIN - PILL)
         pill = QRectF(left, top, width, PILL)
         at = QPointF(x, y)
-        self._leader(painter, at, QPointF(left, pill.center().y()), False, False)
+        foot = QPointF(min(max(x, left + 12.0), left + width - 12.0), top)
+        end = QPointF(left, pill.center().y()) if left == beside else foot
+        self._leader(painter, at, end, False, False)
         painter.setPen(QPen(QColor("#FFFFFF"), 2.0))
         painter.setBrush(QColor(band.colour))
         painter.drawEllipse(at, 5.0, 5.0)

@@ -70,6 +70,8 @@ class Panes(QWidget):
 
     def _take(self, viewports: tuple[Viewport, ...], titles: Sequence[str], *, wiped: bool) -> None:
         for old in {*self.viewports} - {*viewports, self.main}:
+            if old.hasFocus():
+                self.main.setFocus()
             old.close_view()
             old.hide()
             old.deleteLater()
