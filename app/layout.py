@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QByteArray, QEvent, QObject, QSettings, Qt
 from PySide6.QtWidgets import QApplication, QHBoxLayout, QSplitter, QStackedWidget, QVBoxLayout, QWidget
 
-from app.dress.focus import FocusRing
+from app.dress.focus import FocusRing, stops
 from app.wording.words import tr
 
 if TYPE_CHECKING:
@@ -113,29 +113,36 @@ class Layout(QObject):
         self.fit()
 
     def next_pane(self) -> None:
-        """Let the keyboard go on in the next part of the window: menus, steps, view, strip, inspector."""
-        window = self._window
-        panes: list[QWidget] = [
-            window.top,
-            window.rail,
-            window.notices,
-            window.view,
-            window.strip,
-            window.inspector,
-        ]
-        page = self.pages.currentWidget()
-        if page is not None and page is not self._across:
-            panes[3:] = [page]
-        has = QApplication.focusWidget()
+        """Let the keyboard go on in the next part of the window that takes it."""
+        panes, has = self._panes(), QApplication.focusWidget()
         at = next((place for place, pane in enumerate(panes) if has and pane.isAncestorOf(has)), -1)
-        turned = [panes[(at + place) % len(panes)] for place in range(1, len(panes) + 1)]
-        for pane in turned:
-            target = window.view.viewport if pane is window.view else _first_of(pane)
+        for pane in (panes[(at + step) % len(panes)] for step in range(1, len(panes) + 1)):
+            viewport = self._window.view.viewport
+            target = viewport if pane is self._window.view else next(iter(stops(pane)), None)
             if target is not None:
                 target.setFocus(Qt.FocusReason.TabFocusReason)
-                if target is window.view.viewport:
+                if target is viewport:
                     self._ring.show_round(target)
                 return
+
+    def next_stop(self, forward: bool) -> bool:
+        """Let the keyboard go on to the next field or button, through all panes; returns whether it did."""
+        order, has = [stop for pane in self._panes() for stop in stops(pane)], QApplication.focusWidget()
+        if not order:
+            return False
+        at = order.index(has) if has in order else -1 if forward else 0
+        reason = Qt.FocusReason.TabFocusReason if forward else Qt.FocusReason.BacktabFocusReason
+        order[(at + (1 if forward else -1)) % len(order)].setFocus(reason)
+        return True
+
+    def _panes(self) -> list[QWidget]:
+        """Return the parts of the window in the order in which they are read."""
+        window, page = self._window, self.pages.currentWidget()
+        if page is None or page is self._across:
+            work = [window.notices, window.view, window.strip, window.inspector]
+        else:
+            work = [window.notices, page]
+        return [window.top, window.rail, *work]
 
     # -- sizes
 
@@ -205,11 +212,3 @@ class Layout(QObject):
 def _number(value: object) -> int | None:
     text = str(value)
     return int(text) if text.isdecimal() and 0 < int(text) < 2000 else None
-
-
-def _first_of(pane: QWidget) -> QWidget | None:
-    """Return what of a pane takes the keyboard first, if anything does."""
-    for each in pane.findChildren(QWidget):
-        if each.isVisible() and each.isEnabled() and each.focusPolicy() & Qt.FocusPolicy.TabFocus:
-            return each
-    return None

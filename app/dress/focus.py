@@ -1,12 +1,50 @@
-"""A ring round what has the keyboard where it does not show that by itself: the view, lists that scroll."""
+"""Where the keyboard goes on to, in the order that eyes read; a ring where a widget shows no focus itself."""
 
 from __future__ import annotations
 
 from PySide6.QtCore import QPoint, QRect, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
-from PySide6.QtWidgets import QApplication, QScrollArea, QWidget
+from PySide6.QtWidgets import QAbstractButton, QAbstractScrollArea, QApplication, QScrollArea, QWidget
 
 from app.dress.theme import tokens_of
+
+_LINE = 12
+"""Pixels that the middles of widgets may lie apart in height, and be read as one line."""
+
+
+def stops(pane: QWidget) -> list[QWidget]:
+    """Return what of a pane takes the keyboard, line by line from left to right.
+
+    Of buttons of which one is on there is one stop: arrow keys go among them.
+    """
+    lines: list[tuple[int, list[tuple[int, QWidget]]]] = []
+    found = [each for each in pane.findChildren(QWidget) if _is_stop(each)]
+    places = [(each.mapTo(pane, each.rect().center()), each) for each in found]
+    for place, each in sorted(places, key=lambda at: at[0].y()):
+        if not lines or place.y() - lines[-1][0] > _LINE:
+            lines.append((place.y(), []))
+        lines[-1][1].append((place.x(), each))
+    return [each for _, line in lines for _, each in sorted(line, key=lambda at: at[0])]
+
+
+def _is_stop(widget: QWidget) -> bool:
+    if not (widget.isVisible() and widget.isEnabled()) or widget.focusProxy() is not None:
+        return False
+    group = widget.group() if isinstance(widget, QAbstractButton) else None
+    if group is not None and group.exclusive():
+        usable = [each for each in group.buttons() if each.isVisible() and each.isEnabled()]
+        return widget is (group.checkedButton() if group.checkedButton() in usable else usable[0])
+    return bool(widget.focusPolicy() & Qt.FocusPolicy.TabFocus) and not _is_folded_away(widget)
+
+
+def _is_folded_away(widget: QWidget) -> bool:
+    """Tell whether a widget lies outside of what it stands in, which has been made small."""
+    parent = widget.parentWidget()
+    while parent is not None and not isinstance(parent.parentWidget(), QAbstractScrollArea):
+        if not parent.rect().intersects(QRect(widget.mapTo(parent, QPoint()), widget.size())):
+            return True
+        parent = parent.parentWidget()
+    return False
 
 
 class FocusRing(QWidget):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from PySide6.QtWidgets import QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
 
 from app.dress.parts import Segment
+from app.wording.words import tr
 
 
 class Inspector(QWidget):
@@ -19,6 +20,7 @@ class Inspector(QWidget):
         self._panels: dict[str, QWidget] = {}
         self._titled: set[str] = set()
         self.tabs = Segment((), wide=True)
+        self.tabs.setToolTip(tr("What this step shows here: lengths, measures or what was done"))
         self.tabs.chosen.connect(self.open)
         self._head = QWidget()
         row = QHBoxLayout(self._head)

@@ -127,6 +127,12 @@ class ScanPanel(QWidget):
 
     def _choices(self, key: str, choices: list[tuple[str, str]]) -> Segment:
         result = Segment(choices, small=True)
+        tips = {
+            "unit": tr("What a length of 1 in the file is; all measures follow from it"),
+            "up": tr("The axis of the file that points to the head"),
+            "front": tr("The axis of the file that the body faces"),
+        }
+        result.setToolTip(tips[key])
         result.chosen.connect(lambda value: self.told.emit(key, value))
         return result
 
