@@ -31,6 +31,7 @@ from app.desks.safe_mode import SafeMode
 from app.desks.scan_desk import ScanDesk
 from app.desks.section_desk import SectionDesk
 from app.desks.start_desk import StartDesk
+from app.desks.variant_desk import VariantDesk
 from app.desks.view_desk import ViewDesk
 from app.layout import Layout
 from app.panels.history import HistoryPanel
@@ -78,7 +79,7 @@ class MainWindow(QMainWindow):
         self.landmark_desk, self.scan_desk = LandmarkDesk(self), ScanDesk(self)
         self.desk = Desk(self)
         self.safe_desk, self.recovery_desk = SafeDesk(self), RecoveryDesk(self)
-        self.history_desk = HistoryDesk(self, self.history)
+        self.history_desk, self.variant_desk = HistoryDesk(self, self.history), VariantDesk(self)
         self.map_desk, self.section_desk = MapDesk(self), SectionDesk(self)
         self.start_desk, self.plot_desk = StartDesk(self), PlotDesk(self)
         self.lines_desk, self.line_maker = LinesDesk(self), LineMaker(self)

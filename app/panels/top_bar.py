@@ -22,7 +22,8 @@ class TopBar(QWidget):
         grid.setContentsMargins(16, 0, 14, 1)
         grid.setColumnStretch(0, 1)
         grid.setColumnStretch(2, 1)
-        left, right = QHBoxLayout(), QHBoxLayout()
+        left = QHBoxLayout()
+        self._right = right = QHBoxLayout()
         left.setSpacing(12)
         left.addWidget(label("Busk", "wordmark"))
         left.addWidget(menu, alignment=Qt.AlignmentFlag.AlignVCenter)
@@ -40,6 +41,11 @@ class TopBar(QWidget):
         grid.addLayout(left, 0, 0)
         grid.addLayout(self._middle(), 0, 1)
         grid.addLayout(right, 0, 2)
+
+    def place(self, widget: QWidget) -> None:
+        """Put what is always wanted between undo and the button at the end."""
+        self._right.insertWidget(self._right.count() - 1, widget)
+        self._right.insertSpacing(self._right.count() - 1, 8)
 
     def set_title(self, title: str, unsaved: bool) -> None:
         """Show the name of the project, with a dot while it has unsaved changes."""

@@ -1,0 +1,175 @@
+"""Variants of the design: which is shown, a new one, one fewer, and all of them side by side."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Qt
+from PySide6.QtWidgets import QMenu
+
+from app.dress.parts import Segment
+from app.wording.words import number, tr
+from core.design import Design
+from core.document import VARIANTS
+from core.frame import Frame
+from core.settled import settled_frame
+
+if TYPE_CHECKING:
+    from app.asking.jobs import Job
+    from app.main_window import MainWindow
+
+_MOST_KEPT = 12
+
+
+class VariantDesk(QObject):
+    """Owns the segment A B C of the top bar, and the settled frames of variants that are not worked on."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._session = window.session
+        self._solved: dict[Design, Frame] = {}
+        self._job: Job | None = None
+        self._beside: dict[str, Design] | None = None
+        self.segment = Segment([(name, name) for name in VARIANTS])
+        self.segment.chosen.connect(self.choose)
+        for name in VARIANTS:
+            self._set_up(name)
+        window.top.place(self.segment)
+        self._fill_menu()
+        self.show_variants()
+
+    def choose(self, name: str) -> None:
+        """Show a variant; one that is not there yet begins as a copy of the one that is shown."""
+        self._session.show_variant(name)
+        self.show_variants()
+
+    def show_variants(self) -> None:
+        """Show which variants there are, and bring what is seen side by side up to date."""
+        document = self._session.document
+        there = document.variants if document is not None else {}
+        shown = document.shown if document is not None else ""
+        self.segment.setEnabled(document is not None)
+        self.segment.set_choice(shown)
+        for name in VARIANTS:
+            button = self.segment.button(name)
+            text = (
+                tr("Variant {name}") if name in there else tr("Variant {name}: begins as a copy of {shown}")
+            )
+            button.setToolTip(text.format(name=name, shown=shown))
+            button.setAccessibleName(button.toolTip())
+            button.setText(name if name in there else f"+{name}")
+        if self._window.view.comparison.way == "variants" and self._beside != self._others():
+            self.show_side_by_side()
+
+    def show_side_by_side(self) -> None:
+        """Show all variants side by side, as soon as those that are not worked on are solved."""
+        document, frame = self._session.document, self._session.frame
+        if document is None or frame is None:
+            return
+        others = self._others()
+        if not others:
+            self._beside = None
+            if self._window.view.comparison.way == "variants":
+                self._window.view.compare_by("after")
+            else:
+                said = (
+                    tr("There is one variant so far."),
+                    tr("Choose B or C at the top: it begins as a copy."),
+                )
+                self._window.notices.show_notice("info", *said)
+            return
+        missing = [each for each in others.items() if each[1] not in self._solved]
+        if missing:
+            self._solve(*missing[0])
+            return
+        self._beside = others
+        shown = [
+            (name, None) if name == document.shown else (name, self._solved[design])
+            for name, design in document.designs
+        ]
+        self._window.view.show_variants([(_title(name, each), each) for name, each in shown])
+
+    def close_side_by_side(self) -> None:
+        """Forget what belongs to another body."""
+        self._solved.clear()
+        self._beside = None
+        if self._window.view.comparison.way == "variants":
+            self._window.view.compare_by("after")
+        self.show_variants()
+
+    def _others(self) -> dict[str, Design]:
+        document = self._session.document
+        if document is None:
+            return {}
+        return {name: design for name, design in document.designs if name != document.shown}
+
+    def _solve(self, name: str, design: Design) -> None:
+        near = self._session.frame
+        if near is None or self._job in self._window.jobs.at_work():
+            return
+        self._job = self._window.jobs.run(
+            tr("Solving variant {name}").format(name=name),
+            partial(settled_frame, design, near.stages),
+            partial(self._take, design),
+            self._window.desk.show_failure,
+            waited=True,
+        )
+
+    def _take(self, design: Design, frame: object) -> None:
+        if isinstance(frame, Frame):
+            self._job = None
+            self._solved[design] = frame
+            for old in list(self._solved)[:-_MOST_KEPT]:
+                del self._solved[old]
+            self.show_side_by_side()
+
+    def _set_up(self, name: str) -> None:
+        button = self.segment.button(name)
+        button.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
+        button.customContextMenuRequested.connect(
+            lambda place: self._menu_of(name).popup(button.mapToGlobal(place))
+        )
+
+    def _menu_of(self, name: str) -> QMenu:
+        menu = QMenu(self.segment)
+        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        document = self._session.document
+        there = document.variants if document is not None else {}
+        remove = menu.addAction(tr("Remove variant {name}").format(name=name))
+        remove.setEnabled(name in there and len(there) > 1)
+        remove.triggered.connect(lambda: self._session.remove_variant(name))
+        menu.addAction(tr("Variants side by side")).triggered.connect(self.show_side_by_side)
+        return menu
+
+    def _fill_menu(self) -> None:
+        actions = self._window.actions_
+        actions.submenu("edit", "variants", tr("Variants"))
+        for place, name in enumerate(VARIANTS, start=1):
+            text = tr("Variant {name}").format(name=name)
+            actions.add("variants", text, f"Alt+{place}", do=partial(self.choose, name), of_document=True)
+        actions.rule("variants")
+        actions.add("variants", tr("Remove this variant"), do=self._remove_shown, of_document=True)
+        said = tr("Show the bodies of all variants through linked cameras")
+        actions.add(
+            "variants",
+            tr("Variants side by side"),
+            "Shift+V",
+            said,
+            do=self.show_side_by_side,
+            of_document=True,
+        )
+
+    def _remove_shown(self) -> None:
+        if self._session.document is not None:
+            self._session.remove_variant(self._session.document.shown)
+
+
+def _title(name: str, frame: Frame | None) -> str:
+    """Return what stands over a body: the variant's name, and its lift once that stands still."""
+    text = tr("Variant {name}").format(name=name)
+    if frame is None:
+        return text
+    lift = frame.marks.apex_z - frame.stages.rest_marks.apex_z
+    return f"{text}   " + tr("Lift of apex {lift} mm").format(lift=number(lift, 1, signed=True))
