@@ -220,7 +220,7 @@ class BodyActor:
         else:
             self._normals[indices] = normals
         if not self._before:
-            self._write()
+            self._write(indices if normals is not None else None)
 
     def before(self, shown: bool) -> None:
         """Show the rest positions, or the moved ones again."""
@@ -257,10 +257,17 @@ class BodyActor:
     def _sum_at_vertices(self) -> sparse.csr_array:
         return incidence(self._skin.mesh.faces, len(self._skin.source))
 
-    def _write(self) -> None:
-        """Copy positions and normals into the drawn arrays, which keeps the actor and never flickers."""
-        self._data.points[:] = self.shown_points[self._skin.source]
-        self._data.point_data["Normals"][:] = self._rest_normals if self._before else self._normals
+    def _write(self, indices: Indices | None = None) -> None:
+        """Copy positions and normals, or those of some vertices, into the arrays that are drawn all along."""
+        places, normals = self._data.points, self._data.point_data["Normals"]
+        shown, count = self.shown_points, len(self.rest.vertices)
+        if indices is None:
+            places[:] = shown[self._skin.source]
+            normals[:] = self._rest_normals if self._before else self._normals
+        else:
+            places[indices] = shown[indices]
+            places[count:] = shown[self._skin.source[count:]]
+            normals[indices] = self._normals[indices]
         self._data.GetPoints().Modified()
         self._data.GetPointData().GetNormals().Modified()
         self.sight.forget()
