@@ -56,6 +56,9 @@ def test_the_first_start_leads_through_the_sample_and_later_ones_go_on(
         assert at_start(window), "nothing was chosen"
         QTest.keyClick(cards(window)["customer 0340"], Qt.Key.Key_Delete)
         assert recent_files() == [str(saved)]
+        window.desk.open_file(str(gone))
+        yield window.notices.isVisible
+        assert at_start(window), "the page stays as long as there is nothing else"
         QTest.keyClick(cards(window)["customer 0412"], Qt.Key.Key_Return)
         yield settled(window)
         assert not at_start(window)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 import zipfile
+import zlib
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -13,6 +14,7 @@ from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QMenu
 
 from app.desks.project_picture import STATE
+from app.dress.wishes import wish
 from app.panels.project_card import ProjectView
 from app.showing.verdict_chip import TONES, state_title
 from app.wording.words import tr
@@ -54,7 +56,7 @@ def end_first_start() -> None:
 
 def file_at_start() -> str:
     """Return the file to go on with, if the user wants to go on with the last one, or an empty text."""
-    last = next(iter(recent_files()), "") if QSettings().value("start") == "last" else ""
+    last = next(iter(recent_files()), "") if wish("start") == "last" else ""
     return last if last and Path(last).exists() else ""
 
 
@@ -90,7 +92,7 @@ def _view_of(path: Path) -> ProjectView:
 def picture_of(path: Path) -> QImage | None:
     """Return the picture in a project, or None; a file that is no whole project says so when it is opened."""
     with (
-        suppress(OSError, KeyError, ValueError, RuntimeError, zipfile.BadZipFile),
+        suppress(OSError, KeyError, ValueError, EOFError, RuntimeError, zlib.error, zipfile.BadZipFile),
         zipfile.ZipFile(path) as file,
     ):
         if file.getinfo("preview.png").file_size <= _LARGEST_PICTURE:

@@ -38,7 +38,8 @@ class StartDesk(QObject):
     def show_page(self) -> None:
         """Show the start page; what is open stays as it is."""
         window = self._window
-        self.tour.mark.leave()
+        if self.tour.place >= 0:
+            self.tour.end()
         self.page.set_document(window.session.name if window.session.frame is not None else "")
         self.page.set_projects(project_views())
         window.pages.setCurrentWidget(self.page)
@@ -53,6 +54,13 @@ class StartDesk(QObject):
     def show_work(self, what: str, _share: float) -> None:
         """Leave the page as soon as a body is being read: its progress is shown beside the view."""
         if what:
+            self.leave_page()
+
+    def show_failure(self) -> None:
+        """Come back where there is nothing else to show; the notice stands above the page."""
+        if self._window.session.frame is None:
+            self.show_page()
+        else:
             self.leave_page()
 
     def show_opened(self) -> None:
