@@ -58,7 +58,7 @@ class StartDesk(QObject):
 
     def show_failure(self) -> None:
         """Come back where there is nothing else to show; the notice stands above the page."""
-        if self._window.session.frame is None:
+        if self._window.session.frame is None and self._window.scan_desk.stuck is None:
             self.show_page()
         else:
             self.leave_page()
