@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
@@ -34,7 +35,7 @@ class PresetDesk(QObject):
         own, problems = own_presets()
         for group in (built_in(), own):
             for preset in group:
-                action = menu.addAction(say(preset.title), lambda preset=preset: self.wear(preset))
+                action = menu.addAction(say(preset.title), partial(self.wear, preset))
                 action.setToolTip(say(preset.leaves_out) if preset.leaves_out else "")
                 action.setEnabled(opened)
             menu.addSeparator()

@@ -1,0 +1,138 @@
+"""The list of lines in the real window: each decision is one undo step with a good name."""
+
+from __future__ import annotations
+
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+from window_tools import Script, drag, run_main, settled
+
+from app.main_window import MainWindow
+from app.panels.length_groove import Feasible
+from core.presets import built_in
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+def last(window: MainWindow) -> str:
+    return window.session.undo_stack.undoText()
+
+
+def test_lines_are_linked_locked_named_coloured_softened_and_dressed_by_a_preset() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        window.actions_.add_lines["straps"].trigger()
+        yield lambda: "strap left" in window.lines.rows and window.is_settled()
+        yield from linked(window)
+        yield from treated(window)
+        yield from locked(window)
+        yield from preset(window)
+        while window.session.undo_stack.canUndo():
+            window.actions_.undo.trigger()
+        yield settled(window)
+        assert list(window.lines.rows) == ["full-bust", "mid-bust", "under-bust"]
+
+    run_main([], script)
+
+
+def linked(window: MainWindow) -> Script:
+    """One row and one undo step for both sides; set apart each has its own, linked again they are alike."""
+    rows, session = window.lines.rows, window.session
+    assert last(window) == "Straps added"
+    assert "strap right" not in rows
+    count = session.undo_stack.count()
+    drag(window, "strap left", -40)
+    yield settled(window)
+    assert session.undo_stack.count() == count + 1
+    assert last(window).startswith("Straps 9")
+    ratio = session.design.ratio("strap left")
+    assert 0.9 < ratio < 0.99
+    assert session.design.ratio("strap right") == ratio
+    assert len(rows["strap left"].view.sides) == 2
+    window.view.viewport.band_clicked.emit("strap right")
+    assert rows["strap left"]._open, "the row of the pair stands for both"
+    QTest.keyClick(window.lines, Qt.Key.Key_L)
+    yield lambda: "strap right" in window.lines.rows
+    assert last(window) == "Straps set apart"
+    window.lines.length_committed.emit("strap right", 0.98)
+    assert session.design.ratio("strap left") == ratio
+    window.lines.select("strap left")
+    QTest.keyClick(window.lines, Qt.Key.Key_L)
+    yield lambda: "strap right" not in window.lines.rows
+    assert (last(window), session.design.ratio("strap right")) == ("Straps linked", ratio)
+    yield settled(window)
+
+
+def treated(window: MainWindow) -> Script:
+    """Name, colour and stiffness."""
+    session, bands = window.session, window.view.viewport.scene.bands
+    row = window.lines.rows["strap left"]
+    QTest.mouseDClick(row.title, Qt.MouseButton.LeftButton, pos=QPoint(10, 8))
+    QTest.keyClicks(row.title._editor, "Lift tape")
+    QTest.keyClick(row.title._editor, Qt.Key.Key_Return)
+    yield lambda: row.title.text() == "Lift tape"
+    assert last(window) == "Straps renamed"
+    assert session.design.traits_of("strap right").title == "Lift tape"
+    window.desk.select_line("strap right")
+    assert window.view.viewport._label[1].startswith("Lift tape, right 9")
+    row.details._palette.chosen.emit("#C2571A")
+    yield lambda: bands.colour("strap right") == "#C2571A"
+    assert last(window) == "Lift tape: another colour"
+    yield settled(window)
+    stiff = session.frame.lengths["strap left"]
+    field = row.details._stiffness
+    field.setFocus()
+    QTest.keyClicks(field, "4")
+    QTest.keyClick(field, Qt.Key.Key_Return)
+    yield settled(window)
+    assert last(window) == "Lift tape: stiffness 4.0"
+    assert session.frame.lengths["strap left"] > stiff + 0.5, "a softer line pulls less"
+
+
+def locked(window: MainWindow) -> Script:
+    """A locked line keeps its length: no slider, no field, and the reset of all leaves it."""
+    session, row = window.session, window.lines.rows["strap left"]
+    window.lines.length_committed.emit("mid-bust", 0.97)
+    window.lines.select("strap left")
+    QTest.keyClick(window.lines, Qt.Key.Key_L, Qt.KeyboardModifier.ShiftModifier)
+    yield lambda: row.view.locked
+    assert last(window) == "Lift tape locked"
+    for part in (row.slider, row.percent, row.millimetres, row.details._tools["remove"]):
+        assert not part.isEnabled()
+    assert "locked" in row.slider.toolTip()
+    ratio = session.design.ratio("strap left")
+    drag(window, "strap left", 40)
+    window.actions_.reset.trigger()
+    QTest.keyClick(window.lines, Qt.Key.Key_Delete)
+    assert session.design.worn() == {"strap left", "strap right"}
+    assert session.design.ratio("strap left") == ratio
+    assert window.lines.isVisible()
+    QTest.keyClick(window.lines, Qt.Key.Key_H)
+    assert window.view.hidden_lines == {"strap left", "strap right"}
+    QTest.keyClick(window.lines, Qt.Key.Key_H)
+    QTest.keyClick(window.lines, Qt.Key.Key_L, Qt.KeyboardModifier.ShiftModifier)
+    assert last(window) == "Lift tape unlocked"
+    yield settled(window)
+
+
+def preset(window: MainWindow) -> Script:
+    """A preset from the menu is one undo step, and says what it leaves out."""
+    before, count = window.session.design, window.session.undo_stack.count()
+    window.preset_desk._menu.aboutToShow.emit()
+    titles = [action.text() for action in window.preset_desk._menu.actions()]
+    assert titles[:3] == [each.title for each in built_in()]
+    window.preset_desk._menu.actions()[0].trigger()
+    assert window.session.undo_stack.count() == count + 1
+    assert last(window) == "Preset Bra"
+    assert window.session.design.worn() == {"mid-bust", "strap left", "strap right"}
+    yield settled(window)
+    row = window.lines.rows["mid-bust"]
+    window.lines_desk.feasible = lambda _: {"mid-bust": Feasible(0.95, 0.93)}
+    window.lines_desk.show_rows()
+    wall = row.slider._x_of(0.93)
+    assert row.slider._wall_of(row.slider.ratio()) == wall
+    drag(window, "mid-bust", round(wall - 10 - row.slider._x_of(0.97)), release=False)
+    assert row.slider.ratio() == pytest.approx(0.93, abs=1e-9 + 0.001), "the red resists"
+    QTest.keyClick(row.slider, Qt.Key.Key_Escape)
+    window.actions_.undo.trigger()
+    assert window.session.design == before
