@@ -154,9 +154,9 @@ class Layout(QObject):
         self._fit_strip(window.strip.is_folded())
 
     def _fit_strip(self, folded: bool) -> None:
-        if not folded:
-            height = self._height or (HIGH if self._window.height() >= 850 else LOW)
-            self._down.setSizes([max(sum(self._down.sizes()) - height, 1), height])
+        unfolded = self._height or (HIGH if self._window.height() >= 850 else LOW)
+        height = self._window.strip.maximumHeight() if folded else unfolded
+        self._down.setSizes([max(sum(self._down.sizes()) - height, 1), height])
 
     def _note_width(self) -> None:
         self._width = self._window.inspector.width()

@@ -97,6 +97,7 @@ def test_the_layout_is_shared_out_by_hand_and_kept(mannequin: Path) -> None:
         QTest.mouseRelease(handle, Qt.MouseButton.LeftButton, pos=QPoint(-80, 200))
         assert 400 < window.inspector.width() < 440
         window.strip.set_folded(True)
+        assert window.strip.height() == 36
         window.view.viewport.setFocus()
         QTest.keyClick(window.view.viewport, Qt.Key.Key_Tab)
         assert [part.isVisible() for part in (window.rail, window.inspector, window.strip)] == [False] * 3
@@ -110,7 +111,7 @@ def test_the_layout_is_shared_out_by_hand_and_kept(mannequin: Path) -> None:
     def second(window: MainWindow) -> Script:
         yield settled(window)
         assert 400 < window.inspector.width() < 440
-        assert window.strip.is_folded()
+        assert (window.strip.is_folded(), window.strip.height()) == (True, 36)
         window.actions_.reset_layout.trigger()
         assert (window.inspector.width(), window.strip.is_folded()) == (340, False)
 

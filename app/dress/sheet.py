@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QFontDatabase
+from PySide6.QtGui import QFontDatabase, QShowEvent
 from PySide6.QtWidgets import QDialog, QHBoxLayout, QPlainTextEdit, QPushButton, QVBoxLayout, QWidget
 
 from app.dress.parts import button, hairline
@@ -14,7 +14,10 @@ from app.wording.words import tr
 
 
 class Sheet(QDialog):
-    """A dialog that goes when it is closed; ``body`` takes what it shows, ``foot`` its buttons."""
+    """A dialog that goes when it is closed; ``body`` takes what it shows, ``foot`` its buttons.
+
+    A height of 0 in its size means as high as it needs.
+    """
 
     def __init__(self, parent: QWidget | None, title: str, size: tuple[int, int] | None = None) -> None:
         super().__init__(parent)
@@ -35,7 +38,9 @@ class Sheet(QDialog):
         heading = label(title, "page")
         heading.setWordWrap(True)
         self.body.addWidget(heading)
+        self._size = size
         if size is not None:
+            self.setMinimumWidth(size[0])
             self.resize(*size)
 
     def add_button(self, text: str, do: Callable[[], object], kind: str = "secondary") -> QPushButton:
@@ -46,6 +51,19 @@ class Sheet(QDialog):
         result.clicked.connect(lambda _=False: do())
         self.foot.addWidget(result)
         return result
+
+    def fit(self) -> None:
+        """Take the height that all the text needs at this width."""
+        column = self.layout()
+        assert column is not None
+        column.activate()
+        self.resize(self.width(), column.totalHeightForWidth(self.width()))
+
+    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802
+        """Be as high as needed, where no height was wished for."""
+        if self._size is not None and not self._size[1]:
+            self.fit()
+        super().showEvent(event)
 
     def add_close(self) -> QPushButton:
         """Put the button that closes the sheet at the foot."""
