@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, QTimer
 
 from app.desks.body_now import BodyNow
 from app.desks.dialogs import ask_save
@@ -18,13 +18,16 @@ from core.errors import UserError
 from core.export import write_profile
 from core.live import Frame
 from core.mesh import Floats
-from core.profile import Curve, Plane, Slicer, apexes, mirrored, nearest, stand_out
+from core.profile import AXES, Curve, Plane, Slicer, apexes, mirrored, nearest, stand_out
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
 
 _AROUND = 12.0  # what is seen beside the part that can move [mm]
 _NEAR = 25.0  # how near to a curve the pointer reads it [px]
+
+PLOT_INTERVAL = 100
+"""Milliseconds between two pictures of the curves while frames come: they cost as much as the body."""
 
 
 class SectionDesk(QObject):
@@ -46,6 +49,8 @@ class SectionDesk(QObject):
         self._opposite: Slicer | None = None
         self._again = True
         self._place: Floats | None = None
+        self._plot_clock = QTimer(self, interval=PLOT_INTERVAL, singleShot=True)
+        self._plot_clock.timeout.connect(self._plot)
         self.panel = ProfilePanel(self._view)
         self.panel.hide()
         self._view.place(self.panel, "bottom-left")
@@ -107,6 +112,7 @@ class SectionDesk(QObject):
     def refresh(self) -> None:
         """Cut the body of the session's frame, show the curves, and have the view drawn."""
         self.follow()
+        self._plot()
         for body in self._view.comparison.live:
             body.viewport.request_draw()
 
@@ -144,9 +150,15 @@ class SectionDesk(QObject):
         return self._opposite.curves(now.places)
 
     def _plane(self, frame: Frame) -> Plane:
-        bust = frame.stages.landmarks.position(f"bust_point_{self._through}")
-        at = self._by_hand.get(self.axis)
-        return Plane(self.axis, float(bust["xyz".index(self.axis)]) if at is None else at)
+        at, control = self._by_hand.get(self.axis), frame.stages.control
+        if at is None:
+            mark = frame.stages.landmarks.points.get(f"bust_point_{self._through}")
+            left, right = control.mesh.vertices[
+                list(control.bust_points)
+            ]  # a side without a breast has these
+            place = mark.position if mark else left if self._through == "left" else right
+            at = float(place[AXES.index(self.axis)])
+        return Plane(self.axis, at)
 
     def _draw(self) -> None:
         assert self._now is not None
@@ -155,6 +167,15 @@ class SectionDesk(QObject):
         for body in self._view.comparison.live:
             curves = self.curves["after" if body.after else "before"]
             body.viewport.scene.section.show(plane, low, high, curves)
+        if not self._plot_clock.isActive():
+            self._plot_clock.start()
+
+    def _plot(self) -> None:
+        """Bring the panel up to date."""
+        self._plot_clock.stop()
+        if self._slicer is None or self._now is None or not self.is_on:
+            return
+        plane, (low, high) = self._slicer.plane, self._now.box
         self.panel.show_plane(plane.axis, plane.at, low[plane.number], high[plane.number])
         sides = "other" in self.curves
         roles = ("after", "other") if sides else ("before", "after")
