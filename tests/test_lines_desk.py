@@ -7,8 +7,11 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from window_tools import Script, drag, run_main, settled
 
+from app.desks.present_lines import titled
 from app.main_window import MainWindow
 from app.panels.length_groove import Feasible
+from core.design import Design, ScanSource
+from core.design_lines import LineTraits
 from core.presets import built_in
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -136,3 +139,11 @@ def preset(window: MainWindow) -> Script:
     QTest.keyClick(row.slider, Qt.Key.Key_Escape)
     window.actions_.undo.trigger()
     assert window.session.design == before
+
+
+def test_a_sentence_names_a_line_by_the_title_that_it_was_given() -> None:
+    design = Design(ScanSource("x")).with_traits(LineTraits("strap left", title="lift tape"))
+    said = "strap left cannot be held; the line strap left is locked, strap left-over is not."
+    told = "Lift tape, left cannot be held; the line lift tape, left is locked, strap left-over is not."
+    assert titled(said, design) == told
+    assert titled(said, None) == said

@@ -17,6 +17,7 @@ from app.desks.present import (
     measure_views,
     strip_verdict,
 )
+from app.desks.present_lines import titled
 from app.desks.present_run import exact_answer, tracks
 from app.desks.project_picture import project_picture
 from app.desks.recent import remember_file
@@ -101,7 +102,8 @@ class Desk(QObject):
         if isinstance(error, UserError):
             # What was refused before was asked for before: the last refusal is the one that counts.
             notices.withdraw("bad")
-            notices.show_notice("bad", error.message, error.hint, lasting=True)
+            message = titled(error.message, self._session.design)
+            notices.show_notice("bad", message, error.hint, lasting=True)
             if self._frame is not None:
                 self._window.scan_desk.show_found(self._frame.stages)
             return

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 
@@ -69,6 +70,17 @@ def pair_title(name: str, design: Design) -> str:
 def row_title(name: str, design: Design) -> str:
     """Return what the row of a line is called: that of its pair if it is linked."""
     return pair_title(name, design) if len(design.linked(name)) > 1 else line_title(name, design)
+
+
+def titled(said: str, design: Design | None) -> str:
+    """Return what the core says with the titles that the designer gave in place of names."""
+    own = [each.name for each in design.traits if each.title] if design is not None else []
+    for name in sorted(own, key=len, reverse=True):
+        title = line_title(name, design).replace("\\", r"\\")
+        whole = rf"{re.escape(name)}(?![\w-])"
+        said = re.sub(f"^{whole}", title[:1].upper() + title[1:], said)
+        said = re.sub(rf"(?<![\w-]){whole}", title, said)
+    return said
 
 
 def kind_of(name: str) -> str:
