@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from threadpoolctl import threadpool_limits
 
 from core import kernels
+from core.body import Body
 from core.comparison import Comparison
 from core.design import Design, cannot_hold, no_balance
 from core.errors import UserError
@@ -48,11 +49,17 @@ class LiveSolver:
     """Solves the newest design in a thread of its own.
 
     It waits once it is one frame ahead of who fetches them. ``tell`` is called in that thread with the work
-    in hand and the share done, or "" when it is done; ``ready`` when there is something to fetch.
+    in hand and the share done, or "" when it is done; ``ready`` when there is something to fetch. A body is
+    handed to ``prepare`` there, before its first frame.
     """
 
-    def __init__(self, tell: Progress = quiet, ready: Callable[[], None] = lambda: None) -> None:
-        self._tell, self._ready = tell, ready
+    def __init__(
+        self,
+        tell: Progress = quiet,
+        ready: Callable[[], None] = lambda: None,
+        prepare: Callable[[Body], object] = lambda _: None,
+    ) -> None:
+        self._tell, self._ready, self._prepare = tell, ready, prepare
         self._at_work = 0
         self._unwanted = 0
         self._wake = threading.Condition()
@@ -200,8 +207,12 @@ class LiveSolver:
         again = stuck is not None and stuck.design.scan is request.design.scan
         try:
             stages = build(request.design, stuck if again else self._stages, self._hear)
+            if self._stages is None or stages.body is not self._stages.body:
+                self._hear("preparing the view", 0.98)
+                self._prepare(stages.body)
             self._hear("", 1.0)
         except StuckError as how_far:
+            self._prepare(how_far.body)
             # An edit of the scan that is open goes back to what stands.
             if self._stages is None or how_far.body is not self._stages.body:
                 self._stuck = how_far

@@ -12,11 +12,11 @@ import pytest
 import pyvista as pv
 
 from app.seeing.bands import Band
-from app.seeing.body import split_plates
 from app.seeing.camera import VIEWS
 from app.seeing.ribbon import Surface, build_casing, build_ribbon, centre_line
 from app.seeing.scene import Scene
 from app.seeing.sight import Sight
+from app.seeing.skin import split_plates
 from app.seeing.stage import LOOKS, rgb
 from core.mesh import Mesh
 

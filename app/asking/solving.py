@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
+from app.seeing.skin import skin_of
 from core.design import Design
 from core.live import Failure, LiveSolver
 
@@ -28,7 +29,7 @@ class Solving(QObject):
         self._soon = QTimer(self, interval=0, singleShot=True)
         self._soon.timeout.connect(self._look)
         self._ready.connect(self._soon.start)
-        self._solver = LiveSolver(self._hear, self._ready.emit)
+        self._solver = LiveSolver(self._hear, self._ready.emit, lambda body: skin_of(body.mesh))
         self._clock = QTimer(self, interval=FRAME_INTERVAL)
         self._clock.timeout.connect(self._look)
         self._clock.start()

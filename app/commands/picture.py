@@ -107,8 +107,8 @@ def settled_window(
 
     def ready() -> bool:
         view = window.view
-        stuck = window.scan_desk.stuck is not None and (view.is_shaded or view.question.isVisible())
-        return bool(failures) or stuck or (window.is_settled() and view.is_shaded)
+        seen = window.scan_desk.stuck is not None or window.is_settled()
+        return bool(failures) or (seen and view.is_shaded and not window.scan_desk.painting)
 
     try:
         wait_until(ready, app.processEvents)

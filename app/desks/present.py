@@ -12,6 +12,7 @@ from app.seeing.ribbon import NO_BACK
 from app.showing.verdict_chip import state_title
 from app.wording.words import number, say, tr
 from core.design import Design
+from core.doubts import ESSENTIAL, weak_sides
 from core.lines import Line
 from core.live import Frame
 from core.pipeline import Stages
@@ -139,6 +140,8 @@ def _hint(frame: Frame) -> str:
     if frame.verdict.state == "diverging":
         return tr("The turns run away: the body is shown as it was before. Lengthen or soften the lines.")
     if frame.verdict.state == "settled":
+        if any(weak_sides(frame.stages.landmarks, kind) for kind in ESSENTIAL):
+            return tr("It hangs on landmarks that want a look: see the Landmarks step.")
         return "".join(map(say, warnings(frame.stages)[:1]))  # the others stand in the notice
     line = blamed_line(frame.stages)
     if not what or line is None:

@@ -122,6 +122,7 @@ def work_words(what: str) -> str:
         "fit control mesh": tr("Fitting the control mesh"),
         "find patch": tr("Binding the body"),
         "bind body": tr("Binding the body"),
+        "preparing the view": tr("Preparing the view"),
     }
     return words.get(what, "")
 
@@ -135,5 +136,6 @@ def work_steps() -> list[str]:
         "find landmarks",
         "fit control mesh",
         "bind body",
+        "preparing the view",
     )
     return [work_words(name) for name in names]

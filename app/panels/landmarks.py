@@ -225,7 +225,7 @@ class Doubts(QFrame):
     def show_doubts(self, count: int, doubts: Sequence[str]) -> None:
         """Tell how many landmarks of the list are weak, and what is doubted."""
         do = tr("Select each: drag its pin if it lies wrong, or say that it is right.")
-        self._count.setText(tr("{count} of them want a look.").format(count=count))
+        self._count.setText(tr("To look at: {count}").format(count=count))
         self._count.setVisible(bool(count))
         self._said.setText(" ".join([*map(say, doubts), *[do] * bool(count)]))
         self.setVisible(bool(doubts) or bool(count))

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 import pyvista as pv
 from scipy import sparse
-from scipy.sparse.csgraph import connected_components
 
 from app.seeing.camera import View
 from app.seeing.paint import clay_colours, map_colours
 from app.seeing.sight import Sight
+from app.seeing.skin import skin_of
 from app.seeing.stage import Look
-from core.mesh import Flags, Floats, Indices, Mesh, Points, area_vectors, incidence, unit
+from core.mesh import Floats, Indices, Mesh, Points, area_vectors, incidence, unit
 from core.progress import Progress, quiet
 
 Singles = npt.NDArray[np.float32]
@@ -27,56 +26,6 @@ _DIM_INSIDE = """//VTK::Color::Impl
 
 DIFFUSE, _EVENLY = 0.86, 0.18
 """How much of the lamps' light the skin throws back, and how much of that comes from all sides in a map."""
-
-PLATE_AREA = 1500.0
-"""Smallest flat area that counts as a cut plate and not as skin [mm^2]."""
-
-
-@dataclass(frozen=True, eq=False)
-class Skin:
-    """A mesh whose vertices at the rims of plates are doubled, so that the rim looks crisp.
-
-    ``mesh`` has the body's own n vertices first and the doubles after them; ``source`` is the body vertex of
-    each, shape (n + d,); ``plate`` marks the vertices of plates, shape (n + d,).
-    """
-
-    mesh: Mesh
-    source: Indices
-    plate: Flags
-
-
-def split_plates(mesh: Mesh) -> Skin:
-    """Return ``mesh`` with the rims of its cut plates doubled."""
-    plate_face = plate_faces(mesh)
-    count = len(mesh.vertices)
-    on_plate, on_skin = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
-    on_plate[mesh.faces[plate_face]] = True
-    on_skin[mesh.faces[~plate_face]] = True
-    rim = np.flatnonzero(on_plate & on_skin)
-    double = np.arange(count)
-    double[rim] = count + np.arange(len(rim))
-    faces = np.where(plate_face[:, None], double[mesh.faces], mesh.faces)
-    source = np.concatenate([np.arange(count), rim])
-    plate = np.concatenate([on_plate & ~on_skin, np.ones(len(rim), dtype=bool)])
-    return Skin(Mesh(mesh.vertices[source], faces), source, plate)
-
-
-def plate_faces(mesh: Mesh) -> Flags:
-    """Return which faces belong to a flat area larger than ``PLATE_AREA``, shape (m,)."""
-    count = len(mesh.faces)
-    half = np.sort(mesh.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    key = half[:, 0] * len(mesh.vertices) + half[:, 1]
-    order = np.argsort(key, kind="stable")
-    twin = np.flatnonzero(np.diff(key[order]) == 0)
-    a, b = order[twin] // 3, order[twin + 1] // 3
-    flat = np.einsum("ij,ij->i", mesh.face_normals[a], mesh.face_normals[b]) > np.cos(np.radians(1.0))
-    links = sparse.coo_array((np.ones(int(flat.sum())), (a[flat], b[flat])), shape=(count, count))
-    areas_number, label = connected_components(links, directed=False)
-    facing = np.stack([np.bincount(label, column, areas_number) for column in mesh.area_vectors.T], axis=1)
-    area = np.bincount(label, mesh.face_areas, areas_number)
-    # A gently curved stretch of skin also links up, but its normals do not add up to its area.
-    straight = np.linalg.norm(facing, axis=1) > 0.9999 * area
-    return np.asarray(((area > PLATE_AREA) & straight)[label])
 
 
 def bake_occlusion(mesh: Mesh, directions: int = 32, cell: float = 7.0, progress: Progress = quiet) -> Floats:
@@ -155,7 +104,7 @@ class BodyActor:
     def __init__(self, plotter: pv.BasePlotter, mesh: Mesh, look: Look) -> None:
         self.rest = mesh
         self.points = np.array(mesh.vertices)
-        self._skin = split_plates(mesh)
+        self._skin = skin_of(mesh)
         self._look = look
         self._occlusion = np.ones(len(mesh.vertices))
         self._map: Floats | None = None
