@@ -122,7 +122,7 @@ class ViewArea(QWidget):
 
     def set_layer(self, layer: str, shown: bool) -> None:
         """Show or hide a layer, as its tool says."""
-        self.tools.set_shown(layer, shown)
+        (self.compare if layer == "ghost" else self.tools).set_shown(layer, shown)
         if layer == "perspective":
             self.viewport.set_parallel(not shown)
         elif layer == "landmarks":

@@ -85,6 +85,11 @@ def the_space_bar_flips_and_lets_peek(window: MainWindow, monkeypatch: pytest.Mo
     assert view.comparison.way == "wipe"
     key(window, Qt.Key.Key_W)
     the_space_bar_presses_a_button_that_was_reached_by_keyboard(window)
+    key(window, Qt.Key.Key_G)
+    assert view.viewport.scene.is_visible("ghost")
+    view.set_layer("ghost", False)
+    assert not view.compare.actions_by_name["ghost"].isChecked()
+    assert not view.viewport.scene.is_visible("ghost")
 
 
 def the_space_bar_presses_a_button_that_was_reached_by_keyboard(window: MainWindow) -> None:
