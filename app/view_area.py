@@ -9,7 +9,7 @@ from PySide6.QtCore import Signal
 from PySide6.QtGui import QAction, QImage
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from app.asking.jobs import Jobs
+from app.asking.jobs import Job, Jobs
 from app.desks.body_view import BodyView
 from app.desks.comparison import Comparison
 from app.desks.pin_board import PinBoard
@@ -39,6 +39,7 @@ class ViewArea(QWidget):
     def __init__(self, jobs: Jobs) -> None:
         super().__init__()
         self._jobs = jobs
+        self._baking: Job | None = None
         self.viewport = Viewport()
         self.panes = Panes(self.viewport, self)
         self.tools = ViewTools(self)
@@ -202,10 +203,11 @@ class ViewArea(QWidget):
         for panel in (self.tools, self.compare):
             panel.show()
         self._shades = None
-        self._bake(body)
+        self._jobs.cancel(self._baking)
+        self._baking = self._bake(body)
 
-    def _bake(self, body: Body) -> None:
-        self._jobs.run(
+    def _bake(self, body: Body) -> Job:
+        return self._jobs.run(
             tr("Shading the body"),
             lambda progress: bake_occlusion(body.mesh, progress=progress),
             lambda occlusion: self._shade(body, occlusion),
