@@ -31,8 +31,8 @@ from app.desks.desk import Desk
 from app.main_window import MainWindow
 from app.panels.lines import LinesPanel
 from app.showing.canvas import PaintedCanvas
-from app.showing.live_plot import LivePlot
 from app.showing.overlay import Overlay
+from app.showing.plot_canvas import PlotCanvas
 from app.showing.viewport import Viewport
 from app.view_area import ViewArea
 from app.window import open_window
@@ -57,7 +57,7 @@ WATCHED: tuple[tuple[str, Any, str], ...] = (
     ("  3D", QtInteractor, "paintGL"),
     ("  3D image", PaintedCanvas, "_render"),
     ("  overlay", Overlay, "paintEvent"),
-    ("  curves", LivePlot, "paint_curves"),
+    ("  curves", PlotCanvas, "paintEvent"),
 )
 """What is timed; indented parts belong to the one above."""
 

@@ -198,7 +198,9 @@ def test_control_points_and_edges_follow(scene: Scene, mannequin: Mesh) -> None:
     assert distance_to(mannequin, rest).max() < 3.0
     scene.move_control_mesh(control.vertices - np.array([0.0, 4.0, 0.0]))
     assert edges.points - rest == pytest.approx(np.tile([0.0, -4.0, 0.0], (len(rest), 1)), abs=1e-3)
+    scene.set_visible("control", False)
     scene.before(True)
+    scene.set_visible("control", True)
     assert np.array_equal(edges.points, rest)
 
 

@@ -55,18 +55,17 @@ class ControlActor:
             actor.prop.color = look.wire if kind else "#FFFFFF"
 
     def move(self, points: Points) -> None:
-        """Follow the control points, shape (n, 3) [mm]."""
-        self._lines.points[:] = self._straight(points).reshape(-1, 3) + self._lift
-        self._lines.GetPoints().Modified()
-        for nodes, shape, data, _ in self._dots.values():
-            centres = points[nodes] + self._node_lift[nodes]
-            data.points[:] = (centres[:, None] + shape).reshape(-1, 3)
-            data.GetPoints().Modified()
+        """Follow the control points, shape (n, 3) [mm]; while hidden, only remember them."""
+        self._points = points
+        if self._wire.GetVisibility():
+            self._write(points)
 
     def set_visible(self, visible: bool) -> None:
         """Show or hide edges and dots."""
         for actor in self._actors:
             actor.SetVisibility(visible)
+        if visible:
+            self._write(self._points)
 
     def remove(self) -> None:
         """Take the control mesh away."""
@@ -76,6 +75,14 @@ class ControlActor:
     @property
     def _actors(self) -> list[pv.Actor]:
         return [self._wire, *(actor for *_, actor in self._dots.values())]
+
+    def _write(self, points: Points) -> None:
+        self._lines.points[:] = self._straight(points).reshape(-1, 3) + self._lift
+        self._lines.GetPoints().Modified()
+        for nodes, shape, data, _ in self._dots.values():
+            centres = points[nodes] + self._node_lift[nodes]
+            data.points[:] = (centres[:, None] + shape).reshape(-1, 3)
+            data.GetPoints().Modified()
 
     def _straight(self, points: Points) -> Points:
         """Return points along the straight edges, shape (edges, PIECES + 1, 3)."""
