@@ -112,8 +112,8 @@ class SafeDesk(QObject):
     def _forget(self) -> None:
         self._clock.stop()
         self._kept = None
-        self._writing.wait()
-        if self._recovery is not None:
+        # What is being written is forgotten as soon as it is there: the window waits for no disk.
+        if self._recovery is not None and not self._writing.at_work:
             self._recovery.forget()
 
     def _write(

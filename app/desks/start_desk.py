@@ -15,6 +15,7 @@ from app.panels.drop_zone import DropVeil
 from app.panels.start_page import StartPage
 from app.wording.samples import sample_path
 from app.wording.words import tr
+from core.recovery import recovery_folder
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -71,7 +72,13 @@ class StartDesk(QObject):
             remember_file(str(session.path))
             return
         scan = session.design.scan if session.design is not None else None
-        if scan is not None and not scan.member and Path(scan.path).parent != sample_path("").parent:
+        # A scan that was kept aside goes with its folder.
+        passing = (sample_path("").parent, recovery_folder())
+        if (
+            scan is not None
+            and not scan.member
+            and not any(Path(scan.path).is_relative_to(f) for f in passing)
+        ):
             remember_file(scan.path)
 
     def take_tour(self) -> None:
