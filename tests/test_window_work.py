@@ -1,0 +1,166 @@
+"""What the window promises about work that takes its time: it is named, can be left, and what stood stays."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from window_tools import Script, drag, run_main, settled
+
+import app.desks.desk
+import app.desks.limits_desk
+import app.view_area
+from app.asking.jobs import Jobs
+from app.main_window import MainWindow
+from core.progress import Progress
+from core.studies.limits import SIGNS, all_limits
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+def endless(reached: list[str]) -> Callable[..., Any]:
+    """Return work that goes on until it is left, and then notes that it was."""
+
+    def work(*args: Any, progress: Progress | None = None) -> Any:
+        hear = progress or args[-1]
+        try:
+            for step in range(10_000):
+                hear("endless", step / 10_000)
+                time.sleep(0.005)
+        finally:
+            reached.append("left")
+
+    return work
+
+
+def jobs_end() -> bool:
+    """Tell whether no thread of a job is left."""
+    return not any(thread.name == "busk-job" for thread in threading.enumerate())
+
+
+def test_an_export_is_named_and_can_be_left_by_card_key_and_status_bar(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    body, left = tmp_path / "body.ply", []
+    body.write_text("what stood there")
+    monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(body))
+    write = app.desks.desk.write_frame
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        window.activateWindow()
+        yield window.isActiveWindow
+        busy, status = window.view.busy, window.status
+        busy._wait.setInterval(0)
+        monkeypatch.setattr(app.desks.desk, "write_frame", endless(left))
+        for count, way in enumerate(("card", "key", "status bar"), start=1):
+            window.actions_.export.trigger()
+            yield lambda: busy.isVisible() and status.stop.isVisible()
+            assert status._job_name.text() == "Writing the body"
+            if way == "card":
+                QTest.mouseClick(busy.stop, Qt.MouseButton.LeftButton)
+            elif way == "key":
+                QTest.keyClick(window, Qt.Key.Key_Escape)
+            else:
+                QTest.mouseClick(status.stop, Qt.MouseButton.LeftButton)
+            assert not busy.isVisible(), "the window is free at once"
+            assert not status.stop.isVisible()
+            assert not window.actions_.cancel.isEnabled()
+            yield jobs_end
+            assert len(left) == count
+            assert body.read_text() == "what stood there"
+            assert window.notices.notice() is None
+        monkeypatch.setattr(app.desks.desk, "write_frame", write)
+        window.actions_.export.trigger()
+        yield lambda: window.notices.notice() is not None
+        assert body.read_bytes().startswith(b"ply")
+
+    run_main([], script)
+
+
+def test_limits_come_beside_the_window_and_are_those_of_the_core(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[str] = []
+    limits_of = app.desks.limits_desk.limits_of
+
+    def counted(stages: Any, name: str, progress: Progress) -> Any:
+        asked.append(name)
+        return limits_of(stages, name, progress)
+
+    def shown(window: MainWindow) -> dict[str, Any]:
+        rows = window.lines.rows.values()
+        return {row.view.name: row.view.feasible for row in rows if row.view.constrained}
+
+    def known(window: MainWindow) -> Callable[[], bool]:
+        return lambda: settled(window)() and all(each and not each.stale for each in shown(window).values())
+
+    monkeypatch.setattr(app.desks.limits_desk, "limits_of", counted)
+
+    def script(window: MainWindow) -> Script:
+        yield known(window)
+        frame, before = window.session.frame, shown(window)
+        assert frame is not None
+        assert asked[0] == window.view.selected_line
+        for limits in all_limits(frame.stages):
+            ends = {sign: length.ratio for sign, length in limits.begins.items() if length}
+            feasible = before[limits.line.name]
+            assert feasible.strained == ends.pop(SIGNS[0])
+            assert feasible.impossible == max(ends.values())
+            assert feasible.why == max(ends, key=lambda sign: ends[sign])
+        drag(window, "mid-bust", -10)
+        assert not shown(window)["mid-bust"].stale, "its limits hang on the other lines alone"
+        yield settled(window)
+        asked.clear()
+        yield known(window)
+        assert shown(window)["mid-bust"] == before["mid-bust"]
+        assert shown(window)["full-bust"] != before["full-bust"]
+        window.actions_.undo.trigger()
+        yield settled(window)
+        assert shown(window) == before, "what was known is shown at once"
+        assert asked in ([], ["full-bust"])
+        assert not window.view.busy.isVisible()
+
+    run_main([], script)
+
+
+def test_an_edit_ends_what_was_worked_out_for_the_design_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    left: list[str] = []
+    monkeypatch.setattr(app.desks.limits_desk, "limits_of", endless(left))
+    monkeypatch.setattr(app.view_area, "bake_occlusion", endless(left))
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        yield lambda: len(window.jobs.at_work()) == 2
+        assert not window.actions_.cancel.isEnabled(), "nobody waits for these"
+        drag(window, "mid-bust", -10)
+        yield lambda: left == ["left"]
+        yield settled(window)
+        window.session.undo_stack.setClean()
+        window.desk.open_sample("person")
+        yield lambda: window.session.name == "person" and settled(window)()
+
+    run_main([], script)
+    assert jobs_end(), "a window that is closed leaves no work behind"
+    assert len(left) >= 3
+
+
+def test_a_job_that_fails_tells_who_asked_and_one_that_is_left_nobody(qtbot: Any) -> None:
+    jobs, told = Jobs(), []
+
+    def fail(progress: Progress) -> None:
+        raise ValueError("no")
+
+    jobs.run("failing", fail, told.append, told.append)
+    qtbot.waitUntil(lambda: bool(told))
+    assert isinstance(told[0], ValueError)
+    jobs.cancel(jobs.run("left", fail, told.append, told.append))
+    assert jobs.at_work() == []
+    qtbot.waitUntil(jobs_end)
+    qtbot.wait(1)
+    assert len(told) == 1
+    jobs.close()
