@@ -178,7 +178,7 @@ class Strip(QWidget):
 
     def _build_body(self) -> None:
         row = QHBoxLayout(self._body)
-        row.setContentsMargins(14, 8, 6, 8)
+        row.setContentsMargins(14, 7, 6, 7)
         row.setSpacing(18)
         row.addLayout(self._verdict())
         self._nothing = sentence(tr("The plots fill while you drag a line."), "secondary")
@@ -225,10 +225,10 @@ class Strip(QWidget):
         self._turns = label("", "secondary", tabular=True)
         head.addWidget(self._turns)
         column.addLayout(head)
-        column.addSpacing(6)
+        column.addSpacing(4)
         grid = QGridLayout()
         grid.setHorizontalSpacing(12)
-        grid.setVerticalSpacing(3)
+        grid.setVerticalSpacing(2)
         grid.setColumnStretch(1, 1)
         self._pairs: list[tuple[QLabel, QLabel]] = []
         for place in range(3):
@@ -239,7 +239,7 @@ class Strip(QWidget):
         column.addLayout(grid)
         self._hint = sentence("", "secondary")
         self._hint.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-        column.addSpacing(4)
+        column.addSpacing(2)
         column.addWidget(self._hint)
         column.addStretch(1)
         titles = (tr("Adaptive"), tr("Conventional"), tr("None"), tr("Exact"))
