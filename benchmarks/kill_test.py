@@ -19,6 +19,16 @@ from types import SimpleNamespace
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT))
 
+from PySide6.QtCore import QCoreApplication, QObject, QSettings, QTimer  # noqa: E402
+
+from app.asking.session import Session  # noqa: E402
+from app.desks.safe_desk import AUTOSAVE, SafeDesk  # noqa: E402
+from core.backups import backups  # noqa: E402
+from core.design import Design, ScanSource  # noqa: E402
+from core.document import Document  # noqa: E402
+from core.project import ScanFile, open_project, read_scan_file  # noqa: E402
+from core.recovery import left_behind  # noqa: E402
+
 INTERVAL = 0.2
 """Seconds after an edit until it is kept aside, in this test."""
 
@@ -45,7 +55,8 @@ def kill_once(folder: Path, after: float) -> Outcome:
         killed = time.time()
         program.kill()
     found, broken = look(folder)
-    times = [when for number, when in _entries(journal) if number > found]
+    # What earlier programs had done was found after they were killed.
+    times = [when for number, when in _entries(journal) if number > max(found, before)]
     return Outcome(killed - min(times, default=killed), broken)
 
 
@@ -61,10 +72,6 @@ def _last(journal: Path) -> int:
 
 def look(folder: Path) -> tuple[int, tuple[str, ...]]:
     """Do as the next start does: return the number of the newest edit that is found, and what is broken."""
-    from core.backups import backups
-    from core.project import open_project, read_scan_file
-    from core.recovery import left_behind
-
     offers, aside = left_behind()
     broken = [str(path) for path in aside]
     documents = [kept.document for kept, _ in offers]
@@ -81,25 +88,19 @@ def look(folder: Path) -> tuple[int, tuple[str, ...]]:
     return max((int(each.design.unknown["n"]) for each in documents), default=0), tuple(broken)
 
 
+class Quiet(Session):
+    """A session in which nothing is solved."""
+
+    def _submit(self, design: Design, fresh: bool = False) -> None:
+        pass
+
+
+class Window(QObject):
+    """What of a window the desk needs."""
+
+
 def work(folder: Path) -> None:
     """Edit, undo, redo and save without end, with the session and the desk of the window."""
-    from PySide6.QtCore import QCoreApplication, QObject, QSettings, QTimer
-
-    from app.asking.session import Session
-    from app.desks.safe_desk import AUTOSAVE, SafeDesk
-    from core.design import Design, ScanSource
-    from core.document import Document
-    from core.project import ScanFile
-
-    class Quiet(Session):
-        """A session that has nothing solved."""
-
-        def _submit(self, design: Design, fresh: bool = False) -> None:
-            pass
-
-    class Window(QObject):
-        """What of a window the desk needs."""
-
     application = QCoreApplication([])
     application.setApplicationName("Busk")
     QSettings().setValue(AUTOSAVE, INTERVAL)
@@ -113,7 +114,7 @@ def work(folder: Path) -> None:
     session.design_changed.connect(desk.note)
     session.saved.connect(desk.show_saved)
     session.undo_stack.cleanChanged.connect(desk.note)
-    journal = open(folder / "journal", "a", buffering=1)
+    journal = os.open(folder / "journal", os.O_WRONLY | os.O_APPEND | os.O_CREAT)
 
     def edit() -> None:
         nonlocal number
@@ -130,7 +131,7 @@ def work(folder: Path) -> None:
         session.edit(
             lambda design: replace(design.with_line("mid-bust", ratio), unknown={"n": number}), "edit"
         )
-        journal.write(f"{number} {time.time()}\n")
+        os.write(journal, f"{number} {time.time()}\n".encode())
 
     clock = QTimer(interval=10)
     clock.timeout.connect(edit)

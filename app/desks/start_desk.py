@@ -74,11 +74,7 @@ class StartDesk(QObject):
         scan = session.design.scan if session.design is not None else None
         # A scan that was kept aside goes with its folder.
         passing = (sample_path("").parent, recovery_folder())
-        if (
-            scan is not None
-            and not scan.member
-            and not any(Path(scan.path).is_relative_to(f) for f in passing)
-        ):
+        if scan is not None and not scan.member and not {*Path(scan.path).parents} & {*passing}:
             remember_file(scan.path)
 
     def take_tour(self) -> None:
