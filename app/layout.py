@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 NARROW, WIDE = 340, 364
 """First width of the inspector in windows narrower and wider than 1400 pixels."""
 
-LOW, HIGH = 156, 172
+LOW, HIGH = 168, 172
 """First height of the strip in windows lower and higher than 850 pixels."""
 
 

@@ -48,7 +48,9 @@ def test_help_finds_keys_commands_versions_and_licences() -> None:
         assert window.palette().window().color().name().upper() == DARK.panel
         preferences.fields["autosave"].chosen.emit(2.0)
         assert (QSettings().value("theme"), QSettings().value("autosave")) == ("dark", "5")
+        preferences.fields["mouse"].chosen.emit("blender")
         preferences.accept()
+        the_hand_of_another_program_is_understood(window)
         window.help.show_keys()
         keys = sheet_of(window, CommandSheet)
         assert isinstance(keys, CommandSheet)
@@ -57,7 +59,7 @@ def test_help_finds_keys_commands_versions_and_licences() -> None:
             for row in range(keys.list.topLevelItemCount())
         }
         assert said["Ctrl+O"] == "Open"
-        assert said["Shift+Left drag"] == "Move the body"
+        assert said["Shift+Middle drag"] == "Move the body"
         keys.accept()
         window.help.show_machine()
         machine = sheet_of(window, DiagnosticsSheet)
@@ -83,6 +85,24 @@ def no_key_means_two_things(window: MainWindow) -> None:
     keys = Counter(key.toString() for _, action in window.actions_.all() for key in action.shortcuts())
     assert [key for key, count in keys.items() if count > 1] == []
     assert {"Ctrl+K", "F6", "Shift+F1", "Ctrl+,", "Ctrl+I", "Ctrl+J", "Ctrl+1", "Space"} <= keys.keys()
+
+
+def the_hand_of_another_program_is_understood(window: MainWindow) -> None:
+    """As in Blender the middle button turns the body, and with Shift moves it."""
+    viewport = window.view.viewport
+    canvas, middle = viewport.overlay.parentWidget(), Qt.MouseButton.MiddleButton
+    assert canvas is not None
+    start = viewport.scene.view
+    for held in (Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.ShiftModifier):
+        QTest.mousePress(canvas, middle, held, QPoint(200, 150))
+        QTest.mouseMove(canvas, QPoint(240, 150))
+        QTest.mouseRelease(canvas, middle, held, QPoint(240, 150))
+        if held is Qt.KeyboardModifier.NoModifier:
+            turned = viewport.scene.view
+            assert abs(turned.azimuth - start.azimuth) > 10.0
+            assert tuple(turned.focus) == tuple(start.focus)
+    assert viewport.scene.view.azimuth == turned.azimuth
+    assert tuple(viewport.scene.view.focus) != tuple(turned.focus)
 
 
 def test_the_layout_is_shared_out_by_hand_and_kept(mannequin: Path) -> None:
