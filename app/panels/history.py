@@ -56,6 +56,9 @@ class HistoryPanel(QWidget):
 
     def set_snapshots(self, views: Sequence[PictureRow]) -> None:
         """Show snapshots, the newest first."""
+        if views and self._hint.isVisibleTo(self):
+            half = self._parts.height() // 2
+            self._parts.setSizes([half, half])
         self._hint.setVisible(not views)
         self.snapshots.setVisible(bool(views))
         self.snapshots.show_rows(views)

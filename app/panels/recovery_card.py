@@ -1,6 +1,6 @@
 """The offer of what was not saved when Busk ended out of turn: its picture, its name and two ways."""
 
-# ruff: noqa: D102, N802 - Qt names its events and says what they are
+# ruff: noqa: N802 - Qt names its events and says what they are
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -40,6 +40,8 @@ class RecoveryCard(FloatingPanel):
         self._more = label("", "caption")
         for each in (self._heading, self._words):
             each.setTextFormat(Qt.TextFormat.PlainText)
+        # Two lines in any language: a label that wraps does not ask for the second one.
+        self._words.setMinimumHeight(2 * self._words.fontMetrics().lineSpacing() + 6)
         close = ToolButton("x", tr("Decide at the next start"), size=14, room=26)
         close.clicked.connect(self.later)
         self.take, self.drop = button(tr("Restore"), "primary"), button(tr("Discard"))
