@@ -46,7 +46,9 @@ class Feasible:
             parts.append(tr("Strained below {percent} %").format(percent=number(100.0 * self.amber)))
         if self.impossible is not None:
             parts.append(self.reason())
-        words = " · ".join(part.replace(" %", "\N{NO-BREAK SPACE}%") for part in parts) or tr("No limit down to half its length.")
+        words = " · ".join(part.replace(" %", "\N{NO-BREAK SPACE}%") for part in parts) or tr(
+            "No limit down to half its length."
+        )
         return words[:1].upper() + words[1:]
 
     def reason(self) -> str:
