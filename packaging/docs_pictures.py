@@ -18,6 +18,7 @@ from PySide6.QtWidgets import QApplication  # noqa: E402
 
 from app.commands.picture import save_window, settled_window, wait_until  # noqa: E402
 from app.main_window import MainWindow  # noqa: E402
+from app.panels.rail import STEP_ICONS  # noqa: E402
 from app.printing.figures import make_figures  # noqa: E402
 from app.wording.samples import sample_design  # noqa: E402
 from core.design import Design  # noqa: E402
@@ -37,8 +38,38 @@ def with_control_mesh(window: MainWindow) -> None:
 
 def from_the_side(window: MainWindow) -> None:
     window.view.viewport.set_view("left")
-    window.view.set_layer("ghost", True)
+    window.view.compare_by("ghost")
     window.desk.go_to("result")
+
+
+def wiped(window: MainWindow) -> None:
+    window.desk.go_to("result")
+    window.view.viewport.set_view("left")
+    window.view.compare_by("wipe")
+
+
+def mapped(window: MainWindow) -> None:
+    window.desk.go_to("result")
+    window.map_desk.choose("displacement")
+    window.section_desk.set_on(True)
+
+
+def variants(window: MainWindow) -> None:
+    window.variant_desk.choose("B")
+    window.session.commit_line("mid-bust", "Mid-bust", 0.9)
+    wait_until(window.is_settled, QApplication.processEvents)
+    window.variant_desk.show_side_by_side()
+    window.inspector.open("history")
+
+
+def start_page(window: MainWindow) -> None:
+    window.start_desk.show_page()
+
+
+def drawing(window: MainWindow) -> None:
+    window.line_maker.add("straps")
+    wait_until(window.is_settled, QApplication.processEvents)
+    window.line_routing.begin("strap left")
 
 
 def nothing(window: MainWindow) -> None:
@@ -64,20 +95,25 @@ def vibrating() -> Design:
     return replace(sample_design().with_line("mid-bust", 0.62), volume="conventional")
 
 
-SHOTS: tuple[tuple[str, Design, dict[str, object], Callable[[MainWindow], None]], ...] = (
+Shot = tuple[str, Design, dict[str, object], Callable[[MainWindow], None]]
+
+DARK = {"dark": True, "language": "ja", "size": (1280, 800)}
+SHOTS: tuple[Shot, ...] = (
     ("window", sample_design(), {"size": (1600, 1000)}, nothing),
-    (
-        "window-dark-ja",
-        sample_design("person"),
-        {"dark": True, "language": "ja", "size": (1280, 800)},
-        nothing,
-    ),
     ("vibrating", vibrating(), {"dark": True, "size": (1280, 800)}, with_control_mesh),
     ("model", sliding(), {"size": (1280, 800)}, model_page),
-    ("scan", sample_design("person"), {"size": (1280, 800)}, step("scan")),
     ("ask", sample_design("person"), {"size": (1280, 800)}, asking),
-    ("landmarks", sample_design("person"), {"size": (1280, 800)}, step("landmarks")),
-    ("result", sample_design(), {"size": (1280, 800)}, from_the_side),
+    ("side", sample_design(), {"size": (1280, 800)}, from_the_side),
+    ("wipe", sample_design(), {"size": (1280, 800)}, wiped),
+    ("map", sample_design(), {"size": (1600, 1000)}, mapped),
+    ("variants", sample_design(), {"size": (1280, 800)}, variants),
+    ("path", sample_design(), {"size": (1280, 800)}, drawing),
+    ("start", sample_design(), {"size": (1280, 800)}, start_page),
+    *(
+        (f"{name}{ending}", sample_design("person"), options, step(name))
+        for name in STEP_ICONS
+        for ending, options in (("", {"size": (1280, 800)}), ("-dark-ja", DARK))
+    ),
 )
 
 
