@@ -5,13 +5,16 @@ from __future__ import annotations
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
 from window_tools import Script, drag, run_main, settled
 
+from app.asking.editing import Editing
 from app.desks.present_lines import titled
 from app.main_window import MainWindow
 from app.panels.length_groove import Feasible
 from core.design import Design, ScanSource
 from core.design_lines import LineTraits
+from core.document import Document
 from core.presets import built_in
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -139,6 +142,31 @@ def preset(window: MainWindow) -> Script:
     QTest.keyClick(row.slider, Qt.Key.Key_Escape)
     window.actions_.undo.trigger()
     assert window.session.design == before
+
+
+class _Editing(Editing):
+    """Editing that solves nothing."""
+
+    def __init__(self, design: Design) -> None:
+        super().__init__()
+        self.document = Document.of(design)
+
+    def _submit(self, design: Design, fresh: bool = False) -> None:
+        pass
+
+    def _try(self, design: Design, fresh: bool) -> bool:
+        return True
+
+
+def test_a_locked_line_is_not_dragged_and_says_so_when_it_is_let_go(qapp: QApplication) -> None:
+    editing = _Editing(Design(ScanSource("x")).with_traits(LineTraits("mid-bust", locked=True)))
+    said: list[str] = []
+    editing.failed.connect(lambda problem: said.append(problem.message))
+    editing.preview_line("mid-bust", 0.9)
+    assert (editing._preview, said) == (None, [])
+    editing.commit_line("mid-bust", "Mid-bust", 0.9)
+    assert said == ["The line mid-bust is locked."]
+    assert not editing.undo_stack.canUndo()
 
 
 def test_a_sentence_names_a_line_by_the_title_that_it_was_given() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import reduce
 from typing import Any
@@ -46,7 +47,9 @@ class Editing(QObject):
         # As when it is let go: at its rest length a line is off.
         worn = None if at_rest_length(ratio) else ratio
         if self.design is not None:
-            self.preview(self.design.with_linked(name, worn))
+            # A locked line stays as it is; letting it go says why.
+            with suppress(UserError):
+                self.preview(self.design.with_linked(name, worn))
 
     def preview(self, design: Design) -> None:
         """Show what would be while something is dragged; nothing is committed."""
