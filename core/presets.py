@@ -12,7 +12,7 @@ from typing import Any
 import platformdirs
 
 from core.design import Design, ScanSource
-from core.design_lines import LineTraits, OwnLine, partner_of
+from core.design_lines import LineTraits, OwnLine
 from core.errors import LineError, UserError
 from core.own_lines import own_line, place_of, ready_made
 from core.project import safe_name, whole_file
@@ -29,7 +29,7 @@ class PresetLine:
     """A line of a preset: one of the template, a ready-made pair ("straps"), or one through ``places``.
 
     ``places`` are written as for ``own_line``. ``length`` [1] is where it starts, None leaves it off;
-    ``width`` [mm], ``title`` and ``colour`` as in ``LineTraits``.
+    ``width`` [mm], ``stiffness`` [1], ``title``, ``colour`` and ``linked`` as in ``LineTraits``.
     """
 
     line: str
@@ -38,6 +38,8 @@ class PresetLine:
     width: float | None = None
     title: str = ""
     colour: str = ""
+    stiffness: float | None = None
+    linked: bool = True
 
 
 @dataclass(frozen=True)
@@ -101,8 +103,9 @@ def preset_of(text: str) -> Preset:
 def _line(values: Mapping[str, Any]) -> PresetLine:
     line = PresetLine(**values)
     texts = (line.line, line.places, line.title, line.colour)
-    numbers = (line.length, line.width)
-    if not all(isinstance(text, str) for text in texts) or any(isinstance(each, str) for each in numbers):
+    numbers = (line.length, line.width, line.stiffness)
+    fit = all(isinstance(text, str) for text in texts) and isinstance(line.linked, bool)
+    if not fit or not all(each is None or type(each) in (int, float) for each in numbers):
         raise TypeError(f"in line {line.line}")
     return line
 
@@ -159,7 +162,8 @@ def _as_preset(name: str, design: Design, line: OwnLine | None, template: Templa
         words = [place_of(point, template) for point in line.points]
         places = ",".join([*words, *["closed"] * line.closed])
     length = design.ratio(name) if name in design.worn() else None
-    return PresetLine(name, places, length, traits.width, traits.title, traits.colour)
+    dress = (traits.width, traits.title, traits.colour, traits.stiffness, traits.linked)
+    return PresetLine(name, places, length, *dress)
 
 
 def with_preset(design: Design, preset: Preset) -> Design:
@@ -193,5 +197,6 @@ def _dressed(traits: LineTraits, line: PresetLine) -> LineTraits:
         title=line.title or traits.title,
         colour=line.colour or traits.colour,
         width=line.width if line.width is not None else traits.width,
-        linked=bool(partner_of(traits.name)) or traits.linked,
+        stiffness=line.stiffness if line.stiffness is not None else traits.stiffness,
+        linked=line.linked,
     )

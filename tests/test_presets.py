@@ -69,7 +69,11 @@ def test_the_lines_of_a_design_come_back_from_their_preset(built, monkeypatch, t
     bare = replace(built("mannequin").design, lines=())
     design = bare.with_own_line(OwnLine("v", (81, 45, 87))).with_line("v", 0.95).with_line("mid-bust", 0.97)
     design = design.with_own_line(OwnLine("ring", (34, 35, 49, 48), closed=True))
-    design = design.with_traits(LineTraits("v", title="My V", colour="#112233", width=7.5))
+    traits = LineTraits("v", title="My V", colour="#112233", width=7.5, stiffness=4.0)
+    design = design.with_traits(traits)
+    for line, ratio in zip(ready_made(read_template("168"))["straps"], (0.95, 0.9), strict=True):
+        design = design.with_own_line(line).with_line(line.name, ratio)
+        design = design.with_traits(LineTraits(line.name, linked=False))
     save_preset(preset_from(design, "Mine / ours"))
     (preset,), problems = own_presets()
     assert (preset.title, problems) == ("Mine / ours", [])
@@ -96,6 +100,10 @@ def test_the_lines_of_a_design_come_back_from_their_preset(built, monkeypatch, t
         ({"lines": [{"line": "mid-bust", "width": 900}]}, "900 mm"),
         ({"lines": [{"line": "a", "places": "r99c0,r1c0"}]}, "no place"),
         ({"lines": [{"line": "mid-bust", "length": "0.9"}]}, "TypeError"),
+        ({"lines": [{"line": "mid-bust", "length": [1]}]}, "TypeError"),
+        ({"lines": [{"line": "mid-bust", "width": {}}]}, "TypeError"),
+        ({"lines": [{"line": "mid-bust", "stiffness": True}]}, "TypeError"),
+        ({"lines": [{"line": "straps", "linked": "no"}]}, "TypeError"),
         ({"lines": [{"name": "mid-bust"}]}, "TypeError"),
         ({"lines": 3}, "TypeError"),
         ({"template": "9"}, "no template"),

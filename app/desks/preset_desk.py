@@ -25,7 +25,8 @@ class PresetDesk(QObject):
         self._window = window
         self._menu = window.actions_.submenu("lines", "presets", tr("Presets"))
         self._menu.aboutToShow.connect(self.fill)
-        self.fill()
+        # Not at the start: a designer's files are no reason to come up late, or not at all.
+        window.session.opened.connect(lambda _: self.fill())
 
     def fill(self) -> None:
         """List our presets, one's own, those that cannot be read, and how to keep one."""
