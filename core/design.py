@@ -175,10 +175,25 @@ class Design:
         return replace(self, traits=tuple(sorted(kept, key=lambda each: each.name)))
 
     def linked(self, name: str) -> tuple[str, ...]:
-        """Return the own line ``name`` and its partner of the other side, if they share their length."""
+        """Return the own line ``name`` and its partner of the other side, if they share length and lock."""
         partner = partner_of(name)
-        both = partner in {line.name for line in self.own_lines} and self.traits_of(name).linked
-        return (name, partner) if both else (name,)
+        sides = [self.traits_of(each) for each in (name, partner)]
+        both = partner in {line.name for line in self.own_lines} and all(side.linked for side in sides)
+        alike = sides[0].locked == sides[1].locked and self.ratio(name) == self.ratio(partner)
+        return (name, partner) if both and alike else (name,)
+
+    def with_link(self, name: str) -> Design:
+        """Return the design with a line linked to its partner, which takes its length; a lock is for both.
+
+        Raises LineError if the partner is locked at another length.
+        """
+        names = (name, partner_of(name))
+        locked = any(self.traits_of(each).locked for each in names)
+        after = self
+        if self.ratio(names[0]) != self.ratio(names[1]):
+            after = self.with_line(names[1], self.ratio(name) if name in self.worn() else None)
+        traits = [replace(self.traits_of(each), linked=True, locked=locked) for each in names]
+        return reduce(Design.with_traits, traits, after)
 
     def with_placed(self, name: str, position: tuple[float, float, float] | None) -> Design:
         """Return the design with a landmark placed in the scan file's frame, or found again (None)."""

@@ -264,6 +264,23 @@ def test_a_linked_line_shares_its_length():
     alone = both.with_traits(LineTraits("strap right", linked=False))
     assert alone.with_linked("strap right", 0.9).worn() == {"strap right"}
     assert PLAIN.with_linked("mid-bust", 0.9).worn() == {"mid-bust"}
+    assert both.with_line("strap left", 0.9).linked("strap left") == ("strap left",), "it is not shared yet"
+
+
+def test_a_pair_is_linked_from_both_sides_and_its_lock_is_for_both():
+    both = PLAIN.with_own_line(OwnLine("strap left", (35, 48))).with_own_line(
+        OwnLine("strap right", (36, 49))
+    )
+    apart = both.with_line("strap left", 0.9).with_line("strap right", 0.9)
+    apart = apart.with_traits(LineTraits("strap right", locked=True, linked=False))
+    assert apart.linked("strap left") == ("strap left",), "as seen from the other side"
+    assert apart.with_traits(LineTraits("strap right", locked=True)).linked("strap left") == ("strap left",)
+    linked = apart.with_link("strap left")
+    assert linked.linked("strap left") == ("strap left", "strap right")
+    assert linked.traits_of("strap left").locked
+    assert apart.with_line("strap left", 0.8).with_link("strap right").ratio("strap left") == 0.9
+    with pytest.raises(LineError, match="strap right is locked"):
+        apart.with_line("strap left", 0.8).with_link("strap left")
 
 
 @pytest.mark.parametrize(

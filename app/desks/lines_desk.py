@@ -61,10 +61,9 @@ class LinesDesk(QObject):
             names, text = design.linked(name), _text(row_title(name, design), trait, value)
 
         def decided(before: Design) -> Design:
-            after = reduce(lambda d, each: _with_trait(d, each, trait, value), names, before)
-            if trait == "linked" and value and before.ratio(names[0]) != before.ratio(names[1]):
-                after = after.with_line(names[1], before.ratio(name) if name in before.worn() else None)
-            return after
+            if trait == "linked" and value:
+                return before.with_link(name)
+            return reduce(lambda d, each: _with_trait(d, each, trait, value), names, before)
 
         self._session.edit(decided, text)
 
