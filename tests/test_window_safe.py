@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import threading
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -237,7 +238,28 @@ def test_variants_are_chosen_undone_and_seen_side_by_side(tmp_path: Path) -> Non
         assert session.save(str(tmp_path / "ab.busk"), None)
         assert session.finish_saving()
         assert list(open_project(tmp_path / "ab.busk").variants) == ["A", "B"]
+        yield from the_history_goes_back_in_the_variant_of_a_result(window)
         session.remove_variant("B")
         assert area.comparison.way == "after"
 
     run_main([], script)
+
+
+def the_history_goes_back_in_the_variant_of_a_result(window: MainWindow) -> Script:
+    session, panel = window.session, window.history
+    yield settled(window)
+    session.commit_line("full-bust", "Full-bust line", 0.97)
+    yield settled(window)
+    yield lambda: panel.snapshots.count() > 0 and panel.snapshots.item(0).text().startswith("A: Full-bust")
+    kept = session.design
+    window.variant_desk.choose("B")
+    placed = session.design.with_placed("bust_point_left", (0.1, 0.2, 0.3))
+    session.edit(lambda _: placed, "placed since")
+    before = session.document.variants
+    panel.snapshots.itemActivated.emit(panel.snapshots.item(0))
+    assert session.document.shown == "A"
+    assert session.document.variants["B"] == before["B"]
+    assert session.design == replace(kept, placed=placed.placed), "where landmarks are is said of both"
+    session.undo_stack.undo()
+    session.undo_stack.undo()
+    yield settled(window)

@@ -138,6 +138,10 @@ class Editing(QObject):
         if self.document is not None and name != self.document.shown:
             self._push(self.document.showing(name), tr("Variant {name}").format(name=name))
 
+    def go_back(self, document: Document, text: str) -> None:
+        """Go back to a document that was worked out from this one, as one undo step."""
+        self._push(document, text)
+
     def remove_variant(self, name: str) -> None:
         """Remove a variant of the design; the last one stays."""
         if self.document is not None:

@@ -16,6 +16,7 @@ from app.panels.picture_list import PictureRow
 from app.showing.verdict_chip import state_title
 from app.wording.words import number, tr
 from core.design import Design
+from core.document import Document
 from core.frame import Frame
 
 if TYPE_CHECKING:
@@ -32,8 +33,17 @@ _PICTURE = 160
 
 @dataclass(frozen=True, eq=False)
 class _Snapshot:
+    variant: str
     design: Design
     row: PictureRow
+
+    def within(self, document: Document) -> Document:
+        """Return the document gone back to this; beside other variants the body stays, it is theirs too."""
+        there = document.showing(self.variant)
+        if len(there.designs) == 1:
+            return there.with_design(self.design)
+        body = there.design
+        return there.with_design(replace(self.design, scan=body.scan, placed=body.placed))
 
 
 class HistoryDesk(QObject):
@@ -70,16 +80,23 @@ class HistoryDesk(QObject):
 
     def show_snapshots(self) -> None:
         """Show the settled results, the newest first."""
-        design = self._session.design
+        document = self._session.document
+        if document is None:
+            self._panel.set_snapshots([])
+            return
         self._panel.set_snapshots(
-            [replace(each.row, present=each.design == design) for each in reversed(self._snapshots)]
+            [
+                replace(each.row, title=_title(each, document), present=each.within(document) == document)
+                for each in reversed(self._snapshots)
+            ]
         )
 
     def restore(self, place: int) -> None:
-        """Make the design of a settled result the present one, as one edit."""
-        snapshot = self._snapshots[len(self._snapshots) - 1 - place]
-        said = tr("Back to: {edit}").format(edit=snapshot.row.title)
-        self._session.edit(lambda _: snapshot.design, said)
+        """Go back to a settled result, in the variant that it is of, as one edit."""
+        snapshot, document = self._snapshots[len(self._snapshots) - 1 - place], self._session.document
+        if document is not None:
+            said = tr("Back to: {edit}").format(edit=_title(snapshot, document))
+            self._session.go_back(snapshot.within(document), said)
 
     def close(self) -> None:
         """Stop the clock, and hear no more of edits: the stack tells its own end too."""
@@ -87,16 +104,25 @@ class HistoryDesk(QObject):
         self._session.undo_stack.indexChanged.disconnect(self.show_edits)
 
     def _is_kept(self) -> bool:
-        return any(each.design == self._session.design for each in self._snapshots)
+        document = self._session.document
+        return document is not None and any(
+            (each.variant, each.design) == (document.shown, document.design) for each in self._snapshots
+        )
 
     def _take(self) -> None:
-        frame, stack = self._session.frame, self._session.undo_stack
-        if frame is None or not self._window.is_settled() or self._is_kept() or stack.index() == 0:
+        frame, stack, document = self._session.frame, self._session.undo_stack, self._session.document
+        if (
+            frame is None
+            or document is None
+            or not self._window.is_settled()
+            or self._is_kept()
+            or stack.index() == 0
+        ):
             return
         row = PictureRow(
             stack.text(stack.index() - 1), time.strftime("%H:%M:%S"), _figures(frame), self._picture()
         )
-        self._snapshots.append(_Snapshot(frame.stages.design, row))
+        self._snapshots.append(_Snapshot(document.shown, frame.stages.design, row))
         self.show_snapshots()
 
     def _picture(self) -> QImage | None:
@@ -104,6 +130,12 @@ class HistoryDesk(QObject):
         if not view.isVisible():
             return None
         return view.viewport.picture().scaledToHeight(_PICTURE, Qt.TransformationMode.SmoothTransformation)
+
+
+def _title(snapshot: _Snapshot, document: Document) -> str:
+    """Return what led to a result, with its variant where there are several."""
+    several = len(document.designs) > 1 or snapshot.variant != document.shown
+    return f"{snapshot.variant}: {snapshot.row.title}" if several else snapshot.row.title
 
 
 def _figures(frame: Frame) -> tuple[str, ...]:
