@@ -44,6 +44,18 @@ def test_notices_wait_for_each_other(qtbot: QtBot) -> None:
     assert bar.isHidden()
 
 
+def test_only_what_a_notice_is_about_takes_it_away(qtbot: QtBot) -> None:
+    bar = NoticeBar()
+    qtbot.addWidget(bar)
+    for sentence, about in (("Refused.", "refused"), ("Not written.", "files"), ("Open twice.", "")):
+        bar.show_notice("bad", sentence, lasting=True, about=about)
+    bar.withdraw("refused")
+    assert bar.notice().sentence == "Not written."
+    bar.withdraw("refused")
+    bar.withdraw("files")
+    assert bar.notice().sentence == "Open twice."
+
+
 def test_the_rail_says_what_is_chosen_not_what_is_set(qtbot: QtBot) -> None:
     rail = Rail()
     qtbot.addWidget(rail)

@@ -13,6 +13,7 @@ from window_tools import Script, drag, points, run_main, settled
 
 from app.main_window import MainWindow
 from app.seeing.camera import VIEWS
+from core.errors import ProjectError
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -138,6 +139,10 @@ def test_an_edit_that_cannot_be_carried_out_is_taken_back() -> None:
         yield settled(window)
         assert window.session.design == design
         assert window.session.undo_stack.count() == 0
+        window.session.failed.emit(ProjectError("Not written."))
+        drag(window, "mid-bust", -10)
+        yield settled(window)
+        assert window.notices.notice().sentence == "Not written.", "the refusal alone is of the past"
 
     run_main([], script)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from PySide6.QtTest import QTest
 from test_window_scan import pull
 from window_tools import Script, run_main, settled
 
+import app.desks.desk
 from app.main_window import MainWindow
 from app.panels.landmark_row import LandmarkView
 from app.panels.landmarks import LandmarksPanel
@@ -71,7 +73,12 @@ def test_the_model_follows_a_pin_before_it_is_let_go_and_escape_brings_all_back(
     run_main([], script)
 
 
-def test_linked_sides_are_placed_as_in_a_mirror_in_one_step_and_keys_move_a_pin() -> None:
+def test_linked_sides_are_placed_as_in_a_mirror_in_one_step_and_keys_move_a_pin(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(app.desks.desk, "ask_about_changes", lambda *_: "cancel")
+    monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(tmp_path / "pins.busk"))
+
     def script(window: MainWindow) -> Script:
         yield settled(window)
         window.activateWindow()
@@ -112,8 +119,23 @@ def test_linked_sides_are_placed_as_in_a_mirror_in_one_step_and_keys_move_a_pin(
         yield settled(window)
         assert stack.count() == 1, "both presses are one step"
         assert 3.0 < fold[2] - mark(window, "fold_left")[2] < 8.0
+        a_pin_in_the_hand_is_saved_and_asked_about(window)
 
     run_main([], script)
+
+
+def a_pin_in_the_hand_is_saved_and_asked_about(window: MainWindow) -> None:
+    session, stack = window.session, window.session.undo_stack
+    stack.setClean()
+    QTest.keyClick(window.view.viewport, Qt.Key.Key_Down)
+    assert not window.desk.may_leave(), "a pin that was moved a moment ago is not lost unasked"
+    assert stack.count() == 2
+    stack.setClean()
+    QTest.keyClick(window.view.viewport, Qt.Key.Key_Down)
+    assert window.desk.save()
+    assert stack.count() == 3
+    assert stack.isClean(), "it is in the file"
+    assert session.finish_saving()
 
 
 def test_what_is_amber_is_counted_and_can_be_confirmed(empty_house: None, qtbot: object) -> None:

@@ -22,10 +22,11 @@ from app.desks.present_run import exact_answer, tracks
 from app.desks.project_picture import project_picture
 from app.desks.recent import remember_file
 from app.desks.safe_dialogs import ask_overwrite
+from app.panels.notice import FILES, REFUSED
 from app.wording.samples import sample_design
 from app.wording.words import tr
 from core.design import Design
-from core.errors import UserError
+from core.errors import ProjectError, UserError
 from core.export import write_frame
 from core.live import Frame
 from core.report import warnings
@@ -75,7 +76,7 @@ class Desk(QObject):
         if not frame.at_work and self._fell_back_to not in (None, design) and design is self._session.design:
             # What was decided since is solved: a refusal from before speaks of no design any more.
             self._fell_back_to = None
-            self._window.notices.withdraw("bad")
+            self._window.notices.withdraw(REFUSED)
         if self._frame is None or frame.stages.landmarks is not self._frame.stages.landmarks:
             self._window.scan_desk.show_found(frame.stages)
         turning = frame.at_work and self._frame is not None and frame.stages.model is self._frame.stages.model
@@ -101,9 +102,10 @@ class Desk(QObject):
         self._fell_back_to, notices = self._session.design, self._window.notices
         if isinstance(error, UserError):
             # What was refused before was asked for before: the last refusal is the one that counts.
-            notices.withdraw("bad")
+            about = FILES if isinstance(error, ProjectError) else REFUSED
+            notices.withdraw(about)
             message = titled(error.message, self._session.design)
-            notices.show_notice("bad", message, error.hint, lasting=True)
+            notices.show_notice("bad", message, error.hint, lasting=True, about=about)
             if self._frame is not None:
                 self._window.scan_desk.show_found(self._frame.stages)
             return
@@ -119,6 +121,7 @@ class Desk(QObject):
     def show_saved(self, path: str) -> None:
         """Say when the project was saved."""
         remember_file(path)
+        self._window.notices.withdraw(FILES)
         self._window.status.set_saved(tr("Saved {time}").format(time=time.strftime("%H:%M")))
         self.show_title()
 
@@ -173,6 +176,7 @@ class Desk(QObject):
 
     def save(self) -> bool:
         """Save the project, asking for a place the first time; returns whether it is being saved."""
+        self._window.landmark_desk.put_down()
         path = self._session.path
         if path is None:
             return self.save_as()
@@ -184,6 +188,7 @@ class Desk(QObject):
 
     def save_as(self) -> bool:
         """Ask for a place and save the project there; returns whether it is being saved."""
+        self._window.landmark_desk.put_down()
         kinds = f"{tr('Projects')} (*.busk)"
         path = ask_save(self._window, tr("Save as"), f"{self._session.name}.busk", kinds, ".busk")
         return bool(path) and self._session.save(path, self._preview())
@@ -211,11 +216,13 @@ class Desk(QObject):
         )
         if path and not self._window.view.picture().save(path):
             self.show_failure(
-                UserError(tr("The picture cannot be written there."), tr("Choose another folder."))
+                ProjectError(tr("The picture cannot be written there."), tr("Choose another folder."))
             )
 
     def may_leave(self) -> bool:
         """Ask about unsaved changes; returns whether the document may be left. A save is waited for."""
+        # A pin that was moved by keys a moment ago is an edit too.
+        self._window.landmark_desk.put_down()
         if self._session.finish_saving():
             return True
         answer = ask_about_changes(self._window, self._session.name)

@@ -12,6 +12,7 @@ from PySide6.QtGui import QColor, QImage
 from app.asking.jobs import Job
 from app.desks.present_scan import scan_view
 from app.dress.theme import tokens_of
+from app.panels.notice import REFUSED
 from app.panels.question import PICTURE, Answer
 from app.seeing.portrait import Picture
 from app.seeing.stage import LOOKS
@@ -23,6 +24,9 @@ from core.pipeline import Stages, StuckError
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
+
+_QUESTION = "how the scan stands"
+"""What a notice is about that asks for an answer, or says that there is none."""
 
 
 class ScanDesk(QObject):
@@ -64,7 +68,7 @@ class ScanDesk(QObject):
             return
         if source.up and source.front:
             unsure = tr("Busk is not sure of the unit, up or front of this scan.")
-            self._window.notices.show_notice("warn", unsure, pose.reason, lasting=True)
+            self._window.notices.show_notice("warn", unsure, pose.reason, lasting=True, about=_QUESTION)
         else:
             self._ask(stages.body, None)
 
@@ -91,8 +95,8 @@ class ScanDesk(QObject):
 
     def _say_stuck(self, stuck: StuckError) -> None:
         notices = self._window.notices
-        notices.withdraw("bad")
-        notices.show_notice("bad", stuck.message, stuck.hint, lasting=True)
+        notices.withdraw(REFUSED)
+        notices.show_notice("bad", stuck.message, stuck.hint, lasting=True, about=REFUSED)
 
     # -- the user asks
 
@@ -132,7 +136,7 @@ class ScanDesk(QObject):
         """Take the answer: the open scan is read again as one undo step, one that waits is opened."""
         waiting, design = self._asked_for, self._session.design
         self._forget_question()
-        self._window.notices.withdraw("warn")
+        self._window.notices.withdraw(_QUESTION)
         if waiting is not None:
             # What is open may have been edited while the question waited.
             if self._window.desk.may_leave():
@@ -145,7 +149,7 @@ class ScanDesk(QObject):
     def leave_question(self) -> None:
         """Leave a scan as it is understood; one that waited for the answer is let go, if it is not shown."""
         if self._asked_for is not None:
-            self._window.notices.withdraw("warn")
+            self._window.notices.withdraw(_QUESTION)
         self._forget_question()
         if self.stuck:
             self._say_stuck(self.stuck)
@@ -168,7 +172,7 @@ class ScanDesk(QObject):
         self._asked_for = waiting
         if not body.pose.sure:
             unsure, ask = tr("Busk is not sure how this scan stands."), tr("Please choose a picture below.")
-            self._window.notices.show_notice("warn", unsure, ask, lasting=True)
+            self._window.notices.show_notice("warn", unsure, ask, lasting=True, about=_QUESTION)
         clay = QColor(LOOKS[tokens_of(self._window).dark].clay)
         colour, scale = (clay.red(), clay.green(), clay.blue()), self._window.devicePixelRatioF()
         size = round(PICTURE[0] * scale), round(PICTURE[1] * scale)
@@ -191,9 +195,9 @@ class ScanDesk(QObject):
         """Without pictures nothing can be chosen below: the Scan step asks the same."""
         logging.error("the pictures of the question failed", exc_info=error)
         self._painting = None
-        self._window.notices.withdraw("warn")
+        self._window.notices.withdraw(_QUESTION)
         unsure, ask = tr("Busk is not sure how this scan stands."), tr("Please check it at the Scan step.")
-        self._window.notices.show_notice("warn", unsure, ask, lasting=True)
+        self._window.notices.show_notice("warn", unsure, ask, lasting=True, about=_QUESTION)
 
 
 def _words(way: Way) -> str:

@@ -23,13 +23,16 @@ Action = tuple[str, Callable[[], None]]
 TONE_ICONS = {"ok": "check-circle", "info": "info", "warn": "warning", "bad": "warning-octagon"}
 """The tones of a notice with their drawings."""
 
+REFUSED, FILES = "refused", "files"
+"""What notices of failures are about: an edit or a scan that was refused, a file that was not written."""
+
 _LEAVES_AFTER_MS = 8000
 _BUTTON_KINDS = ("primary", "secondary", "quiet")
 
 
 @dataclass(frozen=True)
 class Notice:
-    """One thing to say; ``lasting`` keeps it until it is closed."""
+    """One thing to say; ``lasting`` keeps it until it is closed, or until what it is ``about`` is over."""
 
     tone: str
     sentence: str
@@ -37,6 +40,7 @@ class Notice:
     actions: tuple[Action, ...]
     lasting: bool
     details: str = ""
+    about: str = ""
 
 
 class NoticeBar(QWidget):
@@ -62,13 +66,14 @@ class NoticeBar(QWidget):
         actions: Sequence[Action] = (),
         lasting: bool = False,
         details: str = "",
+        about: str = "",
     ) -> None:
         """Say ``sentence`` in the tone ok, info, warn or bad; the first action is the main one.
 
-        ``details`` unfold when they are asked for.
+        ``details`` unfold when they are asked for; by what it is ``about`` it can be withdrawn.
         A sentence that already stands or waits there is not said twice.
         """
-        notice = Notice(tone, sentence, hint, tuple(actions), lasting, details)
+        notice = Notice(tone, sentence, hint, tuple(actions), lasting, details, about)
         if any(each.sentence == sentence for each in (self._shown, *self._waiting) if each):
             return
         self._waiting.append(notice)
@@ -92,10 +97,10 @@ class NoticeBar(QWidget):
         self._waiting.clear()
         self.close_notice()
 
-    def withdraw(self, tone: str) -> None:
-        """Take away what was said in a tone: it is no longer so."""
-        self._waiting = deque(each for each in self._waiting if each.tone != tone)
-        if self._shown is not None and self._shown.tone == tone:
+    def withdraw(self, about: str) -> None:
+        """Take away what was said about something: it is no longer so."""
+        self._waiting = deque(each for each in self._waiting if each.about != about)
+        if self._shown is not None and self._shown.about == about:
             self.close_notice()
         self._show_waiting()
 
