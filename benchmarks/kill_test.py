@@ -22,7 +22,7 @@ sys.path.insert(0, str(ROOT))
 from PySide6.QtCore import QCoreApplication, QObject, QSettings, QTimer  # noqa: E402
 
 from app.asking.session import Session  # noqa: E402
-from app.desks.safe_desk import AUTOSAVE, SafeDesk  # noqa: E402
+from app.desks.safe_desk import SafeDesk  # noqa: E402
 from core.backups import backups  # noqa: E402
 from core.design import Design, ScanSource  # noqa: E402
 from core.document import Document  # noqa: E402
@@ -103,7 +103,7 @@ def work(folder: Path) -> None:
     """Edit, undo, redo and save without end, with the session and the desk of the window."""
     application = QCoreApplication([])
     application.setApplicationName("Busk")
-    QSettings().setValue(AUTOSAVE, INTERVAL)
+    QSettings().setValue("autosave", INTERVAL)
     window, session = Window(), Quiet()
     window.session, window.view = session, SimpleNamespace(isVisible=lambda: False)
     window.notices = SimpleNamespace(show_notice=print)

@@ -31,6 +31,10 @@ _UNSAFE = re.compile(r'[<>:"/\\|?*\x00-\x1f\ud800-\udfff]')
 _BROKEN_ARCHIVE = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError)
 
 
+Stamp = tuple[int, int, int]
+"""What tells one state of a file from another: when it was changed, its size and its number on the disk."""
+
+
 @dataclass(frozen=True, eq=False)
 class ScanFile:
     """The scan as it came: its file name and its bytes, kept so that a project can always be saved whole."""
@@ -90,6 +94,15 @@ def read_scan_file(source: ScanSource, progress: Progress = quiet) -> ScanFile:
         with _archive(Path(source.path)) as archive:
             return ScanFile(source.name, _member(archive, source.member, _LARGEST_SCAN))
     return ScanFile(source.name, scan_bytes(Path(source.path), progress))
+
+
+def stamp_of(path: Path | None) -> Stamp | None:
+    """Return the stamp of a file, or None if there is none."""
+    try:
+        stat = path.stat() if path is not None else None
+    except OSError:
+        return None
+    return (stat.st_mtime_ns, stat.st_size, stat.st_ino) if stat is not None else None
 
 
 def safe_name(name: str) -> str:

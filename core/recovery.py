@@ -22,7 +22,7 @@ from core.document import Document
 from core.document_text import from_texts, to_texts
 from core.errors import ProjectError, UserError
 from core.holding import Hold
-from core.project import ScanFile, safe_name, whole_file, with_scan
+from core.project import ScanFile, Stamp, safe_name, whole_file, with_scan
 
 _DOCUMENT, _PICTURE, _ASIDE = "document.json", "picture.png", ".broken"
 
@@ -35,7 +35,7 @@ def recovery_folder() -> Path:
 @dataclass(frozen=True)
 class Kept:
     """A document that was not saved, its scan where it is kept: the ``project`` it was opened from, if any,
-    when it was kept (``time`` [s] since 1970) and a PNG ``picture``.
+    and its ``stamp`` as it was known then, when it was kept (``time`` [s] since 1970) and a PNG ``picture``.
     """
 
     document: Document
@@ -43,6 +43,7 @@ class Kept:
     project: Path | None
     time: float
     picture: bytes | None
+    stamp: Stamp | None = None
 
 
 class Recovery:
@@ -56,10 +57,13 @@ class Recovery:
 
     @classmethod
     def new(cls) -> Recovery:
-        """Return a folder of its own for a window. Raises OSError if there can be none."""
+        """Return a folder of its own for a window. Raises ProjectError if there can be none."""
         base = recovery_folder()
-        base.mkdir(parents=True, exist_ok=True)
-        return cls(Path(tempfile.mkdtemp(prefix=time.strftime("%Y%m%d-%H%M%S-"), dir=base)))
+        try:
+            base.mkdir(parents=True, exist_ok=True)
+            return cls(Path(tempfile.mkdtemp(prefix=time.strftime("%Y%m%d-%H%M%S-"), dir=base)))
+        except OSError as problem:
+            raise _unkept(base, problem) from problem
 
     def keep(
         self,
@@ -68,6 +72,7 @@ class Recovery:
         name: str,
         project: Path | None,
         picture: bytes | None = None,
+        stamp: Stamp | None = None,
     ) -> None:
         """Keep a document; of what was kept before nothing goes until this is whole. Raises ProjectError."""
         try:
@@ -78,6 +83,7 @@ class Recovery:
             told = {
                 "name": name,
                 "project": str(project) if project is not None else None,
+                "stamp": stamp,
                 "time": time.time(),
                 "scan": place.relative_to(self.folder).as_posix(),
                 "size": place.stat().st_size,
@@ -86,10 +92,7 @@ class Recovery:
             with whole_file(self.folder / _DOCUMENT) as partial:
                 partial.write_text(json.dumps(told), encoding="utf-8")
         except OSError as problem:
-            raise ProjectError(
-                f"Busk cannot keep your changes in {self.folder}: {problem.strerror or problem}.",
-                "Make room on the disk, or save often.",
-            ) from problem
+            raise _unkept(self.folder, problem) from problem
         self._sweep(place.parent)
 
     def forget(self) -> None:
@@ -167,7 +170,7 @@ def read_kept(folder: Path) -> Kept:
 
 def _kept(folder: Path, told: Mapping[str, Any]) -> Kept:
     texts = {str(name): str(text) for name, text in told["texts"].items()}
-    scan, picture = folder / str(told["scan"]), folder / _PICTURE
+    scan, picture, stamp = folder / str(told["scan"]), folder / _PICTURE, told.get("stamp")
     if scan.stat().st_size != told["size"]:
         raise ValueError("the scan is not whole")
     return Kept(
@@ -176,6 +179,14 @@ def _kept(folder: Path, told: Mapping[str, Any]) -> Kept:
         Path(told["project"]) if told["project"] else None,
         float(told["time"]),
         picture.read_bytes() if picture.exists() else None,
+        (int(stamp[0]), int(stamp[1]), int(stamp[2])) if stamp else None,
+    )
+
+
+def _unkept(folder: Path, problem: OSError) -> ProjectError:
+    return ProjectError(
+        f"Busk cannot keep your changes in {folder}: {problem.strerror or problem}.",
+        "Make room on the disk, or save often.",
     )
 
 

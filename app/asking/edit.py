@@ -30,7 +30,7 @@ class Edit(QUndoCommand):
         self._session = session
         self.before = before
         self.after = after
-        self._former: tuple[Document, str] | None = None
+        self._former: list[tuple[Document, str]] = []
         self._shown = shown
         self._what = what
         self._made = time.monotonic()
@@ -43,7 +43,7 @@ class Edit(QUndoCommand):
         """Take in the edit that follows, if it goes on with this one."""
         if not isinstance(other, Edit) or other._what != self._what or other._made - self._made > PAUSE:
             return False
-        self._former = self.after, self.text()
+        self._former.append((self.after, self.text()))
         self.after, self._made = other.after, other._made
         self.setText(other.text())
         # There and back again is no edit.
@@ -52,10 +52,9 @@ class Edit(QUndoCommand):
 
     def step_back(self) -> bool:
         """Be as before the last edit that was taken in; returns whether there is one to give up."""
-        if self._former is None:
+        if not self._former:
             return False
-        self.after, text = self._former
-        self._former = None
+        self.after, text = self._former.pop()
         self.setText(text)
         return True
 

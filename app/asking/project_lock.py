@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import QDateTime, QFileInfo, QLockFile
+from PySide6.QtCore import QFileInfo, QLockFile
 
 
 class ProjectLock:
@@ -12,13 +12,16 @@ class ProjectLock:
 
     def __init__(self) -> None:
         self._lock: QLockFile | None = None
+        self.path: Path | None = None
 
-    def take(self, path: Path | None) -> QDateTime | None:
-        """Lock a project in the place of the last one; returns since when another window has it, if one does.
+    def take(self, path: Path | None) -> float | None:
+        """Lock a project in the place of the last one; returns since when [s since 1970] another window has
+        it, if one does.
 
         Where no lock can be written there is none.
         """
         self.release()
+        self.path = path
         if path is None:
             return None
         name = str(path.with_name(f".{path.name}.lock"))
@@ -28,7 +31,7 @@ class ProjectLock:
         if lock.tryLock(0):
             self._lock = lock
         elif lock.error() == QLockFile.LockError.LockFailedError:
-            return QFileInfo(name).lastModified()
+            return QFileInfo(name).lastModified().toSecsSinceEpoch()
         return None
 
     def release(self) -> None:

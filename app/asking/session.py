@@ -13,16 +13,15 @@ from app.asking.edit import Edit
 from app.asking.editing import Editing
 from app.asking.solving import Solving
 from app.asking.writing import Writing
-from core.backups import MOST, back_up
+from app.wording.words import tr
+from core.backups import back_up
 from core.design import Design, ScanSource
 from core.document import Document
 from core.errors import UserError
 from core.live import Failure, Frame
 from core.pipeline import StuckError
-from core.project import ScanFile, is_project, open_project, save_project
-
-Stamp = tuple[int, int, int]
-"""What tells one state of a file from another: when it was changed, its size and its number on the disk."""
+from core.project import ScanFile, Stamp, is_project, open_project, save_project, stamp_of
+from core.recovery import Kept
 
 
 @dataclass(frozen=True)
@@ -56,8 +55,7 @@ class Session(Editing):
         super().__init__(parent)
         self.frame: Frame | None = None
         self.path: Path | None = None
-        self.most_backups = MOST
-        self._stamp: Stamp | None = None
+        self.stamp: Stamp | None = None
         self._opening: _Opening | None = None
         self._saving = Writing(self)
         self._oldest = 0
@@ -96,13 +94,15 @@ class Session(Editing):
         Unless told otherwise its project is the file that its scan lies in. One that is ``unsaved`` counts as
         changed from the first.
         """
-        if self._opening is not None:
-            self._solving.cancel()
         scan = document.design.scan
         path = path or (Path(scan.path) if scan.member and not unsaved else None)
-        self._preview = None
-        revision = self._solving.submit(document.design, fresh=True)
-        self._opening = _Opening(document, path, stamp_of(path), unsaved, revision)
+        self._open(document, path, stamp_of(path), unsaved)
+
+    def restore(self, kept: Kept) -> None:
+        """Open what was kept of a window that did not close in order, unsaved; its project counts as changed
+        if it was saved since.
+        """
+        self._open(kept.document, kept.project, kept.stamp, unsaved=True)
 
     @property
     def unsaved(self) -> bool:
@@ -112,16 +112,14 @@ class Session(Editing):
     @property
     def changed_elsewhere(self) -> bool:
         """Whether the project's file is no longer what was opened or saved here last."""
-        return self.path is not None and stamp_of(self.path) not in (None, self._stamp)
+        return self.path is not None and stamp_of(self.path) not in (None, self.stamp)
 
     def save(self, path: str, picture: bytes | None) -> bool:
         """Begin to save the project; returns whether it begins. ``saved`` or ``failed`` follows."""
         if self.document is None or self.frame is None:
             return False
         target, document, scan = Path(path).absolute(), self.document, self.frame.stages.scan
-        self._saving.run(
-            partial(_write, target, document, scan, picture, self.most_backups), partial(self._saved, target)
-        )
+        self._saving.run(partial(_write, target, document, scan, picture), partial(self._saved, target))
         # Edits that follow are not in the file.
         self.undo_stack.setClean()
         self.saving.emit(True)
@@ -134,7 +132,8 @@ class Session(Editing):
 
     def detach(self) -> None:
         """Go on with a copy that has no file yet; the project stays as it is."""
-        self.path = self._stamp = None
+        self._saving.wait()
+        self.path = self.stamp = None
         self.undo_stack.resetClean()
 
     def _saved(self, path: Path, fault: Exception | None) -> None:
@@ -143,7 +142,7 @@ class Session(Editing):
             self.saving.emit(False)
             self.failed.emit(fault)
             return
-        self.path, self._stamp = path, stamp_of(path)
+        self.path, self.stamp = path, stamp_of(path)
         self.saved.emit(str(path))
 
     def cancel(self) -> None:
@@ -170,15 +169,28 @@ class Session(Editing):
         self._solving.close()
         self._saving.wait()
 
+    def _open(self, document: Document, path: Path | None, stamp: Stamp | None, unsaved: bool) -> None:
+        if self._opening is not None:
+            self._solving.cancel()
+        self._preview = None
+        revision = self._solving.submit(document.design, fresh=True)
+        self._opening = _Opening(document, path, stamp, unsaved, revision)
+
     def _try(self, design: Design, fresh: bool) -> bool:
         if self._opening is None:
             self._solving.submit(design, fresh)
         return self._opening is None
 
     def _submit(self, design: Design, fresh: bool = False) -> None:
-        # While another document is being opened its frame must be the next: edits of the old one wait.
-        if self._opening is None:
-            self._revision = self._solving.submit(design, fresh)
+        opening, self._opening = self._opening, None
+        if opening is not None:
+            # The other document would take this edit away with it, and nobody was asked about that.
+            self._solving.cancel()
+        self._revision = self._solving.submit(design, fresh)
+        if opening is not None:
+            name = opening.path.name if opening.path else opening.document.design.scan.name
+            said = tr("{name} was not opened, as you went on working.").format(name=name)
+            self.failed.emit(UserError(said, tr("Open it once more when you are done.")))
 
     def _answer(self, frame: Frame) -> None:
         if frame.revision < self._oldest:
@@ -193,8 +205,10 @@ class Session(Editing):
     def _adopt(self, frame: Frame) -> None:
         if self._opening is None:
             return
+        # What is being written still is the document that goes: its file is not the new one's.
+        self._saving.wait()
         opening, self._opening = self._opening, None
-        self.document, self.path, self._stamp = opening.document, opening.path, opening.stamp
+        self.document, self.path, self.stamp = opening.document, opening.path, opening.stamp
         self._oldest = opening.revision
         self.frame = frame
         self.undo_stack.clear()
@@ -224,18 +238,9 @@ class Session(Editing):
         self.failed.emit(failure.error)
 
 
-def stamp_of(path: Path | None) -> Stamp | None:
-    """Return the stamp of a file, or None if there is none."""
+def _write(path: Path, document: Document, scan: ScanFile, picture: bytes | None) -> None:
     try:
-        stat = path.stat() if path is not None else None
-    except OSError:
-        return None
-    return (stat.st_mtime_ns, stat.st_size, stat.st_ino) if stat is not None else None
-
-
-def _write(path: Path, document: Document, scan: ScanFile, picture: bytes | None, most_backups: int) -> None:
-    try:
-        back_up(path, most_backups)
+        back_up(path)
     except (OSError, UserError):
         # Without a backup is better than not at all.
         logging.exception("the former version could not be kept")

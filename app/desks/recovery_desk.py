@@ -48,8 +48,7 @@ class RecoveryDesk(QObject):
     def restore(self) -> None:
         """Open the document that is offered, unsaved as it was."""
         if self._window.desk.may_leave():
-            kept, _ = self._offers[0]
-            self._window.session.open_document(kept.document, kept.project, unsaved=True)
+            self._window.session.restore(self._offers[0][0])
 
     def show_opened(self) -> None:
         """Go on in the folder of a document that was restored: it is safe there all the time."""

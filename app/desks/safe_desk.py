@@ -5,31 +5,28 @@ unknowingly.
 from __future__ import annotations
 
 import logging
+import time
 from functools import partial
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, QSettings, QTimer
+from PySide6.QtCore import QObject, Qt, QTimer
+from PySide6.QtGui import QGuiApplication
 
 from app.asking.project_lock import ProjectLock
 from app.asking.writing import Writing
 from app.desks.project_picture import project_picture
+from app.desks.recent import day_of
+from app.dress.wishes import wish
 from app.wording.words import tr
-from core.backups import MOST
 from core.document import Document
 from core.errors import UserError
-from core.project import ScanFile
+from core.project import ScanFile, Stamp
 from core.recovery import Recovery
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from app.main_window import MainWindow
-
-AUTOSAVE, BACKUPS = "autosave", "backups"
-"""Settings: seconds after an edit until it is kept aside, and former versions kept of a project."""
-
-SECONDS = 10.0
-"""Seconds after an edit until it is kept aside, unless the user has chosen others."""
 
 
 class SafeDesk(QObject):
@@ -49,34 +46,37 @@ class SafeDesk(QObject):
         self._writing = Writing(self)
         self._clock = QTimer(self, singleShot=True)
         self._clock.timeout.connect(self.keep)
-        self._session.most_backups = round(_setting(BACKUPS, MOST))
 
     def note(self) -> None:
         """Hear that something was edited, or saved."""
         if not self._session.unsaved:
             self._forget()
         elif self._session.document is not self._kept and not self._clock.isActive():
-            self._clock.start(round(1000 * _setting(AUTOSAVE, SECONDS)))
+            self._clock.start(round(1000 * float(wish("autosave"))))
 
     def keep(self) -> None:
-        """Keep the document aside, in a passing thread."""
-        document, frame = self._session.document, self._session.frame
-        if document is None or frame is None or not self._session.unsaved:
+        """Keep the document aside, in a passing thread; again until there is a picture of it."""
+        session, view = self._session, self._window.view
+        document, frame = session.document, session.frame
+        if document is None or frame is None or not session.unsaved:
             return
         if self._writing.at_work:
             self._clock.start(1000)
             return
-        write = partial(self._write, document, frame.stages.scan, self._session.name, self._session.path)
-        self._writing.run(partial(write, self._picture()), partial(self._note_kept, document))
+        picture = self._picture()
+        whole = document if picture or not view.isVisible() else None
+        told = document, frame.stages.scan, session.name, session.path, picture, session.stamp
+        self._writing.run(partial(self._write, *told), partial(self._note_kept, whole))
 
     def rescue(self) -> str:
         """Keep the document aside at once, whatever has happened; returns where, or "" if it was not kept."""
         try:
             self._writing.wait()
-            document, frame = self._session.document, self._session.frame
-            if document is None or frame is None:
+            session = self._session
+            if session.document is None or session.frame is None:
                 return ""
-            self._write(document, frame.stages.scan, self._session.name, self._session.path, None)
+            scan = session.frame.stages.scan
+            self._write(session.document, scan, session.name, session.path, None, session.stamp)
             return str(self._recovery.folder) if self._recovery is not None else ""
         except Exception:
             logging.exception("the document could not be kept aside")
@@ -90,7 +90,8 @@ class SafeDesk(QObject):
 
     def show_saved(self) -> None:
         """Hold the project that was saved, and go on with what was edited meanwhile."""
-        self._hold_project()
+        if self._session.path != self._lock.path:
+            self._hold_project()
         self.note()
 
     def adopt(self, recovery: Recovery) -> None:
@@ -117,13 +118,19 @@ class SafeDesk(QObject):
             self._recovery.forget()
 
     def _write(
-        self, document: Document, scan: ScanFile, name: str, path: Path | None, picture: bytes | None
+        self,
+        document: Document,
+        scan: ScanFile,
+        name: str,
+        path: Path | None,
+        picture: bytes | None,
+        stamp: Stamp | None,
     ) -> None:
         if self._recovery is None:
             self._recovery = Recovery.new()
-        self._recovery.keep(document, scan, name, path, picture)
+        self._recovery.keep(document, scan, name, path, picture, stamp)
 
-    def _note_kept(self, document: Document, fault: Exception | None) -> None:
+    def _note_kept(self, document: Document | None, fault: Exception | None) -> None:
         self._kept = document if fault is None else None
         if fault is None:
             self._told = False
@@ -137,19 +144,22 @@ class SafeDesk(QObject):
         self._clock.start(60_000)
 
     def _picture(self) -> bytes | None:
+        """Return a picture of the view, unless a hand or a run would have to wait for it."""
         view, frame = self._window.view, self._session.frame
-        if frame is None or not view.isVisible():
+        if frame is None or not view.isVisible() or not self._window.is_settled():
             return None
-        return project_picture(view.picture(), frame.verdict.state)
+        if QGuiApplication.mouseButtons() != Qt.MouseButton.NoButton:
+            return None
+        return project_picture(view.viewport.picture(labels=False), frame.verdict.state)
 
     def _hold_project(self) -> None:
         since = self._lock.take(self._session.path)
         if since is None:
             return
-        sentence = tr("{name} is open in another window since {time}.")
+        sentence = tr("{name} is open in another window ({time}).")
         self._window.notices.show_notice(
             "warn",
-            sentence.format(name=self._session.name, time=since.toString("HH:mm")),
+            sentence.format(name=self._session.name, time=day_of(since, time.time())),
             tr("Who saves last replaces what the other has saved."),
             ((tr("Open as a copy"), self._detach), (tr("Open anyway"), _do_nothing)),
             lasting=True,
@@ -158,14 +168,6 @@ class SafeDesk(QObject):
     def _detach(self) -> None:
         self._session.detach()
         self._window.desk.show_title()
-
-
-def _setting(name: str, usual: float) -> float:
-    value = QSettings().value(name, usual)
-    try:
-        return max(float(str(value)), 0.0)
-    except ValueError:
-        return usual
 
 
 def _do_nothing() -> None:

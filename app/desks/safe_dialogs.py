@@ -13,7 +13,9 @@ def ask_overwrite(parent: QWidget, name: str) -> str:
     box.setIcon(QMessageBox.Icon.Warning)
     box.setWindowTitle("Busk")
     box.setText(tr("{name} was changed outside this window.").format(name=name))
-    box.setInformativeText(tr("Saving replaces that version; it can be had back under File, Open a backup."))
+    box.setInformativeText(
+        tr("Saving replaces that version. Busk tries to keep it under File, Open a backup.")
+    )
     save_as = box.addButton(tr("Save as…"), QMessageBox.ButtonRole.AcceptRole)
     replace = box.addButton(tr("Replace"), QMessageBox.ButtonRole.DestructiveRole)
     box.addButton(QMessageBox.StandardButton.Cancel)

@@ -11,7 +11,7 @@ UNTIL_THEN = {
     "mouse": "busk",  # one of app.showing.gestures.PRESETS
     "material": "clay",  # one of app.seeing.material.MATERIALS
     "motion": "full",  # or reduced
-    "autosave": "30",  # seconds
+    "autosave": "10",  # seconds after an edit
 }
 """Every wish by its key in the settings, with the answer that holds until the user gives another."""
 

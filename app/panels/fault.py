@@ -20,7 +20,7 @@ class FaultSheet(Sheet):
         super().__init__(parent, tr("Something went wrong inside Busk"), (620, 0))
         self._trace, self._machine = trace, machine
         said = (
-            tr("Your design has been kept aside, with all you did: {place}").format(place=kept)
+            tr("Your design is kept aside until you save or discard it: {place}").format(place=kept)
             if kept
             else tr("Your design is still open. Save it under a new name to be safe.")
         )

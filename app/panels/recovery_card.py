@@ -1,4 +1,4 @@
-"""The offer of what was not saved when Busk ended out of turn: its picture, its name and two ways."""
+"""The offer of what was not saved when Busk did not close in order: its picture, its name and two ways."""
 
 # ruff: noqa: N802 - Qt names its events and says what they are
 from __future__ import annotations
@@ -67,7 +67,8 @@ class RecoveryCard(FloatingPanel):
     def offer(self, view: RecoveryView) -> None:
         """Offer one document."""
         self._heading.setText(tr("{name} was not saved").format(name=view.name))
-        said = tr("Busk ended out of turn. These changes were kept: {time}.").format(time=view.time)
+        said = tr("Busk did not close in order. Kept: {time}. Anything done after that is gone.")
+        said = said.format(time=view.time)
         self._words.setText(said)
         self._more.setText(tr("{count} more").format(count=view.more) if view.more else "")
         self._picture.show_image(view.picture)

@@ -1,0 +1,111 @@
+"""What a session promises while a file is opened, another is written, and edits are refused."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+import app.asking.edit
+from app.asking.session import Session
+from core.errors import LineError
+from core.live import Failure
+from core.project import save_project
+from core.recovery import Recovery, left_behind
+
+
+@pytest.fixture
+def session(qtbot: QtBot, mannequin: Path) -> Iterator[Session]:
+    session = Session()
+    with qtbot.waitSignal(session.opened, timeout=60_000):
+        session.open(str(mannequin))
+    yield session
+    session.close()
+
+
+@pytest.fixture
+def other(tmp_path: Path, session: Session) -> Path:
+    """Another customer's project."""
+    path = tmp_path / "berta.busk"
+    save_project(path, session.document, session.frame.stages.scan, None)
+    return path
+
+
+def test_a_file_that_is_written_while_another_opens_is_not_the_others(
+    session: Session, other: Path, tmp_path: Path, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    disk, sync = threading.Event(), os.fsync
+    monkeypatch.setattr(os, "fsync", lambda file: (disk.wait(60), sync(file)))
+    session.open(str(other))
+    assert session.save(str(tmp_path / "anna.busk"), None)
+    wait = session._saving.wait
+    monkeypatch.setattr(session._saving, "wait", lambda: (disk.set(), wait()))
+    with qtbot.waitSignal(session.opened, timeout=60_000):
+        pass
+    session.finish_saving()
+    assert (tmp_path / "anna.busk").exists()
+    assert session.path == other
+    assert not session.changed_elsewhere
+
+
+@pytest.mark.parametrize("way", ["edit", "undo"])
+def test_who_goes_on_working_while_a_file_opens_loses_nothing(
+    way: str, session: Session, other: Path, qtbot: QtBot
+) -> None:
+    told: list[Exception] = []
+    session.failed.connect(told.append)
+    session.commit_line("mid-bust", "Mid-bust line", 0.97)
+    session.open(str(other))
+    if way == "edit":
+        session.commit_line("full-bust", "Full-bust line", 0.98)
+    else:
+        session.undo_stack.undo()
+    kept = session.document
+    qtbot.waitUntil(lambda: session.frame.stages.design is kept.design, timeout=60_000)
+    assert session.document is kept
+    assert session.path is None
+    assert session.undo_stack.count() == (2 if way == "edit" else 1)
+    assert [str(each).split(",")[0] for each in told] == ["berta.busk was not opened"]
+
+
+def test_quick_steps_that_are_refused_leave_those_that_were_held(
+    session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(app.asking.edit, "PAUSE", 60.0)
+    for ratio in (0.98, 0.97, 0.96, 0.95):
+        session.commit_line("mid-bust", "Mid-bust line", ratio)
+    for ratio in (0.96, 0.97):
+        session._fail(Failure(session._revision, LineError("It cannot be held.")))
+        assert session.design.ratio("mid-bust") == ratio
+    stack = session.undo_stack
+    assert (stack.count(), stack.undoText()) == (1, "Mid-bust line 97.0 %")
+    stack.undo()
+    assert not session.design.lines
+
+
+def test_a_restored_document_does_not_pass_over_a_project_that_was_saved_since(
+    session: Session, other: Path, qtbot: QtBot
+) -> None:
+    def restored(saved_since: bool) -> bool:
+        with qtbot.waitSignal(session.opened, timeout=60_000):
+            session.open(str(other))
+        recovery = Recovery.new()
+        scan = session.frame.stages.scan
+        recovery.keep(session.document, scan, "berta", session.path, stamp=session.stamp)
+        recovery.let_go()
+        if saved_since:
+            save_project(other, session.document, scan, b"another picture")
+        (kept, found), *_ = left_behind()[0]
+        with qtbot.waitSignal(session.opened, timeout=60_000):
+            session.restore(kept)
+        found.end()
+        assert session.path == other
+        assert session.unsaved
+        return session.changed_elsewhere
+
+    assert not restored(saved_since=False)
+    assert restored(saved_since=True)
