@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
@@ -10,6 +12,7 @@ from window_tools import Script, run_main, settled
 
 from app.main_window import MainWindow
 from core.own_lines import mirrored
+from core.snapping import Snapped
 from core.template import read_template
 
 TEMPLATE = read_template("168")
@@ -74,8 +77,7 @@ def test_a_line_is_drawn_by_clicks_and_snaps_to_the_control_mesh_on_both_sides()
         assert window.session.undo_stack.undoText() == "Line 1 added"
         assert window.lines.rows["line 1 left"].view.sides, "drawn on both sides, it is linked"
         yield from led_elsewhere(window, path)
-        window.actions_.undo.trigger()
-        yield lambda: "line 1 left" not in window.lines.rows
+        yield from let_go_of(window)
         yield from a_ring(window)
 
     run_main([], script)
@@ -103,6 +105,37 @@ def led_elsewhere(window: MainWindow, path: tuple[int, ...]) -> Script:
     window.actions_.undo.trigger()
     assert window.session.design.own_lines[0].points == path
     yield settled(window)
+
+
+def let_go_of(window: MainWindow) -> Script:
+    """What is drawn ends with its control mesh or its line, and never takes the place of another line."""
+    session, drawing, routing = window.session, window.line_drawing, window.line_routing
+    session.edit(lambda design: design.without_own_line("line 1 left"), "one side away")
+    drawing._keep(Snapped((at(2, 2), at(3, 2)), closed=False, off=0.0))
+    assert [line.name for line in session.design.own_lines] == ["line 1 right", "line 2 left", "line 2 right"]
+    routing.begin("line 2 right")
+    assert routing._sketching.at_work
+    while session.design.own_lines:
+        window.actions_.undo.trigger()
+    assert not routing._sketching.at_work
+    assert not window.view.tools.actions_by_name["control-mesh"].isChecked()
+    yield settled(window)
+    window.actions_.draw_line.trigger()
+    session.choose_template("120")
+    assert not drawing._sketching.at_work
+    window.actions_.draw_line.trigger()
+    assert not drawing._sketching.at_work, "the body that is shown still has the other mesh"
+    window.actions_.undo.trigger()
+    yield settled(window)
+    ways, drawing._ways, jobs = drawing._ways[1], None, window.jobs
+    for _ in range(3):
+        window.actions_.draw_line.trigger()
+    assert len(jobs.at_work()) == 1, "the skin is made ready once"
+    drawing._take_ways(replace(session.frame.stages.body), ways)
+    assert drawing._ways is None, "that was another body"
+    drawing._take_ways(session.frame.stages.body, ways)
+    jobs.cancel(drawing._job)
+    drawing.leave()
 
 
 def a_ring(window: MainWindow) -> Script:

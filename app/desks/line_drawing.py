@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtCore import QObject, QPointF
 
-from app.desks.present_lines import LINE_COLOURS, line_colours
+from app.asking.jobs import Job
+from app.desks.present_lines import LINE_COLOURS, kind_of, line_colours
 from app.desks.sketching import Sketching
 from app.wording.words import number, tr
 from core.body import Body
@@ -34,6 +35,8 @@ class LineDrawing(QObject):
         self._window = window
         self._sketching = Sketching(window, self)
         self._ways: tuple[Body, SkinWays] | None = None
+        self._job: Job | None = None
+        self._job_body: Body | None = None
         self._places: list[Points] = []
         self._curve: list[Points] = []
         self._snapped: Snapped | None = None
@@ -44,24 +47,17 @@ class LineDrawing(QObject):
         card.kept.connect(self.go_on)
         card.back.connect(self.back)
         card.left.connect(self.leave)
+        self._sketching.lost.connect(self.leave)
 
     def begin(self) -> None:
         """Let a line be drawn; until the skin is ready for it clicks are joined straight."""
-        frame = self._window.session.frame
+        frame = self._sketching.frame
         if frame is None:
             return
         self._window.desk.go_to("lines")
         self._places, self._curve, self._snapped = [], [], None
-        body = frame.stages.body
-        if self._ways is None or self._ways[0] is not body:
-            self._ways = None
-            self._window.jobs.run(
-                tr("Preparing the skin for drawing"),
-                lambda _: SkinWays(body.mesh),
-                lambda ways: self._take_ways(body, ways),
-                self._window.session.failed.emit,
-            )
-        self._sketching.begin()
+        self._prepare(frame.stages.body)
+        self._sketching.begin(frame)
         self._show()
 
     def back(self) -> None:
@@ -85,8 +81,26 @@ class LineDrawing(QObject):
         else:
             self._keep(self._snapped)
 
+    def _prepare(self, body: Body) -> None:
+        """Make the skin of a body ready, unless it is or a job is at it that nobody cancelled."""
+        if self._ways is not None and self._ways[0] is not body:
+            self._ways = None
+        jobs = self._window.jobs
+        if self._ways is None and (self._job not in jobs.at_work() or self._job_body is not body):
+            jobs.cancel(self._job)
+            self._job_body = body
+            self._job = jobs.run(
+                tr("Preparing the skin for drawing"),
+                lambda _: SkinWays(body.mesh),
+                lambda ways: self._take_ways(body, ways),
+                self._window.session.failed.emit,
+            )
+
     def _take_ways(self, body: Body, ways: object) -> None:
         assert isinstance(ways, SkinWays)
+        frame = self._window.session.frame
+        if frame is None or frame.stages.body is not body:
+            return
         self._ways = body, ways
         self._curve = [self._way(*ends) for ends in zip(self._places, self._places[1:], strict=False)]
         if self._sketching.at_work:
@@ -148,7 +162,7 @@ class LineDrawing(QObject):
             return
         template = read_template(design.template)
         other = mirrored(snapped.path, template)
-        taken = {*LINE_COLOURS, *(line.name.removesuffix(" left") for line in design.own_lines)}
+        taken = {*LINE_COLOURS, *(kind_of(line.name) for line in design.own_lines)}
         name = next(f"line {count}" for count in range(1, 1000) if f"line {count}" not in taken)
         lines: tuple[OwnLine, ...] = (OwnLine(name, snapped.path, snapped.closed),)
         if card.both.isChecked() and set(other) != set(snapped.path):

@@ -30,10 +30,18 @@ class LineMaker(QObject):
         self._window.actions_.add_menu.popup(button.mapToGlobal(QPoint(0, button.height() + 2)))
 
     def add(self, kind: str) -> None:
-        """Add a pair of ready-made lines of a kind."""
+        """Add a pair of ready-made lines of a kind; one that is there stays as it is, and is selected."""
         design = self._window.session.design
-        if design is not None:
-            self.take(ready_made(read_template(design.template))[kind])
+        if design is None:
+            return
+        pair = ready_made(read_template(design.template))[kind]
+        present = {line.name for line in design.own_lines}
+        missing = tuple(line for line in pair if line.name not in present)
+        if missing:
+            self.take(missing)
+        else:
+            self._window.desk.go_to("lines")
+            self._window.desk.select_line(pair[0].name)
 
     def ask(self) -> None:
         """Let a line be drawn, and add it."""

@@ -42,12 +42,14 @@ class LineRouting(QObject):
         card.kept.connect(self.keep)
         card.back.connect(self.back)
         card.left.connect(self.leave)
+        self._sketching.lost.connect(self.leave)
+        window.session.design_changed.connect(self._check)
 
     def begin(self, name: str) -> None:
         """Let the path of an own line be edited."""
-        design = self._window.session.design
+        design, frame = self._window.session.design, self._sketching.frame
         own = {line.name: line for line in design.own_lines} if design is not None else {}
-        if name not in own or self._window.session.frame is None:
+        if name not in own or frame is None:
             return
         self._line, self._steps = own[name], [own[name].points]
         self._window.desk.go_to("lines")
@@ -55,7 +57,7 @@ class LineRouting(QObject):
         self._mesh_shown = self._window.view.tools.actions_by_name["control-mesh"].isChecked()
         self._window.view.set_layer("control-mesh", True)
         self._sketching.card.both.hide()
-        self._sketching.begin()
+        self._sketching.begin(frame)
         self._show()
 
     def back(self) -> None:
@@ -89,6 +91,11 @@ class LineRouting(QObject):
         if partner is not None and linked and partner.points == mirrored(line.points, template):
             after = after.with_own_line(OwnLine(partner.name, mirrored(path, template), line.closed))
         return after
+
+    def _check(self, design: Design) -> None:
+        """Leave the line once it is no longer the one that was begun with: it was undone, or removed."""
+        if self._line not in design.own_lines:
+            self.leave()
 
     # -- the hand
 

@@ -6,13 +6,15 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import QObject, QPointF
+from PySide6.QtCore import QObject, QPointF, Signal
 
 from app.panels.draw_card import DrawCard
 from app.seeing.ribbon import Surface
 from app.seeing.sketch import Sketch
 from app.showing.hand import Hand
 from core.body import Body
+from core.control_mesh import ControlMesh
+from core.live import Frame
 from core.mesh import Points
 
 if TYPE_CHECKING:
@@ -22,7 +24,12 @@ _PIECES = 8  # pieces that the path from one control point to the next is laid o
 
 
 class Sketching(QObject):
-    """Takes places on the body at rest [mm], and draws them where they are on the shown one."""
+    """Takes places on the body at rest [mm], and draws them where they are on the shown one.
+
+    ``lost`` tells that what was begun is on another body or control mesh than is shown, and is to end.
+    """
+
+    lost = Signal()
 
     def __init__(self, window: MainWindow, owner: QObject) -> None:
         super().__init__(owner)
@@ -36,17 +43,26 @@ class Sketching(QObject):
         self._sketch: Sketch | None = None
         self._surface: tuple[Body, Surface] | None = None
         self._drawn: tuple[Points, Points, Points, str] | None = None
+        self._control: ControlMesh | None = None
         window.session.frame_ready.connect(self._follow)
         viewport.view_changed.connect(self._look)
-        window.session.opened.connect(lambda _: self.end())
+        window.session.design_changed.connect(self._check)
 
     @property
     def at_work(self) -> bool:
         """Whether something is being drawn."""
         return self.hand.at_work
 
-    def begin(self) -> None:
+    @property
+    def frame(self) -> Frame | None:
+        """What is shown, if it is of the present design's control mesh."""
+        frame, design = self._window.session.frame, self._window.session.design
+        same = frame is not None and design is not None and frame.stages.design.template == design.template
+        return frame if same else None
+
+    def begin(self, frame: Frame) -> None:
         """Take the pointer, and show the card."""
+        self._control = frame.stages.control
         self.hand.begin()
         self.card.show()
 
@@ -55,7 +71,7 @@ class Sketching(QObject):
         if self.at_work:
             self.hand.end()
             self.card.hide()
-            self._drawn = None
+            self._drawn = self._control = None
             if self._sketch is not None:
                 self._sketch.clear()
             self._window.view.viewport.request_draw()
@@ -102,7 +118,13 @@ class Sketching(QObject):
         if self.at_work and self._sketch is not None:
             self._sketch.look_from(self._window.view.viewport.scene.view)
 
+    def _check(self, _: object) -> None:
+        """Let go once the control mesh is another: there its points have other numbers and places."""
+        if self.at_work and (self.frame is None or self.frame.stages.control is not self._control):
+            self.lost.emit()
+
     def _follow(self, _: object) -> None:
         """Stay on the body while it moves."""
+        self._check(_)
         if self.at_work and self._drawn is not None:
             self.draw(*self._drawn)
