@@ -56,7 +56,7 @@ class Actions(Menus):
         for action in (self.undo, self.redo):
             self.place("edit", action)
         self.rule("edit")
-        said = tr("Take all lines off: the body as it was scanned")
+        said = tr("Take all lines off that are not locked")
         self.reset = self.add("edit", tr("Reset to scan"), "Ctrl+R", said, of_document=True)
 
     def _fill_view(self, view: Mapping[str, QAction]) -> None:
