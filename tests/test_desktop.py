@@ -10,9 +10,13 @@ import pytest
 from PySide6.QtCore import QByteArray, QPoint, QSettings, Qt, QTimer
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QWidget
+from pytestqt.qtbot import QtBot
 from window_tools import Script, drag, run_main, settled
 
+import app.desks.safe_mode
+from app.asking.session import Session
+from app.desks.safe_mode import SafeMode
 from app.dress.sheet import Sheet
 from app.main_window import MainWindow
 from app.panels.about import AboutSheet, DiagnosticsSheet
@@ -20,6 +24,7 @@ from app.panels.commands import CommandSheet
 from app.panels.fault import FaultSheet
 from app.panels.preferences import PreferencesSheet
 from app.showing.canvas import PaintedCanvas
+from app.showing.graphics import begin_graphics
 from app.wording.tokens import DARK
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -201,3 +206,26 @@ def test_the_safe_mode_draws_without_the_graphics_driver_and_says_so() -> None:
     run_main(["--safe-mode"], asked)
     QSettings().setValue("view/begun", 2)  # as two crashes before the first picture leave it
     run_main([], failed)
+
+
+def begun() -> int:
+    return int(str(QSettings().value("view/begun", 0)))
+
+
+def test_only_an_end_while_the_driver_is_at_work_counts_as_its_fault(
+    qtbot: QtBot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(app.desks.safe_mode, "_DRAWN_FOR", 1)
+    window = QWidget()
+    qtbot.addWidget(window)
+    window.session = Session(window)
+    QSettings().setValue("view/begun", 1)  # a crash while the view was drawn
+    assert begin_graphics(False) == ""
+    start = SafeMode(window, "")
+    assert begun() == 2
+    qtbot.waitUntil(lambda: begun() == 1)  # the start page waits: if it is killed now that is no fault
+    window.session.opened.emit(None)
+    assert begun() == 2, "it is about to be drawn"
+    qtbot.waitUntil(lambda: begun() == 0)
+    assert not start._clock.isActive()
+    window.session.close()

@@ -25,9 +25,7 @@ def begin_graphics(safe: bool) -> str:
     It is done safely when asked for (``asked``), or when the last starts have ended before the view was
     drawn (``failed``): a graphics driver that crashes takes the whole program with it.
     """
-    settings = QSettings()
-    begun = int(str(settings.value(_BEGUN, 0)) or 0)
-    why = "asked" if safe else "failed" if begun >= _OFTEN else ""
+    why = "asked" if safe else "failed" if _begun() >= _OFTEN else ""
     app = QCoreApplication.instance()
     assert app is not None
     app.setProperty(_SAFE, bool(why))
@@ -35,13 +33,22 @@ def begin_graphics(safe: bool) -> str:
         # The driver that fails is left out wherever there is another: Mesa draws in software then.
         os.environ["LIBGL_ALWAYS_SOFTWARE"] = "1"
     else:
-        settings.setValue(_BEGUN, begun + 1)
-        settings.sync()
+        try_graphics()
     return why
 
 
+def try_graphics() -> None:
+    """Remember, right before the driver is asked for something, that it may end the program."""
+    _count(1)
+
+
+def spare_graphics() -> None:
+    """Forget the last ``try_graphics``: nothing is asked of the driver for now. Former ends still count."""
+    _count(-1)
+
+
 def graphics_work() -> None:
-    """Remember that the view has been drawn."""
+    """Remember that the driver has done what it was asked for."""
     QSettings().remove(_BEGUN)
 
 
@@ -55,3 +62,13 @@ def graphics_in_words() -> list[tuple[str, str]]:
     said = [(name, str(functions.glGetString(number))) for name, number in _STRINGS]
     context.doneCurrent()
     return said
+
+
+def _begun() -> int:
+    return int(str(QSettings().value(_BEGUN, 0)) or 0)
+
+
+def _count(by: int) -> None:
+    settings = QSettings()
+    settings.setValue(_BEGUN, max(_begun() + by, 0))
+    settings.sync()
