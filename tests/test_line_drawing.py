@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
-from window_tools import Script, run_main, settled
+from window_tools import Script, run_main, settled, undrawn
 
 from app.main_window import MainWindow
 from core.own_lines import mirrored
@@ -48,6 +48,7 @@ def test_a_line_is_drawn_by_clicks_and_snaps_to_the_control_mesh_on_both_sides()
     path = tuple(at(row, 2) for row in (2, 3, 4, 5, 6))
 
     def script(window: MainWindow) -> Script:
+        undrawn(window)
         yield settled(window)
         window.view.viewport.set_view("front")
         drawing, card = window.line_drawing, window.line_drawing._sketching.card

@@ -6,7 +6,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
-from window_tools import Script, drag, run_main, settled
+from window_tools import Script, drag, run_main, settled, undrawn
 
 from app.asking.editing import Editing
 from app.desks.present_lines import titled
@@ -26,6 +26,7 @@ def last(window: MainWindow) -> str:
 
 def test_lines_are_linked_locked_named_coloured_softened_and_dressed_by_a_preset() -> None:
     def script(window: MainWindow) -> Script:
+        undrawn(window)
         yield settled(window)
         window.actions_.add_lines["straps"].trigger()
         yield lambda: "strap left" in window.lines.rows and window.is_settled()

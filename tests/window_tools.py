@@ -39,6 +39,14 @@ def settled(window: MainWindow) -> Callable[[], bool]:
     return window.is_settled
 
 
+def undrawn(window: MainWindow) -> None:
+    """Draw no 3D view and look for no limits, which take most of the time where a test asks for neither."""
+    canvas = window.view.viewport.overlay.parentWidget()
+    assert canvas is not None
+    canvas.setUpdatesEnabled(False)
+    window.session.frame_ready.disconnect(window.limits_desk.follow)
+
+
 def drag(window: MainWindow, name: str, pixels: int, release: bool = True) -> None:
     """Drag the handle of a line's slider, as a hand does."""
     slider = window.lines.rows[name].slider
