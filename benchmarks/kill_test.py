@@ -38,9 +38,13 @@ SCAN = bytes(range(256)) * 40_000
 
 @dataclass(frozen=True)
 class Outcome:
-    """What one kill did: seconds of edits that were lost, and what was found that is not whole."""
+    """What one kill did: seconds of edits that were lost of those worked, whether edits were found that only
+    the recovery folder held, and what was found that is not whole.
+    """
 
     lost: float
+    worked: float
+    rescued: bool
     broken: tuple[str, ...]
 
 
@@ -54,10 +58,12 @@ def kill_once(folder: Path, after: float) -> Outcome:
         time.sleep(after)
         killed = time.time()
         program.kill()
-    found, broken = look(folder)
+    kept, saved, broken = look(folder)
     # What earlier programs had done was found after they were killed.
-    times = [when for number, when in _entries(journal) if number > max(found, before)]
-    return Outcome(killed - min(times, default=killed), broken)
+    done = [(number, when) for number, when in _entries(journal) if number > before]
+    lost = [when for number, when in done if number > max(kept, saved)]
+    worked = killed - min((when for _, when in done), default=killed)
+    return Outcome(killed - min(lost, default=killed), worked, kept > max(saved, before), broken)
 
 
 def _entries(journal: Path) -> list[tuple[int, float]]:
@@ -70,22 +76,27 @@ def _last(journal: Path) -> int:
     return max((number for number, _ in _entries(journal)), default=0)
 
 
-def look(folder: Path) -> tuple[int, tuple[str, ...]]:
-    """Do as the next start does: return the number of the newest edit that is found, and what is broken."""
+def look(folder: Path) -> tuple[int, int, tuple[str, ...]]:
+    """Do as the next start does: return the numbers of the newest edits that were kept aside and that were
+    saved, and what is broken.
+    """
     offers, aside = left_behind()
     broken = [str(path) for path in aside]
-    documents = [kept.document for kept, _ in offers]
+    kept = [each.document for each, _ in offers]
     files = [path for path in (folder / "anna.busk",) if path.exists()]
-    for path in (*files, *(backup.path for backup in backups())):
-        documents.append(open_project(path))
-    for document in documents:
+    saved = [open_project(path) for path in (*files, *(backup.path for backup in backups()))]
+    for document in (*kept, *saved):
         scan = read_scan_file(document.design.scan)
         if scan.data != SCAN:
             broken.append(f"{document.design.scan} has not the bytes of the scan")
     for _, recovery in offers:
         # Restored and saved: the next program begins with nothing left behind.
         recovery.end()
-    return max((int(each.design.unknown["n"]) for each in documents), default=0), tuple(broken)
+    return _newest(kept), _newest(saved), tuple(broken)
+
+
+def _newest(documents: list[Document]) -> int:
+    return max((int(each.design.unknown["n"]) for each in documents), default=0)
 
 
 class Quiet(Session):
@@ -122,9 +133,9 @@ def work(folder: Path) -> None:
         if what < 0.1 and session.undo_stack.canUndo():
             session.undo_stack.undo()
             session.undo_stack.redo()
-        elif what < 0.14:
+        elif what < 0.11:
             session.save(str(folder / "anna.busk"), None)
-        elif what < 0.17:
+        elif what < 0.14:
             session.show_variant(chance.choice("ABC"))
         number += 1
         ratio = 0.8 + 0.3 * chance.random()
@@ -153,11 +164,12 @@ def main() -> None:
         with tempfile.TemporaryDirectory() as folder:
             for kind in ("STATE", "DATA", "CONFIG"):
                 os.environ[f"XDG_{kind}_HOME"] = str(Path(folder) / kind)
-            outcomes = [kill_once(Path(folder), 1.5 * chance.random()) for _ in range(asked.kills)]
+            outcomes = [kill_once(Path(folder), 3.0 * chance.random()) for _ in range(asked.kills)]
         lost = sorted(each.lost for each in outcomes)
         broken = [sentence for each in outcomes for sentence in each.broken]
         print(f"{len(outcomes)} kills, kept aside {INTERVAL} s after an edit")
         print(f"lost: {lost[len(lost) // 2]:.2f} s in the middle, {lost[-1]:.2f} s at most")
+        print(f"found in the recovery folder alone: {sum(each.rescued for each in outcomes)}")
         print(f"broken: {len(broken)}", *broken, sep="\n")
 
 
