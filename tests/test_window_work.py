@@ -163,4 +163,10 @@ def test_a_job_that_fails_tells_who_asked_and_one_that_is_left_nobody(qtbot: Any
     qtbot.waitUntil(jobs_end)
     qtbot.wait(1)
     assert len(told) == 1
+    seen: list[int] = []
+    jobs.changed.connect(lambda: seen.append(len(jobs.at_work())))
+    with qtbot.captureExceptions() as faults:
+        jobs.run("done badly", lambda _: 1, [].remove)
+        qtbot.waitUntil(lambda: bool(faults))
+    assert seen[-1] == 0, "whoever shows the jobs hears that this one has gone"
     jobs.close()

@@ -19,6 +19,10 @@ def _log(error: Exception) -> None:
     logging.error("a job failed", exc_info=error)
 
 
+def _forget() -> None:
+    """Nobody has to hear that a job was left."""
+
+
 class Job:
     """One piece of work: its ``words`` for the user, the ``share`` done (0..1, None while nobody knows).
 
@@ -31,9 +35,10 @@ class Job:
         waited: bool,
         done: Callable[[object], None],
         failed: Callable[[Exception], None],
+        left: Callable[[], None],
     ) -> None:
         self.words, self.waited = words, waited
-        self.done, self.failed = done, failed
+        self.done, self.failed, self.left = done, failed, left
         self.share: float | None = None
         self.wanted = True
         self.began = time.monotonic()
@@ -69,12 +74,14 @@ class Jobs(QObject):
         failed: Callable[[Exception], None] = _log,
         *,
         waited: bool = False,
+        left: Callable[[], None] = _forget,
     ) -> Job:
         """Begin ``work``; then ``done`` takes its result, or ``failed`` what it raised: the log, if not said.
 
-        Neither is called once the job is cancelled. ``waited``: the user asked for it and waits.
+        Neither is called once the job is cancelled. ``waited``: the user asked for it and waits. ``left``
+        hears that the user has let go of it, see ``leave``.
         """
-        job = Job(words, waited, done, failed)
+        job = Job(words, waited, done, failed, left)
         thread = threading.Thread(target=self._work, args=(job, work), name="busk-job", daemon=True)
         self._threads[job] = thread
         thread.start()
@@ -91,6 +98,12 @@ class Jobs(QObject):
         if job is not None:
             job.wanted = False
             self.changed.emit()
+
+    def leave(self, job: Job | None) -> None:
+        """Let go of a job because the user says so, and tell who began it."""
+        if job is not None:
+            self.cancel(job)
+            job.left()
 
     def close(self) -> None:
         """Let go of all jobs, and wait until their threads have ended."""
@@ -114,8 +127,10 @@ class Jobs(QObject):
         del self._threads[job]
         if not self._threads:
             self._clock.stop()
-        if job.wanted and fault is None:
-            job.done(result)
-        elif job.wanted and fault is not None:
-            job.failed(fault)
-        self.changed.emit()
+        try:
+            if job.wanted and fault is None:
+                job.done(result)
+            elif job.wanted and fault is not None:
+                job.failed(fault)
+        finally:
+            self.changed.emit()

@@ -57,7 +57,7 @@ class JobDesk(QObject):
             self._session.cancel()
             self.show_work("", 1.0)
         else:
-            self._window.jobs.cancel(self._shown_job())
+            self._window.jobs.leave(self._shown_job())
 
     def _shown_job(self) -> Job | None:
         now = time.monotonic()

@@ -148,11 +148,13 @@ class ScanDesk(QObject):
 
     def leave_question(self) -> None:
         """Leave a scan as it is understood; one that waited for the answer is let go, if it is not shown."""
-        if self._asked_for is not None:
-            self._window.notices.withdraw(_QUESTION)
+        waiting, frame = self._asked_for, self._session.frame
         self._forget_question()
+        self._window.notices.withdraw(_QUESTION)
         if self.stuck:
             self._say_stuck(self.stuck)
+        elif waiting is None and frame is not None and not frame.stages.body.pose.sure:
+            self._say_unsure(tr("Please check it at the Scan step."))
 
     # -- inside
 
@@ -171,8 +173,7 @@ class ScanDesk(QObject):
         """Have a picture painted for each way the body may stand."""
         self._asked_for = waiting
         if not body.pose.sure:
-            unsure, ask = tr("Busk is not sure how this scan stands."), tr("Please choose a picture below.")
-            self._window.notices.show_notice("warn", unsure, ask, lasting=True, about=_QUESTION)
+            self._say_unsure(tr("Please choose a picture below."))
         clay = QColor(LOOKS[tokens_of(self._window).dark].clay)
         colour, scale = (clay.red(), clay.green(), clay.blue()), self._window.devicePixelRatioF()
         size = round(PICTURE[0] * scale), round(PICTURE[1] * scale)
@@ -182,6 +183,7 @@ class ScanDesk(QObject):
             lambda progress: pictures(body, size, colour, progress),
             self._show_question,
             self._show_no_question,
+            left=self.leave_question,
         )
 
     def _show_question(self, painted: object) -> None:
@@ -195,8 +197,11 @@ class ScanDesk(QObject):
         """Without pictures nothing can be chosen below: the Scan step asks the same."""
         logging.error("the pictures of the question failed", exc_info=error)
         self._painting = None
+        self._say_unsure(tr("Please check it at the Scan step."))
+
+    def _say_unsure(self, ask: str) -> None:
         self._window.notices.withdraw(_QUESTION)
-        unsure, ask = tr("Busk is not sure how this scan stands."), tr("Please check it at the Scan step.")
+        unsure = tr("Busk is not sure how this scan stands.")
         self._window.notices.show_notice("warn", unsure, ask, lasting=True, about=_QUESTION)
 
 

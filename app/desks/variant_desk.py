@@ -92,7 +92,9 @@ class VariantDesk(QObject):
         self._window.view.show_variants([(_title(name, each), each) for name, each in shown])
 
     def close_side_by_side(self) -> None:
-        """Forget what belongs to another body."""
+        """Forget what belongs to another body, and what is being solved for it."""
+        self._window.jobs.cancel(self._job)
+        self._job = None
         self._solved.clear()
         self._beside = None
         if self._window.view.comparison.way == "variants":
