@@ -12,7 +12,7 @@ from app.desks.present_maps import MAPS, apex_words, automatic_range, map_kinds,
 from app.panels.figure_field import read_figure
 from app.panels.legend import BAR, Legend
 from app.panels.profile import STEPS, ProfilePanel
-from app.seeing.stage import LOOKS, rgb
+from app.seeing.stage import rgb
 from app.showing.profile_plot import Drawn, ProfilePlot, grid_step
 
 
@@ -20,7 +20,7 @@ from app.showing.profile_plot import Drawn, ProfilePlot, grid_step
 def legend(qapp: QApplication) -> Legend:
     legend = Legend(map_kinds())
     legend.show_map("displacement")
-    legend.show_range(-10.0, 10.0, ramp_of("displacement", -10.0, 10.0, False).stops, False)
+    legend.show_range(-10.0, 10.0, ramp_of("displacement", -10.0, 10.0, "#DFD5CA").stops, False)
     return legend
 
 
@@ -50,7 +50,7 @@ def test_a_typed_end_sets_both_ends_where_values_go_both_ways(legend: Legend) ->
     QTest.keyClick(legend.high, Qt.Key.Key_Return)
     assert told == [(-4.0, 4.0)]
     legend.show_map("strain")
-    legend.show_range(0.0, 20.0, ramp_of("strain", 0.0, 20.0, False).stops, False)
+    legend.show_range(0.0, 20.0, ramp_of("strain", 0.0, 20.0, "#DFD5CA").stops, False)
     for field, text in ((legend.low, "5"), (legend.high, "0")):
         field.setText(text)
         field.setModified(True)
@@ -74,15 +74,14 @@ def test_an_end_is_dragged_and_a_double_click_frees_it(legend: Legend) -> None:
     assert legend.bar.y_of(99.0) == pytest.approx(BAR.top())
 
 
-def test_ranges_are_round_and_colours_start_at_the_clay() -> None:
+def test_ranges_are_round_and_colours_start_at_the_material() -> None:
     assert automatic_range("displacement", np.array([-4.2, 1.0, np.nan])) == (-5.0, 5.0)
     assert automatic_range("strain", np.array([0.0, 11.0])) == (0.0, 15.0)
     assert automatic_range("sides", np.array([0.1])) == (-5.0, 5.0)
     assert automatic_range("pull", np.empty(0)) == (0.0, 100.0)
-    for dark in (False, True):
-        for name in MAPS:
-            low, high = automatic_range(name, np.array([8.0]))
-            assert ramp_of(name, low, high, dark)(np.zeros(1))[0] == pytest.approx(rgb(LOOKS[dark].clay))
+    for name in MAPS:
+        low, high = automatic_range(name, np.array([8.0]))
+        assert ramp_of(name, low, high, "#8F949B")(np.zeros(1))[0] == pytest.approx(rgb("#8F949B"))
 
 
 def test_apexes_are_told_in_words() -> None:

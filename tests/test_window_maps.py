@@ -13,6 +13,7 @@ from window_tools import Script, drag, run_main, settled
 
 import app.desks.section_desk as section_module
 from app.main_window import MainWindow
+from app.seeing.material import look_of
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -70,10 +71,33 @@ def test_maps_show_the_right_values_with_a_range_by_hand_and_values_pinned() -> 
         assert np.array_equal(colours(window), clay)  # at rest nothing has moved
         window.view.set_after(True)
         assert not np.array_equal(colours(window), clay)
+        the_zero_of_a_map_is_the_material(window)
+        the_sides_at_rest_are_worked_out_once(window)
         maps.choose("")
         assert np.array_equal(colours(window), clay)
 
     run_main([], script)
+
+
+def the_zero_of_a_map_is_the_material(window: MainWindow) -> None:
+    window.view_desk.choose_material("graphite")
+    stops = window.map_desk.legend.bar._stops
+    assert stops[len(stops) // 2] == look_of(window.view.viewport.scene.dark, "graphite").clay
+    window.view_desk.choose_material("clay")
+
+
+def the_sides_at_rest_are_worked_out_once(window: MainWindow) -> None:
+    maps = window.map_desk
+    maps.choose("sides")
+    now, asked = maps.now, []
+    assert now is not None
+    differ = now.sides.differ
+    now.sides.differ = lambda *told: asked.append(len(told)) or differ(*told)  # type: ignore[method-assign]
+    maps.pin(window.view.viewport.scene.body.shown_points[0], "")
+    maps.set_range(-7.0, 7.0)
+    maps.refresh()
+    assert set(asked) == {3}, "only what moves is laid over the other side again"
+    maps.free_range()
 
 
 def the_key_goes_through_all_maps_and_back(window: MainWindow, clay: np.ndarray) -> Script:

@@ -67,11 +67,13 @@ class BodyNow:
             return 100.0 * self._strain(self.frame.control_points)
         return self.sides.differ(self.places, self.normals, self.sides.rows)
 
+    @cached_property
+    def _sides_at_rest(self) -> Floats:
+        return self.sides.differ(self.rest.vertices, self.rest.vertex_normals)
+
     def at_rest(self, name: str) -> Floats:
-        """Return the values of a map at all vertices of the body at rest, (n,)."""
-        if name == "sides":
-            return self.sides.differ(self.rest.vertices, self.rest.vertex_normals)
-        return np.zeros(len(self.rest.vertices))
+        """Return the values of a map at all vertices of the body at rest, (n,); they are the caller's own."""
+        return self._sides_at_rest.copy() if name == "sides" else np.zeros(len(self.rest.vertices))
 
     def pulls(self) -> dict[str, Floats]:
         """Return how the segments of the worn lines pull, by line, each (k,) [%]."""

@@ -15,7 +15,9 @@ from app.desks.present_maps import MAPS, automatic_range, map_kinds, ramp_of
 from app.panels.legend import Legend
 from app.seeing.bands import Bands
 from app.seeing.body import BodyActor
+from app.seeing.material import look_of
 from app.seeing.paint import Ramp
+from app.seeing.scene import Scene
 from app.showing.flags import Flag, Flags
 from app.wording.words import number, tr
 from core.live import Frame
@@ -171,8 +173,11 @@ class MapDesk(QObject):
         if frame.at_work and self._range_of == self.name:  # while a body moves the colours only widen
             low, high = min(low, self._range[0]), max(high, self._range[1])
         self._range, self._range_of = by_hand or (low, high), "" if by_hand else self.name
-        ramp = ramp_of(self.name, *self._range, self._view.viewport.scene.dark)
+        ramp = self._ramp(self._view.viewport.scene)
         self.legend.show_range(*self._range, ramp.stops, by_hand is not None)
+
+    def _ramp(self, scene: Scene) -> Ramp:
+        return ramp_of(self.name, *self._range, look_of(scene.dark, scene.material).clay)
 
     def _paint_skin(self, view: BodyView) -> None:
         """Lay the map over one body; only where it moves, if nothing else has changed."""
@@ -184,7 +189,7 @@ class MapDesk(QObject):
             if self._painted.pop(body, None) is not None:
                 body.show_map(None)
             return
-        ramp = ramp_of(self.name, *self._range, scene.dark)
+        ramp = self._ramp(scene)
         rows, fresh = now.rows(self.name), self._painted.get(body) != (self.name, ramp, view.after)
         if fresh:
             values = now.at_rest(self.name)
@@ -199,7 +204,7 @@ class MapDesk(QObject):
         """Colour the bands by how they pull, or give them their own colours back."""
         bands = view.viewport.scene.bands
         if self.name == "pull" and view.after:
-            ramp = ramp_of(self.name, *self._range, view.viewport.scene.dark)
+            ramp = self._ramp(view.viewport.scene)
             bands.paint({name: ramp(pulls) for name, pulls in self._pulls.items()}, ramp.blank)
             self._tinted.add(bands)
         elif bands in self._tinted:

@@ -9,7 +9,6 @@ import numpy as np
 
 from app.panels.legend import MapKind
 from app.seeing.paint import Ramp
-from app.seeing.stage import LOOKS
 from app.wording.tokens import MAP_AMOUNT, MAP_LESS, MAP_MORE
 from app.wording.words import number, tr
 from core.mesh import Floats
@@ -66,9 +65,8 @@ def map_kinds() -> list[MapKind]:
     ]
 
 
-def ramp_of(name: str, low: float, high: float, dark: bool) -> Ramp:
-    """Return the colours of a map between two values; zero is the clay of the theme."""
-    clay = LOOKS[dark].clay
+def ramp_of(name: str, low: float, high: float, clay: str) -> Ramp:
+    """Return the colours of a map between two values; zero is the colour "#rrggbb" of the body's material."""
     if name in ("displacement", "sides"):
         return Ramp((*MAP_LESS, clay, *MAP_MORE), low, high, clay)
     return Ramp((clay, *MAP_AMOUNT), low, high, clay)

@@ -19,7 +19,7 @@ class ViewDesk(QObject):
 
     def __init__(self, window: MainWindow) -> None:
         super().__init__(window)
-        self._view = window.view
+        self._view, self._maps = window.view, window.map_desk
         do = window.actions_
         FlipKey(window, do.flip, window.view)
         said = tr("Come close to the selected line or landmark")
@@ -40,3 +40,4 @@ class ViewDesk(QObject):
         name = name if name in self.materials else "clay"
         self.materials[name].setChecked(True)
         self._view.set_material(name)
+        self._maps.refresh()
