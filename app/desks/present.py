@@ -141,7 +141,7 @@ def _hint(frame: Frame) -> str:
         return tr("The turns run away: the body is shown as it was before. Lengthen or soften the lines.")
     if frame.verdict.state == "settled":
         if any(weak_sides(frame.stages.landmarks, kind) for kind in ESSENTIAL):
-            return tr("It hangs on landmarks that want a look: see the Landmarks step.")
+            return tr("It rests on landmarks that want a look: see the Landmarks step.")
         return "".join(map(say, warnings(frame.stages)[:1]))  # the others stand in the notice
     line = blamed_line(frame.stages)
     if not what or line is None:

@@ -18,8 +18,9 @@ def explain(window: MainWindow) -> None:
             "says that a step is done, an amber badge that something there wants a look."
         ),
         window.view: tr(
-            "The body as the model reshapes it. What you see moves at once while you drag a line, and is "
-            "right to a tenth of a millimetre when the verdict below says settled."
+            "The body as the model reshapes it. What you see moves at once while you drag a line, and is the "
+            "model's answer when the verdict below says settled. How near a worn garment comes to it is not "
+            "measured."
         ),
         window.strip: tr(
             "The model comes to rest turn by turn. A garment whose model vibrates or folds tells nothing "
@@ -30,7 +31,7 @@ def explain(window: MainWindow) -> None:
             "it is worth a look on a new scanner."
         ),
         window.landmarks: tr(
-            "Places on the body that the control mesh hangs on. Where the skin did not show one clearly, its "
+            "Places on the body that the control mesh rests on. Where the skin did not show one clearly, its "
             "confidence is low: drag its pin to where you would put it."
         ),
         window.lines: tr(
@@ -38,8 +39,8 @@ def explain(window: MainWindow) -> None:
             "as far as the volume of the body allows. Set and reached differ by what the body does not give."
         ),
         window.result: tr(
-            "The body measured before and after with the same tape in the same places, so that the change "
-            "is the garment's alone."
+            "The scan, and what the model makes of it, measured alike in the same places, so that the change "
+            "is the model's alone."
         ),
         window.model: tr(
             "How lines, skin and volume act. The choices of the paper are marked; they change the result, "
