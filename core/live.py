@@ -25,8 +25,13 @@ from core.progress import Cancelled, Progress, quiet
 
 __all__ = ["Failure", "Frame", "LiveSolver"]
 
-_SLICE, _FIRST_SLICE = 0.012, 0.005
-"""Seconds of turns between two frames, about one picture of a screen; fewer before new lengths are seen."""
+_SLICE, _FIRST_SLICE, _LONG_SLICE = 0.012, 0.005, 0.05
+"""Seconds of turns between two frames, about one picture of a screen; fewer before new lengths are seen, more
+while the last frame has not been fetched.
+"""
+
+_HAND_RESTS = 0.2
+"""Seconds after the last request until turns wait no longer for their frames to be shown."""
 
 _STALE = 0.1
 """Seconds for which a frame of former lengths is kept back where that of the newest is about to come."""
@@ -48,9 +53,9 @@ class _Request:
 class LiveSolver:
     """Solves the newest design in a thread of its own.
 
-    It waits once it is one frame ahead of who fetches them. ``tell`` is called in that thread with the work
-    in hand and the share done, or "" when it is done; ``ready`` when there is something to fetch. A body is
-    handed to ``prepare`` there, before its first frame.
+    While lengths move it waits once it is one frame ahead of who fetches them. ``tell`` is called in that
+    thread with the work in hand and the share done, or "" when it is done; ``ready`` when there is something
+    to fetch. A body is handed to ``prepare`` there, before its first frame.
     """
 
     def __init__(
@@ -152,7 +157,8 @@ class LiveSolver:
             asked = taken = 0
             while True:
                 with self._wake:
-                    self._wake.wait_for(self._something_to_do)
+                    while not self._something_to_do():
+                        self._wake.wait(self._lead if self._turning and self._lead > 0.0 else None)
                     while not self._called and (pause := self._pause) > 0.0:
                         self._wake.wait(pause)
                     if self._stopping:
@@ -165,7 +171,8 @@ class LiveSolver:
                         self._refuse_what_has_no_balance()
                         # Only now: the frames after a failure are still those of the design before it.
                         taken = asked
-                    self._advance(_SLICE if request is None else _FIRST_SLICE)
+                    unseen = request is None and self._frame is not None
+                    self._advance(_FIRST_SLICE if request else _LONG_SLICE if unseen else _SLICE)
                     self._refuse_what_has_no_balance()
                     if self._stages is not None and self._comparison is not None:
                         self._publish(make_frame(taken, self._stages, self._comparison, self._seconds))
@@ -188,8 +195,17 @@ class LiveSolver:
             self._warmer.start()
 
     def _something_to_do(self) -> bool:
-        turning = self._comparison is not None and not self._comparison.resting
-        return self._called or (turning and self._frame is None)
+        unseen = self._frame is not None and (self._lead > 0.0 or self._pace is not None)
+        return self._called or (self._turning and not unseen)
+
+    @property
+    def _turning(self) -> bool:
+        return self._comparison is not None and not self._comparison.resting
+
+    @property
+    def _lead(self) -> float:
+        """Seconds for which turns still wait until their frame is shown: as long as lengths move."""
+        return self._asked_at + _HAND_RESTS - time.perf_counter()
 
     @property
     def _called(self) -> bool:

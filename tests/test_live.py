@@ -119,13 +119,16 @@ def test_no_turn_is_made_while_a_frame_is_shown(solver: LiveSolver, built: Built
     design = replace(built("mannequin").design.with_line("mid-bust", 0.6), volume="conventional")
     revision = solver.submit(design)
     frame = answer(solver, lambda frame: frame.revision == revision)
+    first, under_way = frame, 0
     with solver.held():
         time.sleep(0.1)
-        first = solver.latest() or frame
-        time.sleep(0.1)
-        assert solver.latest() is None
+        # What was under way may still come; on a busy machine it comes late.
+        while (more := solver.latest()) is not None:
+            assert isinstance(more, Frame)
+            first, under_way = more, under_way + 1
+            assert under_way < 4, "turns are made all the same"
+            time.sleep(0.1)
     second = answer(solver, lambda _: True)
-    assert isinstance(first, Frame)
     assert second.tracks["adaptive"][-1].turn > first.tracks["adaptive"][-1].turn
     assert second.seconds - first.seconds < 0.1, "what is not worked is not counted"
 
