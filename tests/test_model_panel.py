@@ -193,7 +193,7 @@ def test_forces_one_turn_late_come_with_a_soft_line_and_leave_with_it() -> None:
 def test_every_choice_has_its_words_and_the_door_says_what_is_not_usual() -> None:
     settings = [setting for _, group in groups() for setting in group]
     values = vars(Design(ScanSource("a.ply")))
-    elsewhere = {"scan", "lines", "own_lines", "placed", "unknown", "template"}
+    elsewhere = {"scan", "lines", "own_lines", "traits", "placed", "unknown", "template"}
     assert {setting.key for setting in settings} == set(values) - elsewhere
     assert all(setting.tip.endswith(".") and setting.words(values[setting.key]) for setting in settings)
     assert summary(values) == "Sticks to the skin · Springs back"

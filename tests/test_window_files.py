@@ -57,6 +57,7 @@ def test_the_shown_body_is_exported(tmp_path: Path, monkeypatch: pytest.MonkeyPa
             path = tmp_path / f"body.{ending}"
             monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_, path=path: str(path))
             window.actions_.export.trigger()
+            yield path.exists
             body = trimesh.load(path, process=False)
             assert len(body.faces) == 65742
             frame = window.session.frame
