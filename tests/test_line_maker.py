@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -36,6 +37,11 @@ def test_slings_are_listed_drawn_shortened_and_removed() -> None:
         assert window.view.selected_line == "sling left"
         assert window.session.undo_stack.undoText() == "Slings added"
         assert np.abs(points(window) - at_start).max() < 0.2, "at 100 % they do not pull"
+        led = replace(window.session.design.own_lines[0], points=(35, 48))
+        window.session.edit(lambda design: design.with_own_line(led), "led elsewhere")
+        window.actions_.add_lines["slings"].trigger()
+        assert window.session.design.own_lines[0] == led, "what was led elsewhere is not added over"
+        window.actions_.undo.trigger()
         window.lines.length_committed.emit("sling left", 0.94)
         yield settled(window)
         frame = window.session.frame

@@ -10,7 +10,6 @@ from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
 from app.dress.parts import EmptyState, ToolButton
-from app.dress.theme import label
 from app.panels.line_row import LineRow, LineView
 from app.wording.words import tr
 
@@ -126,8 +125,7 @@ class LinesPanel(QWidget):
 
     def _head(self) -> QHBoxLayout:
         head = QHBoxLayout()
-        head.setContentsMargins(18, 12, 14, 8)
-        head.addWidget(label(tr("Lines"), "heading"))
+        head.setContentsMargins(18, 8, 14, 4)
         head.addStretch(1)
         self._reset = ToolButton(
             "arrow-counter-clockwise",

@@ -12,7 +12,7 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QFrame, QScrollArea, QVBoxLayout, QWidget
 
 from app.dress.parts import EmptyState, sentence
-from app.dress.theme import font, label, tokens_of
+from app.dress.theme import font, tokens_of
 from app.wording.words import number, tr
 
 
@@ -32,10 +32,8 @@ class ResultPanel(QWidget):
     def __init__(self) -> None:
         super().__init__()
         column = QVBoxLayout(self)
-        column.setContentsMargins(14, 14, 14, 0)
+        column.setContentsMargins(14, 8, 14, 0)
         column.setSpacing(4)
-        heading = label(tr("Result"), "heading")
-        heading.setContentsMargins(4, 0, 0, 0)
         self._empty = EmptyState(
             "result", tr("Nothing solved yet"), tr("Set a line shorter and see it here.")
         )
@@ -54,8 +52,7 @@ class ResultPanel(QWidget):
         self._area.setWidgetResizable(True)
         self._area.setFrameShape(QFrame.Shape.NoFrame)
         self._area.setWidget(inside)
-        for each in (heading, self._empty):
-            column.addWidget(each)
+        column.addWidget(self._empty)
         column.addWidget(self._area, 1)
         column.addStretch(0)
         self.set_rows([])
