@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import random
-from dataclasses import astuple, replace
+from collections.abc import Callable
+from dataclasses import astuple, dataclass, replace
+from functools import reduce
 from pathlib import Path
 
 import numpy as np
@@ -12,12 +14,27 @@ from pytestqt.qtbot import QtBot
 
 import app.asking.edit
 from app.asking.session import Session
+from core.design import Design
 from core.document import Document
-from core.project import with_scan
+from core.errors import LineError, UserError
+from core.live import Failure
+from core.own_lines import ready_made
+from core.presets import built_in, with_preset
+from core.project import open_project, with_scan
 from core.settled import settled_frame
+from core.template import read_template
 
 LINES = ("mid-bust", "full-bust", "under-bust")
-STEPS, LOOKS = 300, 4
+STRAPS = ("strap left", "strap right")
+STEPS, LOOKS = 300, 2
+
+
+@dataclass
+class Entry:
+    """One step of the history: what it was made to, and the documents that were taken in one by one."""
+
+    what: str
+    documents: list[Document]
 
 
 class Walk:
@@ -25,43 +42,107 @@ class Walk:
 
     def __init__(self, session: Session, qtbot: QtBot, folder: Path, chance: random.Random) -> None:
         self.session, self.qtbot, self.folder, self.chance = session, qtbot, folder, chance
-        self.documents = [session.document]
-        self.present = 0
+        self.entries, self.present = [Entry("", [session.document])], 0
+        self.files: dict[Path, Document] = {}
+        self.refused, self.clean = 0, True
+
+    @property
+    def document(self) -> Document:
+        return self.entries[self.present].documents[-1]
 
     def step(self) -> None:
         """Do one thing, in the session and in the model."""
-        whims = (self.edit, self.drag, self.choose, self.undo, self.undo, self.redo, self.variant, self.leave)
-        self.chance.choices(whims, (6, 3, 2, 3, 1, 3, 2, 2))[0]()
+        whims = {self.turn: 6, self.drag: 3, self.choose: 2, self.undo: 4, self.redo: 3, self.variant: 2}
+        whims |= {self.leave: 2, self.hurry: 1, self.refuse: 2, self.treat: 2, self.draw: 2, self.dress: 1}
+        self.clean = self.session.undo_stack.isClean()
+        app.asking.edit.PAUSE = self.chance.choice((-1.0, 1e9))
+        self.chance.choices(list(whims), list(whims.values()))[0]()
 
-    def note(self, after: Document) -> None:
-        """Take an edit into the model: what was undone is gone; an edit that changes nothing is none."""
-        if after != self.documents[self.present]:
-            self.documents[self.present + 1 :] = [after]
-            self.present += 1
+    def note(self, after: Document, what: str = "") -> bool:
+        """Take an edit into the model; returns whether it stands as the last one.
 
-    def edit(self) -> None:
-        name, ratio = self.chance.choice(LINES), self.ratio()
-        before = self.documents[self.present]
+        What was undone is gone, an edit that changes nothing is none, quick edits of one thing are one.
+        """
+        if after == self.document:
+            return False
+        del self.entries[self.present + 1 :]
+        top = self.entries[-1]
+        if not what or what != top.what or self.clean or app.asking.edit.PAUSE < 0.0:
+            self.entries.append(Entry(what, [after]))
+        else:
+            top.documents.append(after)
+            if after == self.entries[-2].documents[-1]:
+                self.entries.pop()
+        self.present, before = len(self.entries) - 1, self.present
+        return self.present >= before
+
+    def decide(self, edit: Callable[[Design], Design], what: str = "") -> bool:
+        """Note an edit of the design, unless the design refuses it."""
+        try:
+            return self.note(self.document.with_design(edit(self.document.design)), what)
+        except UserError:
+            self.refused += 1
+            return False
+
+    def edit(self, edit: Callable[[Design], Design]) -> None:
+        self.session.edit(edit, "edit")
+        self.decide(edit)
+
+    def turn(self, name: str = "") -> bool:
+        name, ratio = name or self.chance.choice((*LINES, *STRAPS)), self.ratio()
+        self.clean = self.session.undo_stack.isClean()
+        what = "" if self.session._preview is not None else f"length of {name}"
+        if name in STRAPS and name not in {line.name for line in self.document.design.own_lines}:
+            return False
         self.session.commit_line(name, name, ratio)
-        self.note(before.with_design(before.design.with_line(name, None if ratio == 1.0 else ratio)))
+        return self.decide(lambda design: design.with_linked(name, None if ratio == 1.0 else ratio), what)
 
     def drag(self) -> None:
         for _ in range(3):
             self.session.preview_line(self.chance.choice(LINES), self.ratio())
-        if self.chance.random() < 0.5:
+        if self.chance.random() < 0.5 or not self.turn():
             self.session.cancel_preview()
+
+    def refuse(self) -> None:
+        """Turn a wheel, and let the solver refuse its last steps: those go, and what was before stands."""
+        app.asking.edit.PAUSE, name = 1e9, self.chance.choice(LINES)
+        stands = [self.turn(name) for _ in range(4)][-1]
+        for _ in range(self.chance.randrange(4) if stands else 0):
+            self.session._fail(Failure(self.session._revision, LineError("It cannot be held.")))
+            self.refused += 1
+            self.entries[-1].documents.pop()
+            if not self.entries[-1].documents:
+                self.entries.pop()
+                self.present -= 1
+                return
+
+    def treat(self) -> None:
+        """Lock a line or link it, or let it be free."""
+        name, kind = self.chance.choice((*LINES, *STRAPS)), self.chance.choice(("locked", "linked"))
+        free = self.chance.random() < 0.5
+        self.edit(lambda design: design.with_traits(replace(design.traits_of(name), **{kind: free})))
+
+    def draw(self) -> None:
+        """Add a pair of own lines, or remove one of them."""
+        if self.chance.random() < 0.7:
+            pair = ready_made(read_template("168"))["straps"]
+            self.session.add_own_lines(pair, "straps")
+            self.decide(lambda design: reduce(Design.with_own_line, pair, design))
         else:
-            self.edit()
+            self.edit(lambda design: design.without_own_line("strap left"))
+
+    def dress(self) -> None:
+        preset = self.chance.choice(built_in())
+        self.edit(lambda design: with_preset(design, preset))
 
     def choose(self) -> None:
-        before = self.documents[self.present]
         if self.chance.random() < 0.3:
             self.session.reset_lines()
-            self.note(before.with_design(before.design.at_rest()))
+            self.decide(Design.at_rest)
             return
         stiff = self.chance.choice((0.5, 1.0, 2.0))
         self.session.change({"line_stiffness": stiff}, "stiffness")
-        self.note(before.with_design(replace(before.design, line_stiffness=stiff)))
+        self.decide(lambda design: replace(design, line_stiffness=stiff), "values of ['line_stiffness']")
 
     def undo(self) -> None:
         self.session.undo_stack.undo()
@@ -69,10 +150,10 @@ class Walk:
 
     def redo(self) -> None:
         self.session.undo_stack.redo()
-        self.present = min(self.present + 1, len(self.documents) - 1)
+        self.present = min(self.present + 1, len(self.entries) - 1)
 
     def variant(self) -> None:
-        name, before = self.chance.choice("ABC"), self.documents[self.present]
+        name, before = self.chance.choice("ABC"), self.document
         if self.chance.random() < 0.3:
             self.session.remove_variant(name)
             self.note(before.without(name))
@@ -80,18 +161,28 @@ class Walk:
             self.session.show_variant(name)
             self.note(before.showing(name))
 
-    def leave(self) -> None:
-        """Save, and now and then open what was saved."""
+    def hurry(self) -> Path:
+        """Save, and wait for no disk."""
         path = self.folder / f"{self.chance.randrange(3)}.busk"
         assert self.session.save(str(path), None)
+        self.files[path] = self.document
+        return path
+
+    def leave(self) -> None:
+        """Save, and now and then open what was saved."""
+        path = self.hurry()
         assert self.session.finish_saving()
         assert self.session.path == path
         if self.chance.random() < 0.3:
-            before = self.documents[self.present]
             with self.qtbot.waitSignal(self.session.opened, timeout=60_000):
                 self.session.open(str(path))
-            assert with_scan(self.session.document, "", "") == with_scan(before, "", "")
-            self.documents, self.present = [self.session.document], 0
+            self.check_files()
+            self.entries, self.present = [Entry("", [self.session.document])], 0
+
+    def check_files(self) -> None:
+        """Each file holds the document that was saved in it last."""
+        for path, document in self.files.items():
+            assert with_scan(open_project(path), "", "") == with_scan(document, "", "")
 
     def ratio(self) -> float:
         return self.chance.choice((1.0, round(0.85 + 0.15 * self.chance.random(), 3)))
@@ -99,8 +190,8 @@ class Walk:
     def check(self) -> None:
         """The document is the model's, and so is the history."""
         stack = self.session.undo_stack
-        assert self.session.document == self.documents[self.present]
-        assert (stack.index(), stack.count()) == (self.present, len(self.documents) - 1)
+        assert self.session.document == self.document
+        assert (stack.index(), stack.count()) == (self.present, len(self.entries) - 1)
 
     def check_result(self) -> None:
         """What is shown at rest is what the design alone leads to, whatever way led there."""
@@ -119,7 +210,7 @@ class Walk:
 def test_a_random_walk_ends_where_its_model_does(
     qtbot: QtBot, tmp_path: Path, mannequin: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(app.asking.edit, "PAUSE", -1.0)  # each edit is one entry, however quick this test is
+    monkeypatch.setattr(app.asking.edit, "PAUSE", -1.0)  # the walk says how quick its edits are
     session = Session()
     faults: list[Exception] = []
     session.failed.connect(faults.append)
@@ -132,6 +223,8 @@ def test_a_random_walk_ends_where_its_model_does(
             walk.check()
             if step % (STEPS // LOOKS) == 0:
                 walk.check_result()
-        assert not faults
+        session.finish_saving()
+        walk.check_files()
+        assert len(faults) == walk.refused > 0
     finally:
         session.close()
