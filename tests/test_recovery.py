@@ -148,3 +148,9 @@ def test_what_a_killed_program_left_beside_a_project_goes_with_the_next_save(tmp
     save_project(path, Document.of(replace(DESIGN, lines=())), SCAN, None)
     assert not left.exists()
     assert fresh.exists(), "another window may be writing it"
+
+
+def test_where_nothing_can_be_kept_it_is_said_in_words(own_base: Path) -> None:
+    (own_base / "recovery").write_text("no folder")
+    with pytest.raises(ProjectError, match="cannot keep your changes in"):
+        Recovery.new()
