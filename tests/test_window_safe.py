@@ -174,6 +174,10 @@ def test_two_windows_and_a_change_from_outside_are_told(
         notice = window.notices.notice()
         assert notice is not None
         assert "lotte is open in another window" in notice.sentence
+        window.notices.close_notice()
+        assert window.session.save(str(path), None)
+        assert window.session.finish_saving()
+        assert window.notices.notice() is None, "who has opened it anyway is not told at each save"
         notice.actions[0][1]()
         assert window.session.path is None
         assert "*" in window.windowTitle()
