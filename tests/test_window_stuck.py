@@ -12,7 +12,6 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from test_window_scan import doubtful, pull
-from test_window_work import endless
 from trimesh.creation import box
 from window_tools import Script, run_main, settled
 
@@ -278,27 +277,3 @@ def test_a_landmark_that_was_not_found_can_be_placed_and_undone(monkeypatch: pyt
         assert panel.rows["waist_front"].view.absent
 
     run_main([], script)
-
-
-def test_pictures_that_cannot_be_painted_leave_no_question(
-    mannequin: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def fail(*_: Any) -> None:
-        raise RuntimeError("no paint")
-
-    monkeypatch.setattr(core.body, "find_pose", doubtful(0.0))
-    monkeypatch.setattr(app.desks.scan_desk, "pictures", fail)
-
-    def script(window: MainWindow) -> Script:
-        yield settled(window)
-        yield lambda: "Scan step" in getattr(window.notices.notice(), "hint", "")
-        assert not window.view.question.isVisible()
-        monkeypatch.setattr(app.desks.scan_desk, "pictures", endless([]))
-        window.scan_desk.ask()
-        assert "picture below" in window.notices.notice().hint
-        yield lambda: window.job_desk._shown_job() is not None
-        window.job_desk.cancel()
-        assert "Scan step" in window.notices.notice().hint, "there is no picture to choose below"
-        assert not window.scan_desk.painting
-
-    run_main([str(mannequin)], script)

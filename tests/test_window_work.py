@@ -11,11 +11,14 @@ from typing import Any
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
+from test_window_scan import doubtful
 from window_tools import Script, drag, run_main, settled
 
 import app.desks.desk
 import app.desks.limits_desk
+import app.desks.scan_desk
 import app.view_area
+import core.body
 from app.asking.jobs import Jobs
 from app.main_window import MainWindow
 from core.progress import Progress
@@ -170,3 +173,27 @@ def test_a_job_that_fails_tells_who_asked_and_one_that_is_left_nobody(qtbot: Any
         qtbot.waitUntil(lambda: bool(faults))
     assert seen[-1] == 0, "whoever shows the jobs hears that this one has gone"
     jobs.close()
+
+
+def test_pictures_that_cannot_be_painted_leave_no_question(
+    mannequin: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: Any) -> None:
+        raise RuntimeError("no paint")
+
+    monkeypatch.setattr(core.body, "find_pose", doubtful(0.0))
+    monkeypatch.setattr(app.desks.scan_desk, "pictures", fail)
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        yield lambda: "Scan step" in getattr(window.notices.notice(), "hint", "")
+        assert not window.view.question.isVisible()
+        monkeypatch.setattr(app.desks.scan_desk, "pictures", endless([]))
+        window.scan_desk.ask()
+        assert "picture below" in window.notices.notice().hint
+        yield lambda: window.job_desk._shown_job() is not None
+        window.job_desk.cancel()
+        assert "Scan step" in window.notices.notice().hint, "there is no picture to choose below"
+        assert not window.scan_desk.painting
+
+    run_main([str(mannequin)], script)
