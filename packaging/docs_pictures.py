@@ -36,12 +36,6 @@ def with_control_mesh(window: MainWindow) -> None:
     window.view.set_layer("control-mesh", True)
 
 
-def from_the_side(window: MainWindow) -> None:
-    window.view.viewport.set_view("left")
-    window.view.compare_by("ghost")
-    window.desk.go_to("result")
-
-
 def wiped(window: MainWindow) -> None:
     window.desk.go_to("result")
     window.view.viewport.set_view("left")
@@ -103,7 +97,6 @@ SHOTS: tuple[Shot, ...] = (
     ("vibrating", vibrating(), {"dark": True, "size": (1280, 800)}, with_control_mesh),
     ("model", sliding(), {"size": (1280, 800)}, model_page),
     ("ask", sample_design("person"), {"size": (1280, 800)}, asking),
-    ("side", sample_design(), {"size": (1280, 800)}, from_the_side),
     ("wipe", sample_design(), {"size": (1280, 800)}, wiped),
     ("map", sample_design(), {"size": (1600, 1000)}, mapped),
     ("variants", sample_design(), {"size": (1280, 800)}, variants),
