@@ -191,7 +191,7 @@ def test_pictures_that_cannot_be_painted_leave_no_question(
         monkeypatch.setattr(app.desks.scan_desk, "pictures", endless([]))
         window.scan_desk.ask()
         assert "picture below" in window.notices.notice().hint
-        yield lambda: window.job_desk._shown_job() is not None
+        yield lambda: window.job_desk._shown_job() is window.scan_desk._painting
         window.job_desk.cancel()
         assert "Scan step" in window.notices.notice().hint, "there is no picture to choose below"
         assert not window.scan_desk.painting
