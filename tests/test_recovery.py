@@ -34,10 +34,10 @@ def crashed(**changes) -> Recovery:
 
 
 def test_what_was_kept_is_found_whole() -> None:
-    crashed(project=Path("/work/anna.busk"), picture=PICTURE)
+    crashed(project=Path("/projects/anna.busk"), picture=PICTURE)
     (kept, recovery), *others = left_behind()[0]
     assert not others
-    assert (kept.name, kept.project, kept.picture) == ("anna", Path("/work/anna.busk"), PICTURE)
+    assert (kept.name, kept.project, kept.picture) == ("anna", Path("/projects/anna.busk"), PICTURE)
     assert abs(kept.time - time.time()) < 60
     assert with_scan(kept.document, "", "") == with_scan(SHORT, "", "")
     scan = read_scan_file(kept.document.design.scan)
