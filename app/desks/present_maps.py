@@ -21,6 +21,10 @@ _ROUND = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 
 def map_kinds() -> list[MapKind]:
     """Return the maps that can be chosen, in words."""
+    return [*_skin_maps(), *_line_maps()]
+
+
+def _skin_maps() -> list[MapKind]:
     return [
         MapKind(
             "displacement",
@@ -51,6 +55,11 @@ def map_kinds() -> list[MapKind]:
             tr("+ stands out more than the other side"),
             both_ways=True,
         ),
+    ]
+
+
+def _line_maps() -> list[MapKind]:
+    return [
         MapKind(
             "pull",
             tr("Pull of lines"),

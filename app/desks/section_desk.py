@@ -9,6 +9,7 @@ import numpy as np
 from PySide6.QtCore import QObject, QTimer
 
 from app.desks.body_now import BodyNow
+from app.desks.desk import PLOT_INTERVAL
 from app.desks.dialogs import ask_save
 from app.desks.present_maps import apex_words
 from app.panels.profile import ProfilePanel
@@ -25,9 +26,6 @@ if TYPE_CHECKING:
 
 _AROUND = 12.0  # what is seen beside the part that can move [mm]
 _NEAR = 25.0  # how near to a curve the pointer reads it [px]
-
-PLOT_INTERVAL = 100
-"""Milliseconds between two pictures of the curves while frames come: they cost as much as the body."""
 
 
 class SectionDesk(QObject):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from PySide6.QtWidgets import QWidget
+
 from app.wording.words import tr
 
 if TYPE_CHECKING:
@@ -12,7 +14,12 @@ if TYPE_CHECKING:
 
 def explain(window: MainWindow) -> None:
     """Give each of the main parts its What's This."""
-    said = {
+    for part, why in _said(window).items():
+        part.setWhatsThis(f"<p>{why}</p>")
+
+
+def _said(window: MainWindow) -> dict[QWidget, str]:
+    return {
         window.rail: tr(
             "The way from a scan to a result. No step is locked: go back and forth as you like. A green tick "
             "says that a step is done, an amber badge that something there wants a look."
@@ -50,5 +57,3 @@ def explain(window: MainWindow) -> None:
             "What needs your attention, one at a time, with what you can do. Nothing here covers your work."
         ),
     }
-    for part, why in said.items():
-        part.setWhatsThis(f"<p>{why}</p>")

@@ -6,7 +6,6 @@ from __future__ import annotations
 from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QColor,
-    QFocusEvent,
     QIcon,
     QKeyEvent,
     QMouseEvent,
@@ -18,7 +17,8 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QLabel, QLineEdit, QMenu, QSizePolicy, QWidget
 
-from app.dress.theme import font, set_tag, tokens_of
+from app.dress.theme import font, tokens_of
+from app.panels.typed_field import TypedField
 from app.wording.tokens import LINE_COLORS
 from app.wording.words import number, tr
 from core.design_lines import LONGEST_TITLE
@@ -135,7 +135,7 @@ class _Editor(QLineEdit):
             event.accept()  # the list would open the length for typing
 
 
-class StiffnessField(QLineEdit):
+class StiffnessField(TypedField):
     """The stiffness of one line; nothing typed means: as the model. ``entered`` carries a number or None."""
 
     entered = Signal(object)
@@ -152,49 +152,27 @@ class StiffnessField(QLineEdit):
         )
         self.setToolTip(tip.format(low=low, high=number(high, 0)))
         self.setAccessibleName(tr("Stiffness"))
-        self.textEdited.connect(lambda _: set_tag(self, "wrong", False))
 
     def show_stiffness(self, own: float | None, usual: float) -> None:
         """Show a line's own stiffness [1], or faintly the usual one."""
         self.setPlaceholderText(tr("model: {value}").format(value=_plain(usual)))
         self._stiffness = own
-        if not (self.hasFocus() and self.isModified()):
-            self._show()
+        self._follow()
 
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
-            self._enter()
-        elif event.key() == Qt.Key.Key_Escape:
-            self._show()
-        else:
-            super().keyPressEvent(event)
+    def _words(self) -> str:
+        return "" if self._stiffness is None else _plain(self._stiffness)
 
-    def focusOutEvent(self, event: QFocusEvent) -> None:
-        super().focusOutEvent(event)
-        self._enter()
-        self._show()
-
-    def _show(self) -> None:
-        self.setText("" if self._stiffness is None else _plain(self._stiffness))
-        self.setModified(False)
-        set_tag(self, "wrong", False)
-
-    def _enter(self) -> None:
-        if not self.isModified():
-            return
-        text, (low, high) = self.text().strip().replace(",", "."), RANGES["line_stiffness"]
-        try:
-            stiffness = float(text) if text else None
-        except ValueError:
-            stiffness = -1.0
+    def _read(self, text: str) -> float | None:
+        plain, (low, high) = text.strip().replace(",", "."), RANGES["line_stiffness"]
+        stiffness = float(plain) if plain else None
         if stiffness is not None and not low <= stiffness <= high:
-            set_tag(self, "wrong", True)
-            self.selectAll()
-            return
-        self.setModified(False)
-        if stiffness != self._stiffness:
-            self._stiffness = stiffness
-            self.entered.emit(stiffness)
+            raise ValueError(f"no stiffness: {text}")
+        return stiffness
+
+    def _take(self, value: float | None) -> None:
+        if value != self._stiffness:
+            self._stiffness = value
+            self.entered.emit(value)
 
 
 def _plain(value: float) -> str:

@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QSize, Qt, Signal
-from PySide6.QtGui import QFocusEvent, QKeyEvent, QPainter, QPaintEvent
-from PySide6.QtWidgets import QLineEdit
+from PySide6.QtGui import QFocusEvent
 
-from app.dress.theme import font, set_tag, tokens_of
+from app.dress.theme import font
+from app.panels.typed_field import TypedField
 from app.wording.words import number, tr
 from core.lines import RATIO_LIMITS, typed_ratio
 
@@ -27,20 +27,18 @@ def parse_length(text: str, rest_mm: float, whole_mm: float, unit: str = "%") ->
     return ratio
 
 
-class NumberField(QLineEdit):
+class NumberField(TypedField):
     """A number with its unit.
 
-    ``opened`` when typing may begin, ``entered`` (share of the rest length) when another length was typed,
-    ``left`` at Enter or Esc.
+    ``opened`` when typing may begin, ``entered`` (share of the rest length) when another length was typed.
     """
 
     entered = Signal(float)
     opened = Signal()
-    left = Signal()
 
     def __init__(self, unit: str) -> None:
-        super().__init__()
-        self._unit, self._ratio, self._rest_mm, self._whole_mm = unit, 1.0, 1.0, 1.0
+        super().__init__(unit)
+        self._ratio = self._rest_mm = self._whole_mm = 1.0
         self.setFont(font("name" if unit == "%" else "body", tabular=True))
         self.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         self.setProperty("kind", "number")
@@ -48,7 +46,6 @@ class NumberField(QLineEdit):
         self.setFixedSize(self.sizeHint())
         self.setToolTip(tr("Type 94, −6%, −20mm, 692mm or 69.2cm; from 50 to 130 % of the length at rest."))
         self.setAccessibleName(tr("Length in percent") if unit == "%" else tr("Length in millimetres"))
-        self.textEdited.connect(lambda _: set_tag(self, "wrong", False))
 
     def sizeHint(self) -> QSize:
         return QSize(self.fontMetrics().horizontalAdvance("100.0") + self._unit_width() + 15, 24)
@@ -56,8 +53,7 @@ class NumberField(QLineEdit):
     def show_length(self, ratio: float, rest_mm: float, whole_mm: float) -> None:
         """Show a set length, as a share of ``rest_mm`` [1], unless something is being typed."""
         self._ratio, self._rest_mm, self._whole_mm = ratio, rest_mm, whole_mm
-        if not (self.hasFocus() and self.isModified()):
-            self._show_number()
+        self._follow()
 
     def focusInEvent(self, event: QFocusEvent) -> None:
         super().focusInEvent(event)
@@ -66,52 +62,16 @@ class NumberField(QLineEdit):
         if event.reason() in (*_BY_KEY, _FOCUS.MouseFocusReason):
             self.opened.emit()  # not when a window only comes to the front
 
-    def focusOutEvent(self, event: QFocusEvent) -> None:
-        super().focusOutEvent(event)
-        self._enter()
-        self._show_number()
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
-            self._enter()
-            if not self.isModified():
-                self.left.emit()
-        elif event.key() == Qt.Key.Key_Escape:
-            self._show_number()
-            self.left.emit()
-        else:
-            super().keyPressEvent(event)
-
-    def paintEvent(self, event: QPaintEvent) -> None:
-        super().paintEvent(event)
-        painter = QPainter(self)
-        painter.setFont(font("caption"))
-        painter.setPen(tokens_of(self).text_caption)
-        painter.drawText(self.rect().adjusted(0, 1, -7, 0), _RIGHT, self._unit)
-
     def _unit_width(self) -> int:
         return 12 if self._unit == "%" else 21
 
-    def _show_number(self) -> None:
+    def _words(self) -> str:
         value = self._ratio * 100 if self._unit == "%" else self._ratio * self._rest_mm
-        text = number(value).replace(",", "")
-        if text != self.text():
-            self.setText(text)
-        self.setModified(False)
-        set_tag(self, "wrong", False)
+        return number(value).replace(",", "")
 
-    def _enter(self) -> None:
-        if not self.isModified():
-            return
-        try:
-            ratio = parse_length(self.text(), self._rest_mm, self._whole_mm, self._unit)
-        except ValueError:
-            set_tag(self, "wrong", True)
-            self.selectAll()
-            return
-        self._ratio = ratio
-        self._show_number()
-        self.entered.emit(ratio)
+    def _read(self, text: str) -> float:
+        return parse_length(text, self._rest_mm, self._whole_mm, self._unit)
 
-
-_RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
+    def _take(self, value: float) -> None:
+        self._ratio = value
+        self.entered.emit(value)
