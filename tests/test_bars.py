@@ -181,6 +181,7 @@ def test_the_strip_says_what_to_do_about_a_fold(strip: Strip) -> None:
     assert strip.height() == high
     strip.set_folded(True)
     assert [label.isVisible() for label in hints] == [False, True]
+    assert "Mid-bust longer." in hints[1].toolTip(), "in a narrow window its end is cut"
 
 
 @pytest.mark.parametrize("settling", [False, True])

@@ -42,6 +42,16 @@ def sentence(text: str = "", role: str = "secondary") -> QLabel:
     return result
 
 
+class ElidedLabel(QLabel):
+    """Text on one line that ends in dots where there is no room for all of it."""
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        painter.setPen(self.palette().color(self.foregroundRole()))
+        shown = painter.fontMetrics().elidedText(self.text(), Qt.TextElideMode.ElideRight, self.width())
+        painter.drawText(self.rect(), Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, shown)
+
+
 def hairline(vertical: bool = False) -> QFrame:
     """Return a line of one pixel."""
     result = QFrame()

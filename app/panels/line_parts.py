@@ -15,8 +15,9 @@ from PySide6.QtGui import (
     QPixmap,
     QResizeEvent,
 )
-from PySide6.QtWidgets import QLabel, QLineEdit, QMenu, QSizePolicy, QWidget
+from PySide6.QtWidgets import QLineEdit, QMenu, QSizePolicy, QWidget
 
+from app.dress.parts import ElidedLabel
 from app.dress.theme import font, tokens_of
 from app.panels.typed_field import TypedField
 from app.wording.tokens import LINE_COLORS
@@ -51,7 +52,7 @@ class LineChip(QWidget):
         painter.drawRoundedRect(QRectF(0.75, (18.0 - high) / 2.0, 12.5, high), round_, round_)
 
 
-class LineTitle(QLabel):
+class LineTitle(ElidedLabel):
     """The name of a line, where there is no room for it its beginning; ``renamed`` when another was typed.
 
     A double click, or ``begin``, opens it for typing.
@@ -84,12 +85,6 @@ class LineTitle(QLabel):
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         self._fit()
-
-    def paintEvent(self, event: QPaintEvent) -> None:
-        painter = QPainter(self)
-        painter.setPen(self.palette().color(self.foregroundRole()))
-        shown = painter.fontMetrics().elidedText(self.text(), Qt.TextElideMode.ElideRight, self.width())
-        painter.drawText(self.rect(), Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, shown)
 
     def _fit(self) -> None:
         """Lay the editor over the row's head: a long name needs more room than it has while it stands."""

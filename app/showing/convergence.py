@@ -10,8 +10,8 @@ from PySide6.QtCore import QPoint, QSize, Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QMenu, QSizePolicy, QVBoxLayout, QWidget
 
-from app.dress.parts import Segment, ToolButton, sentence
-from app.dress.theme import label
+from app.dress.parts import ElidedLabel, Segment, ToolButton, sentence
+from app.dress.theme import font, label
 from app.showing.live_plot import LivePlot
 from app.showing.plot_canvas import Turns
 from app.showing.plot_curves import Curve, Event
@@ -153,7 +153,8 @@ class Strip(QWidget):
                 each.setVisible(bool(text))
         self._hint.setText(verdict.hint)
         said = "   ".join(f"{name} {value}" for name, value in pairs[:2])
-        self._said.setText(f"{verdict.pace}     {said}     {verdict.hint}")
+        self._said.setText(f"{verdict.pace}     {said}     {verdict.hint}".rstrip())
+        self._said.setToolTip(f"<p>{verdict.hint}</p>" if verdict.hint else "")
 
     def set_control(self, control: str) -> None:
         """Show which of ``CONTROLS`` is on; nothing is emitted."""
@@ -254,7 +255,9 @@ class Strip(QWidget):
         row = QHBoxLayout(self._line)
         row.setContentsMargins(14, 4, 6, 4)
         row.setSpacing(12)
-        self._said = label("", "secondary", tabular=True)
+        self._said = ElidedLabel()
+        self._said.setFont(font("secondary", tabular=True))
+        self._said.setProperty("role", "secondary")
         self._said.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         unfold = ToolButton("caret-up", tr("Show the plots (Ctrl+J)"), size=14, room=26)
         unfold.clicked.connect(lambda: self.set_folded(False))
