@@ -11,29 +11,26 @@ from app.asking.housekeeping import Housekeeping
 from app.asking.jobs import Jobs
 from app.asking.session import Session
 from app.desks.desk import Desk
-from app.desks.help_desk import HelpDesk
-from app.desks.history_desk import HistoryDesk
 from app.desks.job_desk import JobDesk
 from app.desks.landmark_desk import LandmarkDesk
-from app.desks.limits_desk import LimitsDesk
-from app.desks.line_drawing import LineDrawing
-from app.desks.line_maker import LineMaker
-from app.desks.line_routing import LineRouting
-from app.desks.lines_desk import LinesDesk
-from app.desks.map_desk import MapDesk
 from app.desks.plot_desk import PlotDesk
-from app.desks.preferences_desk import PreferencesDesk
-from app.desks.preset_desk import PresetDesk
-from app.desks.recovery_desk import RecoveryDesk
-from app.desks.rescue import Rescue
-from app.desks.safe_desk import SafeDesk
-from app.desks.safe_mode import SafeMode
 from app.desks.scan_desk import ScanDesk
-from app.desks.section_desk import SectionDesk
 from app.desks.start_desk import StartDesk
-from app.desks.variant_desk import VariantDesk
-from app.desks.view_desk import ViewDesk
+from app.helping.help_desk import HelpDesk
+from app.helping.preferences_desk import PreferencesDesk
+from app.helping.rescue import Rescue
+from app.helping.safe_mode import SafeMode
+from app.keeping.history_desk import HistoryDesk
+from app.keeping.keeping_desk import KeepingDesk
+from app.keeping.recovery_desk import RecoveryDesk
+from app.keeping.variant_desk import VariantDesk
 from app.layout import Layout
+from app.lining.limits_desk import LimitsDesk
+from app.lining.line_drawing import LineDrawing
+from app.lining.line_maker import LineMaker
+from app.lining.line_routing import LineRouting
+from app.lining.lines_desk import LinesDesk
+from app.lining.preset_desk import PresetDesk
 from app.panels.history import HistoryPanel
 from app.panels.inspector import Inspector
 from app.panels.landmarks import LandmarksPanel
@@ -47,6 +44,9 @@ from app.panels.status import StatusBar
 from app.panels.top_bar import TopBar
 from app.showing.convergence import Strip
 from app.view_area import ViewArea
+from app.viewing.map_desk import MapDesk
+from app.viewing.section_desk import SectionDesk
+from app.viewing.view_desk import ViewDesk
 from app.wiring import connect
 from app.wording.words import tr
 
@@ -78,7 +78,7 @@ class MainWindow(QMainWindow):
         self.job_desk, self.limits_desk = JobDesk(self), LimitsDesk(self)
         self.landmark_desk, self.scan_desk = LandmarkDesk(self), ScanDesk(self)
         self.desk = Desk(self)
-        self.safe_desk, self.recovery_desk = SafeDesk(self), RecoveryDesk(self)
+        self.keeping_desk, self.recovery_desk = KeepingDesk(self), RecoveryDesk(self)
         self.history_desk, self.variant_desk = HistoryDesk(self, self.history), VariantDesk(self)
         self.map_desk, self.section_desk = MapDesk(self), SectionDesk(self)
         self.start_desk, self.plot_desk = StartDesk(self), PlotDesk(self)
@@ -117,7 +117,7 @@ class MainWindow(QMainWindow):
 
     def rescue(self) -> str:
         """Keep the design aside after a fault; returns where, or an empty text if it was not kept."""
-        return self.safe_desk.rescue()
+        return self.keeping_desk.rescue()
 
     def focusNextPrevChild(self, next: bool) -> bool:  # noqa: N802
         """Lead the keyboard in the order that eyes read, whenever the parts were made."""
@@ -149,7 +149,7 @@ class MainWindow(QMainWindow):
         self.recovery_desk.close()
         self.jobs.close()
         self.session.close()
-        self.safe_desk.close()
+        self.keeping_desk.close()
         self.view.close_view()
         self.housekeeping.close()
         self.rescuer.close()

@@ -10,9 +10,6 @@ from PySide6.QtGui import QAction, QImage
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.asking.jobs import Job, Jobs
-from app.desks.body_view import BodyView
-from app.desks.comparison import Comparison
-from app.desks.pin_board import PinBoard
 from app.panels.busy import BusyCard
 from app.panels.question import QuestionCard
 from app.panels.view_tools import CompareTools, ViewTools
@@ -20,6 +17,9 @@ from app.seeing.body import bake_occlusion
 from app.showing.floating import Floating
 from app.showing.panes import Panes
 from app.showing.viewport import Viewport
+from app.viewing.beside import Beside
+from app.viewing.body_view import BodyView
+from app.viewing.pin_board import PinBoard
 from app.wording.words import tr
 from core.body import Body
 from core.landmark import Landmark
@@ -30,7 +30,7 @@ from core.mesh import Floats
 class ViewArea(QWidget):
     """Shows frames; ``is_shaded`` says whether the soft shadows of the body have been worked out.
 
-    ``viewport`` is the view that is always there; ``comparison`` says what is seen beside it,
+    ``viewport`` is the view that is always there; ``beside`` says what is seen beside it,
     and ``compared`` that this has changed.
     """
 
@@ -46,7 +46,7 @@ class ViewArea(QWidget):
         self.compare = CompareTools(self)
         self.busy, self.question = BusyCard(self), QuestionCard(self)
         self._main = BodyView(self.viewport)
-        self.comparison = Comparison(self._main, self.panes)
+        self.beside = Beside(self._main, self.panes)
         self.pins = PinBoard([self.viewport])
         self._shades: tuple[Body, Floats] | None = None
         column = QVBoxLayout(self)
@@ -78,7 +78,7 @@ class ViewArea(QWidget):
     def show_frame(self, frame: Frame) -> None:
         """Bring all that is seen of the document up to date."""
         first = frame.stages.body is not self._main.body
-        for body in self.comparison.live:
+        for body in self.beside.live:
             body.show_frame(frame)
         if first:
             self._show_new(frame.stages.body)
@@ -112,13 +112,13 @@ class ViewArea(QWidget):
 
     def select_line(self, name: str) -> None:
         """Put a casing round one line."""
-        for body in self.comparison.bodies:
+        for body in self.beside.bodies:
             body.select_line(name)
 
     def set_line_visible(self, name: str, visible: bool) -> None:
         """Show or hide one line's band."""
         hidden = self.hidden_lines - {name} if visible else self.hidden_lines | {name}
-        for body in self.comparison.bodies:
+        for body in self.beside.bodies:
             body.hide_lines(hidden)
 
     def set_layer(self, layer: str, shown: bool) -> None:
@@ -131,12 +131,12 @@ class ViewArea(QWidget):
         elif layer == "ghost":
             self._main.set_layer(layer, shown)
         else:
-            for body in self.comparison.bodies:
+            for body in self.beside.bodies:
                 body.set_layer(layer, shown)
 
     def set_material(self, material: str) -> None:
         """Paint the body as one of ``app.seeing.material.MATERIALS``."""
-        for body in self.comparison.bodies:
+        for body in self.beside.bodies:
             body.viewport.scene.set_material(material)
             body.viewport.request_draw()
 
@@ -154,26 +154,26 @@ class ViewArea(QWidget):
     @property
     def after(self) -> bool:
         """Whether the reshaped body is seen."""
-        return self.comparison.way != "before"
+        return self.beside.way != "before"
 
     def set_after(self, after: bool) -> None:
         """Show the reshaped body alone, or the body at rest."""
         self.compare_by("after" if after else "before")
 
     def compare_by(self, way: str) -> None:
-        """Look at before and after in one of ``app.desks.comparison.WAYS``."""
-        self.comparison.show(way)
+        """Look at before and after in one of ``app.viewing.beside.WAYS``."""
+        self.beside.show(way)
         self._beside_changed()
 
     def show_variants(self, variants: Sequence[tuple[str, Frame | None]]) -> None:
         """Show variants of the design side by side; the one without a frame is the one that is worked on."""
-        self.comparison.show_variants(variants)
+        self.beside.show_variants(variants)
         self._beside_changed()
 
     def _beside_changed(self) -> None:
-        self.compare.set_way(self.comparison.way)
-        self.pins.set_viewports([body.viewport for body in self.comparison.live])
-        for body in self.comparison.bodies[1:]:
+        self.compare.set_way(self.beside.way)
+        self.pins.set_viewports([body.viewport for body in self.beside.live])
+        for body in self.beside.bodies[1:]:
             self._shade_or_bake(body)
         self.compared.emit()
 
@@ -216,7 +216,7 @@ class ViewArea(QWidget):
     def _shade(self, body: Body, occlusion: Any) -> None:
         if body is self._main.body:
             self._shades = body, occlusion
-        for each in self.comparison.bodies:
+        for each in self.beside.bodies:
             each.shade(body, occlusion)
 
     def _shade_or_bake(self, beside: BodyView) -> None:

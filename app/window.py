@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from app.application import application, log_kept
 from app.asking.session import Session
-from app.desks.recent import file_at_start, is_first_start
+from app.keeping.recent import file_at_start, is_first_start
 from app.showing.graphics import begin_graphics, graphics_work
 from app.wording.display import has_display
 from app.wording.samples import sample_design

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.desks.recent import fill_recent_menu
+from app.keeping.recent import fill_recent_menu
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -65,7 +65,7 @@ def _connect_session(window: MainWindow) -> None:
 def _connect_safe(window: MainWindow) -> None:
     session, safe, recovery, history = (
         window.session,
-        window.safe_desk,
+        window.keeping_desk,
         window.recovery_desk,
         window.history_desk,
     )

@@ -22,7 +22,7 @@ sys.path.insert(0, str(ROOT))
 from PySide6.QtCore import QCoreApplication, QObject, QSettings, QTimer  # noqa: E402
 
 from app.asking.session import Session  # noqa: E402
-from app.desks.safe_desk import SafeDesk  # noqa: E402
+from app.keeping.keeping_desk import KeepingDesk  # noqa: E402
 from core.backups import backups  # noqa: E402
 from core.design import Design, ScanSource  # noqa: E402
 from core.document import Document  # noqa: E402
@@ -121,7 +121,7 @@ def work(folder: Path) -> None:
     session.frame = SimpleNamespace(stages=SimpleNamespace(scan=ScanFile("body.ply", SCAN)))
     chance, number = random.Random(), _last(folder / "journal")
     session.document = Document.of(Design(ScanSource("/scans/body.ply"), unknown={"n": number}))
-    desk = SafeDesk(window)
+    desk = KeepingDesk(window)
     session.design_changed.connect(desk.note)
     session.saved.connect(desk.show_saved)
     session.undo_stack.cleanChanged.connect(desk.note)

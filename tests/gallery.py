@@ -22,7 +22,6 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.desks.present_scan import GROUPS, kind_of, landmark_title
 from app.dress.theme import apply_theme, tokens_of
 from app.panels.landmarks import LandmarksPanel, LandmarkView
 from app.panels.lines import LinesPanel, LineView
@@ -34,6 +33,7 @@ from app.panels.scan import ScanPanel, ScanView
 from app.panels.status import StatusBar
 from app.panels.top_bar import TopBar
 from app.panels.view_tools import CompareTools, ViewTools
+from app.presenting.scan import GROUPS, kind_of, landmark_title
 from app.showing.convergence import Strip
 from app.showing.tracks import Exact, Track
 from app.wording import words

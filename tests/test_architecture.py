@@ -19,7 +19,18 @@ PAGE = (ROOT / "ARCHITECTURE.md").read_text("utf-8")
 # The rooms stand in ARCHITECTURE.md: `folder/` holds what follows in its row, but for **`nouns`**.
 CORE_FLOORS = ("ground", "reading", "cleaning", "standing", "slicing", "finding", "fitting", "measuring")
 CORE_FLOORS += ("mechanics", "solving", "document")
-APP_FLOORS = ("seeing", "wording", "printing", "asking", "dress", "showing", "roof")
+APP_FLOORS = (
+    "seeing",
+    "wording",
+    "printing",
+    "asking",
+    "dress",
+    "showing",
+    "presenting",
+    "keeping",
+    "viewing",
+)
+APP_FLOORS += ("helping", "desks", "lining", "roof")
 
 
 def rooms_of(floor: str) -> list[str]:
@@ -36,6 +47,7 @@ def rooms_of(floor: str) -> list[str]:
 FLOORS = {floor: rooms_of(floor) for floor in CORE_FLOORS + APP_FLOORS}
 ANATOMY = CORE_FLOORS[1:8]
 NUMBERS = {"numpy", "scipy"}
+QT = {"PySide6.QtCore", "PySide6.QtGui", "PySide6.QtWidgets"}
 OUTSIDE = {
     "ground": NUMBERS | {"numba"},
     **dict.fromkeys(ANATOMY, NUMBERS),
@@ -49,6 +61,12 @@ OUTSIDE = {
     "dress": {"PySide6.QtCore", "PySide6.QtGui", "PySide6.QtWidgets", "PySide6.QtSvg"},
     "showing": {"numpy", "pyvista", "pyvistaqt", "pyqtgraph", "vtkmodules", "PySide6.QtCore", "PySide6.QtGui"}
     | {"PySide6.QtWidgets", "PySide6.QtOpenGLWidgets"},
+    "presenting": {"numpy"},
+    "keeping": QT,
+    "viewing": QT | {"numpy"},
+    "helping": QT | {"PySide6", "platformdirs"},
+    "desks": QT | {"PySide6.QtSvg"},
+    "lining": QT | {"numpy"},
     "roof": NUMBERS
     | {"PySide6", "pyvista", "pyvistaqt", "platformdirs", "threadpoolctl", "PySide6.QtCore", "PySide6.QtGui"}
     | {"PySide6.QtWidgets", "PySide6.QtPrintSupport", "PySide6.QtSvg"},

@@ -14,10 +14,10 @@ from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 from window_tools import Script, drag, run_main, settled
 
-import app.desks.safe_mode
+import app.helping.safe_mode
 from app.asking.session import Session
-from app.desks.safe_mode import SafeMode
 from app.dress.sheet import Sheet
+from app.helping.safe_mode import SafeMode
 from app.main_window import MainWindow
 from app.panels.about import AboutSheet, DiagnosticsSheet
 from app.panels.commands import CommandSheet
@@ -215,7 +215,7 @@ def begun() -> int:
 def test_only_an_end_while_the_driver_is_at_work_counts_as_its_fault(
     qtbot: QtBot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(app.desks.safe_mode, "_DRAWN_FOR", 1)
+    monkeypatch.setattr(app.helping.safe_mode, "_DRAWN_FOR", 1)
     window = QWidget()
     qtbot.addWidget(window)
     window.session = Session(window)

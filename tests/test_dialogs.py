@@ -8,7 +8,7 @@ import pytest
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.desks.dialogs import ask_save
+from app.keeping.dialogs import ask_save
 
 KINDS = "PLY (*.ply);;OBJ (*.obj);;STL (*.stl)"
 

@@ -13,8 +13,8 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 from window_tools import Script, points, run_main, settled
 
-from app.desks import line_maker
-from app.desks.line_dialog import LineDialog
+from app.lining import line_maker
+from app.lining.line_dialog import LineDialog
 from app.main_window import MainWindow
 from core.design_lines import OwnLine
 from core.own_lines import own_line, ready_made

@@ -9,9 +9,9 @@ from PySide6.QtWidgets import QApplication
 from window_tools import Script, drag, run_main, settled, undrawn
 
 from app.asking.editing import Editing
-from app.desks.present_lines import titled
 from app.main_window import MainWindow
 from app.panels.length_groove import Feasible
+from app.presenting.lines import titled
 from core.design import Design, ScanSource
 from core.design_lines import LineTraits
 from core.document import Document

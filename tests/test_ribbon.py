@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from app.desks.present import bands
+from app.presenting.frame import bands
 from app.seeing.ribbon import NO_BACK, Surface, build_casing, build_ribbon, centre_line
 from core.mesh import Mesh
 from core.pipeline import Stages

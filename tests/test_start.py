@@ -13,7 +13,7 @@ from window_tools import Script, run_main, settled
 
 import app.desks.desk
 import app.desks.start_desk
-from app.desks.recent import day_of, file_at_start, recent_files, remember_file
+from app.keeping.recent import day_of, file_at_start, recent_files, remember_file
 from app.main_window import MainWindow
 from app.panels.project_card import ProjectCard
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from app.desks.present import StripVerdict, strip_verdict
+from app.presenting.frame import StripVerdict, strip_verdict
 from core.comparison import Comparison
 from core.live import make_frame
 from core.pipeline import Stages, build, targets_of

@@ -14,11 +14,11 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QApplication
 from window_tools import Script, run_main, settled
 
-from app.desks import flip_key
 from app.dress.wishes import wish
 from app.main_window import MainWindow
 from app.showing.viewport import Viewport
 from app.showing.wipe import REACH
+from app.viewing import flip_key
 from core.live import Frame
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -39,7 +39,7 @@ def test_before_and_after_are_flipped_wiped_and_put_side_by_side(monkeypatch: py
         variants_are_put_side_by_side(window, first)
         key(window, Qt.Key.Key_D)
         key(window, Qt.Key.Key_D)
-        assert window.view.comparison.way == "after"
+        assert window.view.beside.way == "after"
         yield lambda: nothing_is_left_of(beside)
         assert window.view.panes.viewports == (window.view.viewport,)
 
@@ -79,10 +79,10 @@ def the_space_bar_flips_and_lets_peek(window: MainWindow, monkeypatch: pytest.Mo
     monkeypatch.setattr(flip_key, "HOLD", 0)  # now every press is a long one
     key(window, Qt.Key.Key_W)
     QTest.keyPress(window, space)
-    assert view.comparison.way == "before"
+    assert view.beside.way == "before"
     assert not is_moved()
     QTest.keyRelease(window, space)
-    assert view.comparison.way == "wipe"
+    assert view.beside.way == "wipe"
     key(window, Qt.Key.Key_W)
     the_space_bar_presses_a_button_that_was_reached_by_keyboard(window)
     key(window, Qt.Key.Key_G)
@@ -101,7 +101,7 @@ def the_space_bar_presses_a_button_that_was_reached_by_keyboard(window: MainWind
     assert button is not first
     QTest.keyPress(button, Qt.Key.Key_Space)
     assert button.isDown()
-    assert window.view.comparison.way == "after"
+    assert window.view.beside.way == "after"
     button.setDown(False)
     window.view.viewport.setFocus()
 
@@ -118,7 +118,7 @@ def a_wipe_shows_both_pictures_with_a_handle_between(window: MainWindow) -> None
     key(window, Qt.Key.Key_W)
     assert view.compare.actions_by_name["wipe"].isChecked()
     assert handle.hasFocus()
-    rest, width = view.comparison.bodies[1].viewport, panes.width()
+    rest, width = view.beside.bodies[1].viewport, panes.width()
     assert rest.scene.material == "plaster"
     drag_handle(window, round(0.42 * width))
     line = round(width * handle.share())

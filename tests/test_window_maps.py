@@ -11,7 +11,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from window_tools import Script, drag, run_main, settled
 
-import app.desks.section_desk as section_module
+import app.viewing.section_desk as section_module
 from app.main_window import MainWindow
 from app.seeing.material import look_of
 
@@ -180,7 +180,7 @@ def test_the_section_plane_cuts_before_and_after(answered: Path) -> None:
         written = [float(row["x_mm"]) for row in rows if row["body"] == "after"]
         assert written == pytest.approx(section.curves["after"][0].places[:, 0].tolist(), abs=1e-3)
         window.view.compare_by("wipe")
-        beside = window.view.comparison.bodies[1].viewport.scene
+        beside = window.view.beside.bodies[1].viewport.scene
         assert np.abs(beside.section.curve[:, 2] - right[2] + 30.0).max() < 0.3  # cut at rest there
         window.view.set_after(True)
         QTest.keyClick(window, Qt.Key.Key_P)

@@ -15,8 +15,8 @@ from test_window_scan import doubtful
 from window_tools import Script, drag, run_main, settled
 
 import app.desks.desk
-import app.desks.limits_desk
 import app.desks.scan_desk
+import app.lining.limits_desk
 import app.view_area
 import core.body
 from app.asking.jobs import Jobs
@@ -89,7 +89,7 @@ def test_an_export_is_named_and_can_be_left_by_card_key_and_status_bar(
 
 def test_limits_come_beside_the_window_and_are_those_of_the_core(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[str] = []
-    limits_of = app.desks.limits_desk.limits_of
+    limits_of = app.lining.limits_desk.limits_of
 
     def counted(stages: Any, name: str, progress: Progress) -> Any:
         asked.append(name)
@@ -102,7 +102,7 @@ def test_limits_come_beside_the_window_and_are_those_of_the_core(monkeypatch: py
     def known(window: MainWindow) -> Callable[[], bool]:
         return lambda: settled(window)() and all(each and not each.stale for each in shown(window).values())
 
-    monkeypatch.setattr(app.desks.limits_desk, "limits_of", counted)
+    monkeypatch.setattr(app.lining.limits_desk, "limits_of", counted)
 
     def script(window: MainWindow) -> Script:
         yield known(window)
@@ -133,7 +133,7 @@ def test_limits_come_beside_the_window_and_are_those_of_the_core(monkeypatch: py
 
 def test_an_edit_ends_what_was_worked_out_for_the_design_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
     left: list[str] = []
-    monkeypatch.setattr(app.desks.limits_desk, "limits_of", endless(left))
+    monkeypatch.setattr(app.lining.limits_desk, "limits_of", endless(left))
     monkeypatch.setattr(app.view_area, "bake_occlusion", endless(left))
 
     def script(window: MainWindow) -> Script:

@@ -10,19 +10,19 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QTimer
 
-from app.desks.dialogs import ask_about_changes, ask_open, ask_save
-from app.desks.present import (
+from app.keeping.dialogs import ask_about_changes, ask_open, ask_save
+from app.keeping.loss_dialogs import ask_overwrite
+from app.keeping.project_picture import project_picture
+from app.keeping.recent import remember_file
+from app.panels.notice import FILES, REFUSED
+from app.presenting.frame import (
     facts,
     kept_volume,
     measure_views,
     strip_verdict,
 )
-from app.desks.present_lines import titled
-from app.desks.present_run import exact_answer, tracks
-from app.desks.project_picture import project_picture
-from app.desks.recent import remember_file
-from app.desks.safe_dialogs import ask_overwrite
-from app.panels.notice import FILES, REFUSED
+from app.presenting.lines import titled
+from app.presenting.run import PLOT_INTERVAL, exact_answer, tracks
 from app.wording.samples import sample_design
 from app.wording.words import tr
 from core.design import Design
@@ -33,9 +33,6 @@ from core.report import warnings
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
-
-PLOT_INTERVAL = 100
-"""Milliseconds between two pictures of plots and figures: the body is what has to follow the hand."""
 
 
 class Desk(QObject):

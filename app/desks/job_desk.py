@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 
-from app.desks.present_scan import work_steps, work_words
+from app.presenting.scan import work_steps, work_words
 
 if TYPE_CHECKING:
     from app.asking.jobs import Job

@@ -10,8 +10,8 @@ from PySide6.QtCore import QEvent, QObject, QSettings, Qt, QTimer
 from PySide6.QtGui import QCursor, QKeyEvent
 from PySide6.QtWidgets import QToolTip
 
-from app.desks.present_scan import kind_of, landmark_title, landmark_views, other_side
 from app.dress.theme import tone_of
+from app.presenting.scan import kind_of, landmark_title, landmark_views, other_side
 from app.wording.words import say, tr
 from core.body import Body
 from core.design import Design

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QSettings
 
-from app.desks.dialogs import ask_save
 from app.desks.plot_figure import figure_bytes
-from app.desks.present_run import table_of
 from app.dress.parts import ToolButton
+from app.keeping.dialogs import ask_save
+from app.presenting.run import table_of
 from app.showing.plot_curves import Event
 from app.wording.words import tr
 from core.design import Design

@@ -10,10 +10,10 @@ from PySide6.QtCore import QObject
 from PySide6.QtGui import QColor, QImage
 
 from app.asking.jobs import Job
-from app.desks.present_scan import scan_view
 from app.dress.theme import tokens_of
 from app.panels.notice import REFUSED
 from app.panels.question import PICTURE, Answer
+from app.presenting.scan import scan_view
 from app.seeing.portrait import Picture
 from app.seeing.stage import LOOKS
 from app.seeing.ways import Way, pictures

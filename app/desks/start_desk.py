@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QEvent, QObject
 from PySide6.QtGui import QDragEnterEvent
 
-from app.desks.dialogs import ask_open
-from app.desks.recent import forget_file, project_views, remember_file
-from app.desks.tour import Tour
+from app.helping.tour import Tour
+from app.keeping.dialogs import ask_open
+from app.keeping.recent import forget_file, project_views, remember_file
 from app.panels.drop_zone import DropVeil
 from app.panels.start_page import StartPage
 from app.wording.samples import sample_path

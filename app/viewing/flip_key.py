@@ -6,8 +6,8 @@ from PySide6.QtCore import QCoreApplication, QElapsedTimer, QEvent, QObject, Qt
 from PySide6.QtGui import QAction, QKeyEvent
 from PySide6.QtWidgets import QAbstractButton, QApplication, QWidget
 
-from app.desks.comparison import WAYS
 from app.view_area import ViewArea
+from app.viewing.beside import WAYS
 
 HOLD = 350
 """Milliseconds from which on a pressed key is held and no longer tapped."""
@@ -22,7 +22,7 @@ class FlipKey(QObject):
         self._former = ""
         self._held = QElapsedTimer()
         flip.setAutoRepeat(False)
-        flip.triggered.connect(lambda: view.set_after(view.comparison.way == "before"))
+        flip.triggered.connect(lambda: view.set_after(view.beside.way == "before"))
         window.installEventFilter(self)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
@@ -40,7 +40,7 @@ class FlipKey(QObject):
         return False
 
     def _press(self) -> None:
-        self._former = self._view.comparison.way
+        self._former = self._view.beside.way
         self._held.start()
         _everything().installEventFilter(self)  # until the key is let go: this is not cheap
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Qt, QTimer
 from PySide6.QtGui import QImage
 
-from app.desks.present import kept_volume
 from app.panels.history import HistoryPanel
 from app.panels.picture_list import PictureRow
+from app.presenting.frame import kept_volume
 from app.showing.verdict_chip import state_title
 from app.wording.words import number, tr
 from core.design import Design

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 
-from app.desks.flip_key import FlipKey
 from app.dress.wishes import wish, wish_for
+from app.viewing.flip_key import FlipKey
 from app.wording.words import tr
 
 if TYPE_CHECKING:

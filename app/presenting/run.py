@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.desks.present_lines import line_title
+from app.presenting.lines import line_title
 from app.showing.tracks import Exact, Track
 from app.wording.words import tr
 from core.live import Frame
@@ -14,6 +14,9 @@ from core.solver import Marks, Record
 
 PLOTTED_TURNS = 600
 """Turns that the live plot looks back."""
+
+PLOT_INTERVAL = 100
+"""Milliseconds between two pictures of plots and figures: the body is what has to follow the hand."""
 
 
 def tracks(frame: Frame) -> dict[str, Track]:

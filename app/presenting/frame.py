@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
-from app.desks.present_lines import band_width, line_colours, line_title
 from app.panels.result import MeasureView
+from app.presenting.lines import band_width, line_colours, line_title
 from app.seeing.bands import Band
 from app.seeing.ribbon import NO_BACK
 from app.showing.verdict_chip import state_title

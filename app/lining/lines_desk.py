@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 
-from app.desks.present_lines import line_views, pair_title, row_title
 from app.panels.length_groove import Feasible
+from app.presenting.lines import line_views, pair_title, row_title
 from app.wording.words import number, tr
 from core.design import Design
 from core.design_lines import partner_of

@@ -60,7 +60,7 @@ class VariantDesk(QObject):
             button.setToolTip(text.format(name=name, shown=shown))
             button.setAccessibleName(button.toolTip())
             button.setText(name if name in there else f"+{name}")
-        if self._window.view.comparison.way == "variants" and self._beside != self._others():
+        if self._window.view.beside.way == "variants" and self._beside != self._others():
             self.show_side_by_side()
 
     def show_side_by_side(self) -> None:
@@ -71,7 +71,7 @@ class VariantDesk(QObject):
         others = self._others()
         if not others:
             self._beside = None
-            if self._window.view.comparison.way == "variants":
+            if self._window.view.beside.way == "variants":
                 self._window.view.compare_by("after")
             else:
                 said = (
@@ -97,7 +97,7 @@ class VariantDesk(QObject):
         self._job = None
         self._solved.clear()
         self._beside = None
-        if self._window.view.comparison.way == "variants":
+        if self._window.view.beside.way == "variants":
             self._window.view.compare_by("after")
         self.show_variants()
 

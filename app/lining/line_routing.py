@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtCore import QObject, QPointF
 
-from app.desks.present_lines import line_colours, row_title
-from app.desks.sketching import Sketching
+from app.lining.sketching import Sketching
+from app.presenting.lines import line_colours, row_title
 from app.wording.words import tr
 from core.design import Design
 from core.design_lines import OwnLine, partner_of

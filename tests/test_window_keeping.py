@@ -15,8 +15,8 @@ from test_window_work import endless
 from window_tools import Script, drag, points, run_main, settled
 
 import app.desks.desk
-import app.desks.recovery_desk
-import app.desks.variant_desk
+import app.keeping.recovery_desk
+import app.keeping.variant_desk
 from app.main_window import MainWindow
 from core.backups import backups
 from core.project import open_project
@@ -27,10 +27,10 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 
 def crash(window: MainWindow) -> None:
     """Leave behind what a window leaves that is killed: its folder, with nobody who holds it."""
-    recovery = window.safe_desk._recovery
+    recovery = window.keeping_desk._recovery
     assert recovery is not None
     recovery.let_go()
-    window.safe_desk._recovery = None
+    window.keeping_desk._recovery = None
 
 
 def test_a_crash_loses_nothing_and_the_next_start_offers_it(
@@ -47,9 +47,9 @@ def test_a_crash_loses_nothing_and_the_next_start_offers_it(
         yield path.exists
         drag(window, "mid-bust", -20)
         yield settled(window)
-        yield lambda: window.safe_desk._kept is window.session.document
+        yield lambda: window.keeping_desk._kept is window.session.document
         crash(window)
-        window.safe_desk._clock.stop()
+        window.keeping_desk._clock.stop()
         seen.append((window.session.document, points(window).copy()))
 
     def again(window: MainWindow) -> Script:
@@ -65,8 +65,8 @@ def test_a_crash_loses_nothing_and_the_next_start_offers_it(
         assert window.session.design.lines == document.design.lines
         assert np.abs(points(window) - body).max() < 0.3
         assert "*" in window.windowTitle(), "it is as unsaved as it was"
-        assert window.safe_desk._recovery is not None
-        assert list(recovery_folder().iterdir()) == [window.safe_desk._recovery.folder]
+        assert window.keeping_desk._recovery is not None
+        assert list(recovery_folder().iterdir()) == [window.keeping_desk._recovery.folder]
         window.desk.save()
         assert window.session.finish_saving()
         assert open_project(path).design.lines == document.design.lines
@@ -80,7 +80,7 @@ def test_a_crash_loses_nothing_and_the_next_start_offers_it(
 
 
 def test_what_is_not_restored_stays_until_it_is_discarded(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(app.desks.recovery_desk, "may_discard", lambda *_: True)
+    monkeypatch.setattr(app.keeping.recovery_desk, "may_discard", lambda *_: True)
 
     def first(window: MainWindow) -> Script:
         yield settled(window)
@@ -167,7 +167,7 @@ def test_two_windows_and_a_change_from_outside_are_told(
         window.desk.save()
         assert window.session.finish_saving()
         assert asked == ["lotte"], "its own version is no surprise"
-        window.safe_desk._lock.release()
+        window.keeping_desk._lock.release()
         assert other.tryLock(0)
         window.desk.open_file(str(path))
         yield lambda: window.notices.notice() is not None
@@ -234,23 +234,23 @@ def test_variants_are_chosen_undone_and_seen_side_by_side(
         assert list(session.document.variants) == ["A"]
         session.undo_stack.setIndex(2)
         window.variant_desk.show_side_by_side()
-        yield lambda: area.comparison.way == "variants"
-        assert len(area.comparison.bodies) == 2
-        beside = area.comparison.bodies[1].frame
+        yield lambda: area.beside.way == "variants"
+        assert len(area.beside.bodies) == 2
+        beside = area.beside.bodies[1].frame
         assert beside is not None
         assert beside.stages.design == session.document.variants["A"]
         assert beside.verdict.state == "settled"
         segment.button("A").click()
-        yield lambda: area.comparison.bodies[1].frame.stages.design == short
+        yield lambda: area.beside.bodies[1].frame.stages.design == short
         assert session.save(str(tmp_path / "ab.busk"), None)
         assert session.finish_saving()
         assert list(open_project(tmp_path / "ab.busk").variants) == ["A", "B"]
         yield from the_history_goes_back_in_the_variant_of_a_result(window)
         session.remove_variant("B")
-        assert area.comparison.way == "after"
+        assert area.beside.way == "after"
         window.variant_desk.choose("B")
         window.variant_desk.choose("A")
-        monkeypatch.setattr(app.desks.variant_desk, "settled_frame", endless([]))
+        monkeypatch.setattr(app.keeping.variant_desk, "settled_frame", endless([]))
         window.variant_desk._solved.clear()
         window.variant_desk.show_side_by_side()
         assert len([job for job in window.jobs.at_work() if job.waited]) == 1

@@ -13,8 +13,8 @@ from PySide6.QtCore import QDateTime, QLocale, QSettings
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QMenu
 
-from app.desks.project_picture import STATE
 from app.dress.wishes import wish
+from app.keeping.project_picture import STATE
 from app.panels.project_card import ProjectView
 from app.showing.verdict_chip import TONES, state_title
 from app.wording.words import tr

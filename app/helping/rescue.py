@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Qt, Signal
 
-from app.desks.machine import machine_facts
+from app.helping.machine import machine_facts
 from app.panels.about import as_text
 from app.panels.fault import FaultSheet
 from app.wording.words import tr

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QPoint
 
-from app.desks.line_dialog import ask_own_line
-from app.desks.present_lines import LINE_COLOURS, line_title, pair_title
+from app.lining.line_dialog import ask_own_line
+from app.presenting.lines import LINE_COLOURS, line_title, pair_title
 from app.wording.words import tr
 from core.design_lines import OwnLine
 from core.own_lines import ready_made

@@ -21,14 +21,14 @@ _MAST = QPointF(14.0, -22.0)  # from the foot to the lower left of the flag [px]
 
 
 @dataclass(frozen=True, eq=False)
-class Flag:
+class ValueFlag:
     """A value at a place of the shown body, shape (3,) [mm]."""
 
     place: Floats
     text: str
 
 
-class Flags(QWidget):
+class ValueFlags(QWidget):
     """A transparent sheet over one viewport.
 
     ``pinned`` carries the place that was clicked on, (3,) [mm], and the line on it, if there is one;
@@ -43,7 +43,7 @@ class Flags(QWidget):
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._viewport = viewport
-        self._flags: tuple[Flag, ...] = ()
+        self._flags: tuple[ValueFlag, ...] = ()
         self._pressed: QPointF | None = None
         self.listening = False
         self._canvas = viewport.overlay.parentWidget() or viewport
@@ -53,11 +53,11 @@ class Flags(QWidget):
         self.hide()
 
     @property
-    def flags(self) -> tuple[Flag, ...]:
+    def flags(self) -> tuple[ValueFlag, ...]:
         """The flags that are shown."""
         return self._flags
 
-    def show_flags(self, flags: Iterable[Flag]) -> None:
+    def show_flags(self, flags: Iterable[ValueFlag]) -> None:
         """Show these flags in place of the former ones."""
         self._flags = tuple(flags)
         self.setGeometry(self._viewport.rect())

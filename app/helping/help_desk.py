@@ -8,8 +8,8 @@ from PySide6.QtCore import QObject, QPoint
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QWhatsThis, QWidget
 
-from app.desks.machine import machine_facts
-from app.desks.whats_this import explain
+from app.helping.machine import machine_facts
+from app.helping.whats_this import explain
 from app.panels.about import AboutSheet, DiagnosticsSheet
 from app.panels.commands import Command, CommandSheet
 from app.showing.gestures import chosen_gestures, gestures_in_words

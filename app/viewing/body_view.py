@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.desks.present import band_label, bands, drawn
+from app.presenting.frame import band_label, bands, drawn
 from app.showing.viewport import Viewport
 from core.body import Body
 from core.control_mesh import ControlMesh

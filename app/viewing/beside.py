@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from app.desks.body_view import BodyView
 from app.showing.panes import Panes
 from app.showing.viewport import Viewport
+from app.viewing.body_view import BodyView
 from app.wording.words import tr
 from core.live import Frame
 
@@ -16,7 +16,7 @@ WAYS = ("before", "after", "wipe", "side")
 _LAYERS = ("control", "bands")
 
 
-class Comparison:
+class Beside:
     """Owns the views beside the main one, from when they are wanted until they are not.
 
     ``way`` is one of ``WAYS``, or "variants". ``bodies`` are all that are seen, ``live`` those of them that

@@ -14,9 +14,9 @@ from PySide6.QtGui import QGuiApplication
 
 from app.asking.project_lock import ProjectLock
 from app.asking.writing import Writing
-from app.desks.project_picture import project_picture
-from app.desks.recent import day_of
 from app.dress.wishes import wish
+from app.keeping.project_picture import project_picture
+from app.keeping.recent import day_of
 from app.wording.words import tr
 from core.document import Document
 from core.errors import UserError
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from app.main_window import MainWindow
 
 
-class SafeDesk(QObject):
+class KeepingDesk(QObject):
     """Keeps the document aside while it is not saved, and the project to itself.
 
     The recovery folder is this window's own as long as it runs; it goes when the window closes in order.

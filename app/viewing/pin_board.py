@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from app.desks.present_scan import PINNED, kind_of, landmark_title
+from app.presenting.scan import PINNED, kind_of, landmark_title
 from app.showing.overlay import Pin
 from app.showing.viewport import Viewport
 from core.landmark import Landmark

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt, QTimer
 from PySide6.QtWidgets import QWidget
 
-from app.desks.recent import end_first_start
+from app.keeping.recent import end_first_start
 from app.panels.coach_mark import CoachMark
 from app.wording.words import tr
 

@@ -9,16 +9,16 @@ from weakref import WeakKeyDictionary, WeakSet
 import numpy as np
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from app.desks.body_now import BodyNow
-from app.desks.body_view import BodyView
-from app.desks.present_maps import MAPS, automatic_range, map_kinds, ramp_of
 from app.panels.legend import Legend
+from app.presenting.body_now import BodyNow
+from app.presenting.maps import MAPS, automatic_range, map_kinds, ramp_of
 from app.seeing.bands import Bands
 from app.seeing.body import BodyActor
 from app.seeing.material import look_of
 from app.seeing.paint import Ramp
 from app.seeing.scene import Scene
-from app.showing.flags import Flag, Flags
+from app.showing.value_flags import ValueFlag, ValueFlags
+from app.viewing.body_view import BodyView
 from app.wording.words import number, tr
 from core.live import Frame
 from core.mesh import Floats
@@ -60,7 +60,7 @@ class MapDesk(QObject):
         self.legend = Legend(list(self._kinds.values()), self._view)
         self.legend.hide()
         self._view.place(self.legend, "top-right")
-        self.flags = Flags(self._view.viewport)
+        self.flags = ValueFlags(self._view.viewport)
         self._connect()
 
     def _connect(self) -> None:
@@ -133,7 +133,7 @@ class MapDesk(QObject):
     def refresh(self) -> None:
         """Bring legend, colours and flags up to date with the session's frame, and have the view drawn."""
         self.follow()
-        for body in self._view.comparison.live:
+        for body in self._view.beside.live:
             body.viewport.request_draw()
 
     def follow(self) -> None:
@@ -148,7 +148,7 @@ class MapDesk(QObject):
             self._read(frame)
         elif not self._laid:
             return
-        for body in self._view.comparison.live:
+        for body in self._view.beside.live:
             self._paint_skin(body)
             self._paint_bands(body)
         self._laid = shown
@@ -219,7 +219,8 @@ class MapDesk(QObject):
         kind, said = self._kinds[self.name], [self._value_at(pinned) for pinned in self.pinned]
         said = [(place, value) for place, value in said if not np.isnan(value)]
         self.flags.show_flags(
-            Flag(place, f"{number(value, kind.digits, kind.both_ways)} {kind.unit}") for place, value in said
+            ValueFlag(place, f"{number(value, kind.digits, kind.both_ways)} {kind.unit}")
+            for place, value in said
         )
         self.legend.show_value(said[-1][1] if said else None)
 

@@ -8,8 +8,8 @@ import numpy as np
 from PySide6.QtCore import QObject, QPointF
 
 from app.asking.jobs import Job
-from app.desks.present_lines import LINE_COLOURS, kind_of, line_colours
-from app.desks.sketching import Sketching
+from app.lining.sketching import Sketching
+from app.presenting.lines import LINE_COLOURS, kind_of, line_colours
 from app.wording.words import number, tr
 from core.body import Body
 from core.design_lines import OwnLine

@@ -17,9 +17,9 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.desks.present_lines import OWN_COLOURS
 from app.dress.parts import Segment, sentence
 from app.dress.theme import font, tokens_of
+from app.presenting.lines import OWN_COLOURS
 from app.wording.words import say, tr
 from core.design_lines import OwnLine
 from core.errors import UserError

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QEvent, QObject
 from PySide6.QtGui import QImage
 
-from app.desks.backups_dialog import ask_backup
-from app.desks.recent import day_of
-from app.desks.safe_dialogs import may_discard
+from app.keeping.backups_dialog import ask_backup
+from app.keeping.loss_dialogs import may_discard
+from app.keeping.recent import day_of
 from app.panels.recovery_card import RecoveryCard, RecoveryView
 from app.wording.words import tr
 from core.errors import UserError
@@ -56,7 +56,7 @@ class RecoveryDesk(QObject):
         self._tell_broken()
         self._broken = []
         if self._offers and self._window.session.document is self._offers[0][0].document:
-            self._window.safe_desk.adopt(self._offers.pop(0)[1])
+            self._window.keeping_desk.adopt(self._offers.pop(0)[1])
             self._offer()
 
     def discard(self) -> None:

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtCore import QObject, QTimer
 
-from app.desks.body_now import BodyNow
-from app.desks.desk import PLOT_INTERVAL
-from app.desks.dialogs import ask_save
-from app.desks.present_maps import apex_words
+from app.keeping.dialogs import ask_save
 from app.panels.profile import ProfilePanel
+from app.presenting.body_now import BodyNow
+from app.presenting.maps import apex_words
+from app.presenting.run import PLOT_INTERVAL
 from app.showing.profile_plot import Drawn
 from app.wording.words import number, tr
 from core.errors import UserError
@@ -111,7 +111,7 @@ class SectionDesk(QObject):
         """Cut the body of the session's frame, show the curves, and have the view drawn."""
         self.follow()
         self._plot()
-        for body in self._view.comparison.live:
+        for body in self._view.beside.live:
             body.viewport.request_draw()
 
     def follow(self) -> None:
@@ -123,7 +123,7 @@ class SectionDesk(QObject):
         if frame is not None and shown:
             self._cut(frame)
             self._draw()
-        for body in () if shown else self._view.comparison.live:
+        for body in () if shown else self._view.beside.live:
             body.viewport.scene.section.set_visible(False)
 
     def _cut(self, frame: Frame) -> None:
@@ -162,7 +162,7 @@ class SectionDesk(QObject):
         assert self._now is not None
         assert self._slicer is not None
         plane, (low, high) = self._slicer.plane, self._now.box
-        for body in self._view.comparison.live:
+        for body in self._view.beside.live:
             curves = self.curves["after" if body.after else "before"]
             body.viewport.scene.section.show(plane, low, high, curves)
         if not self._plot_clock.isActive():

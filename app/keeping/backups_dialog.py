@@ -8,8 +8,8 @@ from pathlib import Path
 
 from PySide6.QtWidgets import QDialog, QDialogButtonBox, QVBoxLayout, QWidget
 
-from app.desks.recent import day_of, picture_of
 from app.dress.parts import EmptyState, sentence
+from app.keeping.recent import day_of, picture_of
 from app.panels.picture_list import PaintedList, PictureRow, PictureRowPainter
 from app.wording.words import tr
 from core.backups import Backup, backups

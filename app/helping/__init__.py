@@ -1,0 +1,1 @@
+"""Helping: help, preferences, the tour, safe mode, facts about the machine."""

@@ -1,0 +1,1 @@
+"""Keeping: nothing is lost: recent files, recovery, backups, history, variants."""

@@ -1,0 +1,1 @@
+"""Lining: what the window does about lines: the list, drawing, routing, presets, limits."""

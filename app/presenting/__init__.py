@@ -1,0 +1,1 @@
+"""Presenting: what the window says, worked out as plain values for the panels."""
