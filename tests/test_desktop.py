@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import threading
 from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -24,8 +28,9 @@ from app.panels.commands import CommandSheet
 from app.panels.fault import FaultSheet
 from app.panels.preferences import PreferencesSheet
 from app.showing.canvas import PaintedCanvas
-from app.showing.graphics import begin_graphics
+from app.showing.graphics import begin_graphics, graphics_work, spare_graphics
 from app.wording.tokens import DARK
+from core.starts import failed_starts, starts_folder
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -201,15 +206,46 @@ def test_the_safe_mode_draws_without_the_graphics_driver_and_says_so() -> None:
         assert notice is not None
         assert "twice" in notice.sentence
         notice.actions[0][1]()
-        assert not QSettings().contains("view/begun")
+        assert not failed_starts()
 
     run_main(["--safe-mode"], asked)
-    QSettings().setValue("view/begun", 2)  # as two crashes before the first picture leave it
+    for _ in range(2):
+        crash_at_the_start()
     run_main([], failed)
 
 
+_START = "import sys; from core.starts import Start; start = Start(); print(1, flush=True); sys.stdin.read()"
+
+
+@contextmanager
+def another_start() -> Iterator[None]:
+    """Another process is about to draw its first picture; at the end it is killed."""
+    with subprocess.Popen([sys.executable, "-c", _START], stdin=-1, stdout=-1) as other:
+        assert other.stdout is not None
+        assert other.stdout.readline()
+        yield
+        other.kill()
+
+
+def crash_at_the_start() -> None:
+    with another_start():
+        pass
+
+
 def begun() -> int:
-    return int(str(QSettings().value("view/begun", 0)))
+    return len(list(starts_folder().glob("*/begun")))
+
+
+def test_windows_that_are_opened_together_are_no_crashes(qapp: QApplication) -> None:
+    with another_start(), another_start():
+        assert begin_graphics(False) == "", "two others draw their first picture just now"
+        assert begun() == 3
+        spare_graphics()
+    assert begin_graphics(False) == "failed", "the two were killed"
+    graphics_work()
+    assert begin_graphics(False) == ""
+    graphics_work()
+    assert begun() == 0
 
 
 def test_only_an_end_while_the_driver_is_at_work_counts_as_its_fault(
@@ -219,7 +255,7 @@ def test_only_an_end_while_the_driver_is_at_work_counts_as_its_fault(
     window = QWidget()
     qtbot.addWidget(window)
     window.session = Session(window)
-    QSettings().setValue("view/begun", 1)  # a crash while the view was drawn
+    crash_at_the_start()
     assert begin_graphics(False) == ""
     start = SafeMode(window, "")
     assert begun() == 2

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 
-from PySide6.QtCore import QCoreApplication, QSettings
+from PySide6.QtCore import QCoreApplication
 from PySide6.QtGui import QOffscreenSurface, QOpenGLContext
 
+from core.starts import Start, failed_starts, forget_failed_starts
+
 _SAFE = "safe mode"
-_BEGUN = "view/begun"
 _OFTEN = 2
 _STRINGS = (("OpenGL", 0x1F02), ("Renderer", 0x1F01), ("Vendor", 0x1F00))
+_trying: list[Start] = []
 
 
 def is_safe_mode() -> bool:
@@ -25,7 +28,7 @@ def begin_graphics(safe: bool) -> str:
     It is done safely when asked for (``asked``), or when the last starts have ended before the view was
     drawn (``failed``): a graphics driver that crashes takes the whole program with it.
     """
-    why = "asked" if safe else "failed" if _begun() >= _OFTEN else ""
+    why = "asked" if safe else "failed" if len(failed_starts()) >= _OFTEN else ""
     app = QCoreApplication.instance()
     assert app is not None
     app.setProperty(_SAFE, bool(why))
@@ -39,17 +42,21 @@ def begin_graphics(safe: bool) -> str:
 
 def try_graphics() -> None:
     """Remember, right before the driver is asked for something, that it may end the program."""
-    _count(1)
+    spare_graphics()
+    with suppress(OSError):
+        _trying.append(Start())
 
 
 def spare_graphics() -> None:
     """Forget the last ``try_graphics``: nothing is asked of the driver for now. Former ends still count."""
-    _count(-1)
+    while _trying:
+        _trying.pop().end()
 
 
 def graphics_work() -> None:
     """Remember that the driver has done what it was asked for."""
-    QSettings().remove(_BEGUN)
+    spare_graphics()
+    forget_failed_starts()
 
 
 def graphics_in_words() -> list[tuple[str, str]]:
@@ -62,13 +69,3 @@ def graphics_in_words() -> list[tuple[str, str]]:
     said = [(name, str(functions.glGetString(number))) for name, number in _STRINGS]
     context.doneCurrent()
     return said
-
-
-def _begun() -> int:
-    return int(str(QSettings().value(_BEGUN, 0)) or 0)
-
-
-def _count(by: int) -> None:
-    settings = QSettings()
-    settings.setValue(_BEGUN, max(_begun() + by, 0))
-    settings.sync()
