@@ -11,7 +11,7 @@ import pytest
 import trimesh
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication, QMessageBox
-from window_tools import Script, drag, points, run_main, settled
+from window_tools import Script, drag, points, run_main, settled, undrawn
 
 import app.desks.desk
 from app.main_window import MainWindow
@@ -65,6 +65,36 @@ def test_the_shown_body_is_exported(tmp_path: Path, monkeypatch: pytest.MonkeyPa
             if ending != "stl":
                 moved = np.asarray(body.vertices)[frame.stages.moving.vertices]
                 assert np.abs(moved - frame.points).max() < 1e-3
+
+    run_main([], script)
+
+
+def test_an_export_that_failed_is_told_until_it_succeeds(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    nowhere, project, body = tmp_path / "nowhere" / "a.ply", tmp_path / "a.busk", tmp_path / "a.ply"
+
+    def script(window: MainWindow) -> Script:
+        def tone() -> str:
+            notice = window.notices.notice()
+            return notice.tone if notice is not None else ""
+
+        undrawn(window)
+        yield settled(window)
+        monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(nowhere))
+        window.actions_.export.trigger()
+        yield lambda: tone() == "bad"
+        monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(project))
+        window.actions_.save.trigger()
+        yield project.exists
+        assert window.session.finish_saving()
+        yield lambda: "Saved" in window.status._saved.text()
+        assert tone() == "bad", "a save writes no body"
+        monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(body))
+        window.actions_.export.trigger()
+        yield lambda: tone() == "ok"
+        window.notices.close_notice()
+        assert tone() == "", "nothing waits behind it"
 
     run_main([], script)
 

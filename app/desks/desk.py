@@ -94,12 +94,15 @@ class Desk(QObject):
         self._window.door.set_values(vars(design))
         self.show_title()
 
-    def show_failure(self, error: Exception) -> None:
-        """Say what went wrong; what is on the screen stays."""
+    def show_failure(self, error: Exception, about: str = "") -> None:
+        """Say what went wrong; what is on the screen stays.
+
+        A file that is not the project names what it is ``about``: it is told until ``show_written`` of that.
+        """
         self._fell_back_to, notices = self._session.design, self._window.notices
         if isinstance(error, UserError):
             # What was refused before was asked for before: the last refusal is the one that counts.
-            about = FILES if isinstance(error, ProjectError) else REFUSED
+            about = about or FILES if isinstance(error, ProjectError) else REFUSED
             notices.withdraw(about)
             message = titled(error.message, self._session.design)
             notices.show_notice("bad", message, error.hint, lasting=True, about=about)
@@ -110,6 +113,11 @@ class Desk(QObject):
         logging.error("unexpected fault\n%s", trace)
         said = tr("Something went wrong inside Busk."), tr("Your design is kept. The log tells more.")
         notices.show_notice("bad", *said, lasting=True, details=trace)
+
+    def show_written(self, about: str, sentence: str) -> None:
+        """Say that a file has been written, and no longer that it cannot be."""
+        self._window.notices.withdraw(about)
+        self._window.notices.show_notice("ok", sentence)
 
     def show_saving(self, at_work: bool) -> None:
         """Say that the project is being saved, or no longer."""
@@ -201,8 +209,8 @@ class Desk(QObject):
         self._window.jobs.run(
             tr("Writing the body"),
             lambda progress: write_frame(path, frame, progress),
-            lambda _: self._window.notices.show_notice("ok", said),
-            self.show_failure,
+            lambda _: self.show_written("body", said),
+            lambda error: self.show_failure(error, "body"),
             waited=True,
         )
 
@@ -211,10 +219,13 @@ class Desk(QObject):
         path = ask_save(
             self._window, tr("Save a picture"), f"{self._session.name}.png", "PNG (*.png)", ".png"
         )
-        if path and not self._window.view.picture().save(path):
-            self.show_failure(
-                ProjectError(tr("The picture cannot be written there."), tr("Choose another folder."))
-            )
+        if not path:
+            return
+        if self._window.view.picture().save(path):
+            self.show_written("picture", tr("{name} written.").format(name=Path(path).name))
+        else:
+            said = tr("The picture cannot be written there."), tr("Choose another folder.")
+            self.show_failure(ProjectError(*said), "picture")
 
     def may_leave(self) -> bool:
         """Ask about unsaved changes; returns whether the document may be left. A save is waited for."""

@@ -87,9 +87,9 @@ class PlotDesk(QObject):
                 with whole_file(Path(path).absolute()) as partial:
                     partial.write_bytes(figure)
         except UserError as error:
-            window.desk.show_failure(error)
+            window.desk.show_failure(error, title)
         else:
-            window.notices.show_notice("ok", tr("{name} written.").format(name=Path(path).name))
+            window.desk.show_written(title, tr("{name} written.").format(name=Path(path).name))
 
     def _last_edit(self) -> str:
         return self._window.session.undo_stack.undoText() or tr("As it was opened")

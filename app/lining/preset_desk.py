@@ -75,6 +75,7 @@ class PresetDesk(QObject):
         try:
             path = save_preset(preset_from(session.design, title))
         except UserError as problem:
-            session.failed.emit(problem)
+            self._window.desk.show_failure(problem, "preset")
             return
+        self._window.notices.withdraw("preset")
         self._window.notices.show_notice("ok", tr("Preset {name} saved.").format(name=title), str(path))

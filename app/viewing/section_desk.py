@@ -100,10 +100,10 @@ class SectionDesk(QObject):
         try:
             write_profile(path, self._slicer.plane, self.curves)
         except UserError as problem:
-            self._window.desk.show_failure(problem)
+            self._window.desk.show_failure(problem, "curves")
         else:
             said = tr("Curves written to {name}.").format(name=Path(path).name)
-            self._window.notices.show_notice("ok", said)
+            self._window.desk.show_written("curves", said)
 
     # -- what is shown
 
