@@ -7,7 +7,6 @@ import weakref
 
 import numpy as np
 import pytest
-import pyvista as pv
 from PySide6.QtCore import QCoreApplication, QEvent, QPoint, QPointF, Qt
 from PySide6.QtGui import QImage, QWheelEvent
 from PySide6.QtTest import QTest
@@ -49,10 +48,10 @@ def test_before_and_after_are_flipped_wiped_and_put_side_by_side(monkeypatch: py
 def the_body_is_of_another_material_and_the_line_is_framed(window: MainWindow) -> None:
     view, body = window.view.viewport, window.view.viewport.scene.body
     assert body is not None
-    far, clay = view.scene.view, colours_of(body.actor)
+    far, clay = view.scene.view, body.colours.astype(int)
     window.view_desk.materials["plaster"].trigger()
     assert wish("material") == "plaster"
-    red, _, blue = (colours_of(body.actor) - clay).mean(axis=0)
+    red, _, blue = (body.colours.astype(int) - clay).mean(axis=0)
     assert blue > red + 10.0  # clay is warm, plaster is grey
     window.view.select_line("mid-bust")
     key(window, Qt.Key.Key_F)
@@ -186,6 +185,7 @@ def variants_are_put_side_by_side(window: MainWindow, other: Frame) -> None:
     assert own is view.viewport
     assert not view.compare.actions_by_name["side"].isChecked()
     assert [title.text for title in view.panes.titles] == ["A", "B", "C"]
+    assert len({title.y() for title in view.panes.titles}) == 1, "one height, though only one was in the way"
     frame = window.session.frame
     assert frame is not None
     for viewport, shown in ((first, other), (own, frame), (last, other)):
@@ -193,10 +193,6 @@ def variants_are_put_side_by_side(window: MainWindow, other: Frame) -> None:
         assert body is not None
         assert np.array_equal(body.shown_points[shown.stages.moving.vertices], shown.points)
     assert clear_of_the_tools(window)
-
-
-def colours_of(actor: pv.Actor) -> np.ndarray:
-    return np.array(actor.mapper.dataset.point_data["Colour"], dtype=np.float64)
 
 
 def nothing_is_left_of(things: tuple[weakref.ref[object], ...]) -> bool:

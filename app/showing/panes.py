@@ -95,8 +95,6 @@ class Panes(QWidget):
             viewport.show()
         for part in (self._wiped, self.handle, *self.titles):
             part.raise_()
-        for title in self.titles:
-            title.show()
         for viewport in fresh:
             viewport.view_changed.connect(lambda viewport=viewport: self._share(viewport))
 
@@ -123,18 +121,22 @@ class Panes(QWidget):
         self._place_titles([0, *edges, self.width()])
 
     def _place_titles(self, edges: Sequence[int]) -> None:
-        """Put each title at the border to the next pane, the last one at the border before it."""
-        taken = QRect()
-        if self.obstacle is not None and self.obstacle.isVisible():
-            taken = self.obstacle.geometry()
+        """Put each title at the border to the next pane, the last one at the border before it.
+
+        All stand at one height: where one would be hidden, under what hides it.
+        """
         for place, title in enumerate(self.titles):
             title.resize(title.sizeHint())
             left, end = edges[place], edges[place + 1]
             last = place == len(self.titles) - 1
             title.move(left + GAP if last else end - GAP - title.width(), GAP)
-            if title.geometry().intersects(taken):
-                title.move(title.x(), taken.bottom())
             title.setHidden(end - left < title.width() + 2 * GAP)
+        taken = QRect()
+        if self.obstacle is not None and self.obstacle.isVisible():
+            taken = self.obstacle.geometry()
+        if any(title.geometry().intersects(taken) and not title.isHidden() for title in self.titles):
+            for title in self.titles:
+                title.move(title.x(), taken.bottom())
 
 
 class PaneTitle(QWidget):

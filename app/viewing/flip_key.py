@@ -2,27 +2,35 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from PySide6.QtCore import QCoreApplication, QElapsedTimer, QEvent, QObject, Qt
 from PySide6.QtGui import QAction, QKeyEvent
 from PySide6.QtWidgets import QAbstractButton, QApplication, QWidget
 
 from app.view_area import ViewArea
-from app.viewing.beside import WAYS
 
 HOLD = 350
 """Milliseconds from which on a pressed key is held and no longer tapped."""
 
 
 class FlipKey(QObject):
-    """Flips the view when ``flip`` is triggered, and back if its key is let go after having been held."""
+    """Flips to the body at rest when ``flip`` is triggered, and back to what it was flipped from.
 
-    def __init__(self, window: QWidget, flip: QAction, view: ViewArea) -> None:
+    If its key is let go after having been held it flips back at once. ``show_variants`` puts these side by
+    side again, which the view cannot do by itself.
+    """
+
+    def __init__(
+        self, window: QWidget, flip: QAction, view: ViewArea, show_variants: Callable[[], object]
+    ) -> None:
         super().__init__(window)
-        self._view = view
-        self._former = ""
+        self._view, self._show_variants = view, show_variants
+        self._former, self._back = "", "after"
         self._held = QElapsedTimer()
         flip.setAutoRepeat(False)
-        flip.triggered.connect(lambda: view.set_after(view.beside.way == "before"))
+        flip.triggered.connect(self._flip)
+        view.compared.connect(self._forget)
         window.installEventFilter(self)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
@@ -48,8 +56,20 @@ class FlipKey(QObject):
         held = self._held.elapsed()
         self._held.invalidate()
         _everything().removeEventFilter(self)
-        if held >= HOLD and self._former in WAYS:
-            self._view.compare_by(self._former)
+        if held >= HOLD and self._view.beside.way != self._former:
+            self._flip()
+
+    def _flip(self) -> None:
+        way, back = self._view.beside.way, self._back
+        if way == "before" and back == "variants":
+            self._show_variants()
+        else:
+            self._view.compare_by(back if way == "before" else "before")
+        self._back = back if way == "before" else way
+
+    def _forget(self) -> None:
+        """Flip to the reshaped body alone, unless it was the key that has just brought what is seen."""
+        self._back = "after"
 
 
 def _everything() -> QCoreApplication:

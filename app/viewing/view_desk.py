@@ -21,7 +21,7 @@ class ViewDesk(QObject):
         super().__init__(window)
         self._view, self._maps = window.view, window.map_desk
         do = window.actions_
-        FlipKey(window, do.flip, window.view)
+        FlipKey(window, do.flip, window.view, window.variant_desk.show_side_by_side)
         said = tr("Come close to the selected line or landmark")
         self.fit = do.add("view", tr("Fit the selection"), "F", said, do=self._view.frame_selection)
         do.submenu("view", "material", tr("Material"))
