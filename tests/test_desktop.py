@@ -12,13 +12,14 @@ from pathlib import Path
 
 import pytest
 from PySide6.QtCore import QByteArray, QPoint, QSettings, Qt, QTimer
-from PySide6.QtGui import QGuiApplication
+from PySide6.QtGui import QDesktopServices, QGuiApplication
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 from window_tools import Script, drag, run_main, settled
 
 import app.helping.safe_mode
+from app.application import log_folder
 from app.asking.session import Session
 from app.dress.sheet import Sheet
 from app.helping.safe_mode import SafeMode
@@ -30,6 +31,8 @@ from app.panels.preferences import PreferencesSheet
 from app.showing.canvas import PaintedCanvas
 from app.showing.graphics import begin_graphics, graphics_work, spare_graphics
 from app.wording.tokens import DARK
+from core.backups import backups_folder
+from core.recovery import recovery_folder
 from core.starts import failed_starts, starts_folder
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -71,6 +74,7 @@ def test_help_finds_keys_commands_versions_and_licences() -> None:
         assert said["Ctrl+O"] == "Open"
         assert said["Shift+Middle drag"] == "Move the body"
         keys.accept()
+        recovery_folder().mkdir(parents=True, exist_ok=True)
         window.help.show_machine()
         machine = sheet_of(window, DiagnosticsSheet)
         assert isinstance(machine, DiagnosticsSheet)
@@ -78,6 +82,7 @@ def test_help_finds_keys_commands_versions_and_licences() -> None:
         copied = QGuiApplication.clipboard().text()
         assert "vtk" in copied
         assert "Renderer" in copied or "OpenGL" in copied
+        the_folders_are_named_and_opened(window, machine, copied)
         machine.accept()
         window.help.show_about()
         about = sheet_of(window, AboutSheet)
@@ -89,6 +94,19 @@ def test_help_finds_keys_commands_versions_and_licences() -> None:
         about.accept()
 
     run_main([], script)
+
+
+def the_folders_are_named_and_opened(window: MainWindow, sheet: DiagnosticsSheet, said: str) -> None:
+    assert all(str(each()) in said for each in (log_folder, recovery_folder, backups_folder))
+    asked: list[str] = []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(QDesktopServices, "openUrl", lambda url: not asked.append(url.toLocalFile()))
+        for opener in sheet.openers.values():
+            opener.click()
+    assert asked[:2] == [str(log_folder()), str(recovery_folder())]
+    assert str(backups_folder()) not in asked, "nothing was ever saved over"
+    assert not sheet.openers["Backups"].isEnabled()
+    assert window.notices.notice() is None
 
 
 def no_key_means_two_things(window: MainWindow) -> None:

@@ -8,6 +8,7 @@ from PySide6.QtCore import QObject, QPoint
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QWhatsThis, QWidget
 
+from app.helping.folders import folders, show_folder
 from app.helping.machine import machine_facts
 from app.helping.whats_this import explain
 from app.panels.about import AboutSheet, DiagnosticsSheet
@@ -64,7 +65,9 @@ class HelpDesk(QObject):
 
     def show_machine(self) -> None:
         """Show what the program is made of, what draws for it, and where it writes."""
-        DiagnosticsSheet(self._window, machine_facts(self._window)).open()
+        sheet = DiagnosticsSheet(self._window, machine_facts(self._window), folders())
+        sheet.folder_asked.connect(lambda folder: show_folder(folder, self._window.notices))
+        sheet.open()
 
     def show_about(self) -> None:
         """Say what Busk is, and under which licences."""

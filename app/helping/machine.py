@@ -5,13 +5,12 @@ from __future__ import annotations
 import platform
 import sys
 from importlib import metadata
-from pathlib import Path
 
-from PySide6.QtCore import QSettings, QSysInfo, qVersion
+from PySide6.QtCore import QSysInfo, qVersion
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QWidget
 
-from app.application import log_folder
+from app.helping.folders import folders
 from app.showing.graphics import graphics_in_words, is_safe_mode
 from app.wording.words import tr
 from core import __version__
@@ -44,13 +43,7 @@ def machine_facts(window: QWidget) -> list[Group]:
                 (tr("Screen"), f"{size.width()} x {size.height()} ({scale:g}x)"),
             ],
         ),
-        (
-            tr("Folders"),
-            [
-                (tr("Log"), str(log_folder())),
-                (tr("Settings"), str(Path(QSettings().fileName()))),
-            ],
-        ),
+        (tr("Folders"), [(title, str(folder)) for title, folder in folders()]),
     ]
 
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, QUrl
-from PySide6.QtGui import QAction, QDesktopServices
+from PySide6.QtCore import QObject
+from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QApplication
 
 from app.application import chosen_dark, log_folder
 from app.dress.theme import apply_theme
 from app.dress.wishes import UNTIL_THEN, wants_motion, wish, wish_for
+from app.helping.folders import show_folder
 from app.panels.preferences import PreferencesSheet
 from app.showing.viewport import Viewport
 from app.wording.words import tr
@@ -63,10 +64,7 @@ class PreferencesDesk(QObject):
 
     def open_log(self) -> None:
         """Show the folder of the log, if there is one."""
-        folder = log_folder()
-        if not (folder.is_dir() and QDesktopServices.openUrl(QUrl.fromLocalFile(str(folder)))):
-            said = tr("The log folder cannot be opened here."), tr("It is {folder}.").format(folder=folder)
-            self._window.notices.show_notice("info", *said)
+        show_folder(log_folder(), self._window.notices)
 
     def _show_choices(self) -> None:
         for key, actions in (

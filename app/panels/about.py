@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
+from PySide6.QtCore import Signal
 from PySide6.QtGui import QGuiApplication
-from PySide6.QtWidgets import QStackedWidget, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QStackedWidget, QWidget
 
-from app.dress.parts import Segment, sentence
+from app.dress.parts import Segment, button, sentence
 from app.dress.sheet import Sheet, reading
+from app.dress.theme import label
 from app.wording.words import tr
 
 Facts = Sequence[tuple[str, Sequence[tuple[str, str]]]]
@@ -41,16 +44,39 @@ class AboutSheet(Sheet):
 
 
 class DiagnosticsSheet(Sheet):
-    """Facts about program and machine, to copy for whoever is asked for help."""
+    """Facts about program and machine, to copy for whoever is asked for help.
 
-    def __init__(self, parent: QWidget, facts: Facts) -> None:
+    ``folders`` are those that the program writes to; ``folder_asked`` carries the path of one to be shown.
+    """
+
+    folder_asked = Signal(object)
+
+    def __init__(self, parent: QWidget, facts: Facts, folders: Sequence[tuple[str, Path]]) -> None:
         super().__init__(parent, tr("Diagnostics"), (680, 560))
         said = tr("For a report: versions, graphics and folders. No scan, no measures, no names of files.")
         self.body.addWidget(sentence(said))
         self.text = as_text(facts)
         self.body.addWidget(reading(self.text, tr("Diagnostics"), code=True), 1)
+        self.body.addLayout(self._openers(folders))
         self.copy = self.add_button(tr("Copy"), self._copy)
         self.add_close()
+
+    def _openers(self, folders: Sequence[tuple[str, Path]]) -> QHBoxLayout:
+        """Return a row with a button for each folder; one that nothing was written to yet waits."""
+        row = QHBoxLayout()
+        row.setSpacing(6)
+        row.addWidget(label(tr("Open the folder:"), "secondary"))
+        self.openers: dict[str, QPushButton] = {}
+        for title, folder in folders:
+            opener = self.openers[title] = button(title)
+            opener.setEnabled(folder.is_dir())
+            opener.setToolTip(str(folder) if folder.is_dir() else tr("Nothing has been written there yet."))
+            opener.setAccessibleName(tr("Open the folder: {name}").format(name=title))
+            opener.setAutoDefault(False)
+            opener.clicked.connect(lambda _=False, folder=folder: self.folder_asked.emit(folder))
+            row.addWidget(opener)
+        row.addStretch(1)
+        return row
 
     def _copy(self) -> None:
         QGuiApplication.clipboard().setText(self.text)

@@ -1,0 +1,33 @@
+"""The folders that Busk writes to by itself, and how one is shown."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtCore import QSettings, QUrl
+from PySide6.QtGui import QDesktopServices
+
+from app.application import log_folder
+from app.panels.notice import NoticeBar
+from app.wording.words import tr
+from core.backups import backups_folder
+from core.presets import own_folder
+from core.recovery import recovery_folder
+
+
+def folders() -> list[tuple[str, Path]]:
+    """Return what each folder holds, in words, and where it is, whether it has been made yet or not."""
+    return [
+        (tr("Log"), log_folder()),
+        (tr("Unsaved work"), recovery_folder()),
+        (tr("Backups"), backups_folder()),
+        (tr("Presets"), own_folder()),
+        (tr("Settings"), Path(QSettings().fileName()).parent),
+    ]
+
+
+def show_folder(folder: Path, notices: NoticeBar) -> None:
+    """Show a folder as the desktop does; where that does not go, say where it is."""
+    if not (folder.is_dir() and QDesktopServices.openUrl(QUrl.fromLocalFile(str(folder)))):
+        said = tr("The folder cannot be opened here."), tr("It is {folder}.").format(folder=folder)
+        notices.show_notice("info", *said)
