@@ -13,7 +13,7 @@ from app.asking.jobs import Job, Jobs
 from app.panels.busy import BusyCard
 from app.panels.question import QuestionCard
 from app.panels.view_tools import CompareTools, ViewTools
-from app.seeing.body import bake_occlusion
+from app.seeing.occlusion import bake_occlusion
 from app.showing.floating import Floating
 from app.showing.panes import Panes
 from app.showing.viewport import Viewport
@@ -128,8 +128,6 @@ class ViewArea(QWidget):
             self.viewport.set_parallel(not shown)
         elif layer == "landmarks":
             self.pins.set_shown(shown)
-        elif layer == "ghost":
-            self._main.set_layer(layer, shown)
         else:
             for body in self.beside.bodies:
                 body.set_layer(layer, shown)

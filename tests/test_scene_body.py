@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.seeing.body import bake_occlusion
+from app.seeing.occlusion import bake_occlusion
 from app.seeing.paint import clay_colours
 from app.seeing.skin import plate_faces, split_plates
 from app.seeing.stage import LOOKS, rgb

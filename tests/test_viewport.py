@@ -107,11 +107,11 @@ def test_a_theme_change_of_the_window_darkens_the_view(view: Viewport) -> None:
 @contextmanager
 def drawings(view: Viewport) -> Iterator[list[str]]:
     drawn: list[str] = []
-    window = view.scene.plotter.ren_win
-    tag = window.AddObserver("EndEvent", lambda *_: drawn.append("drawn"))
+    render = view._canvas._render
+    view._canvas._render = lambda: drawn.append("drawn") or render()
     yield drawn
     QApplication.processEvents()
-    window.RemoveObserver(tag)
+    del view._canvas._render
 
 
 def test_many_requests_make_one_drawing(view: Viewport) -> None:

@@ -19,7 +19,7 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 
 
 def colours(window: MainWindow) -> np.ndarray:
-    return np.array(window.view.viewport.scene.plotter.actors["body"].mapper.dataset["Colour"], dtype=int)
+    return window.view.viewport.scene.body.colours.astype(int)
 
 
 def click_on(window: MainWindow, place: np.ndarray) -> None:

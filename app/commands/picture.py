@@ -59,7 +59,7 @@ def draw_picture(
 def _set_up(scene: Scene, solution: Solution) -> None:
     """Put the reshaped body of a solution with its lines into a scene."""
     from app.presenting.frame import bands
-    from app.seeing.body import bake_occlusion
+    from app.seeing.occlusion import bake_occlusion
 
     stages = solution.stages
     scene.show_body(stages.body.mesh)

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from app.seeing.body import bake_occlusion
+from app.seeing.occlusion import bake_occlusion
 from app.wording.samples import sample_design
 from core.design_lines import WornLine
 from core.exact import newton, solve_exact

@@ -12,7 +12,7 @@ from app.seeing.bands import Band, Bands
 from app.seeing.body import BodyActor, Ghost
 from app.seeing.camera import LENS, View
 from app.seeing.control import ControlActor
-from app.seeing.framing import NOBODY, box_of, depth_range, framing_bust, framing_points
+from app.seeing.framing import NOBODY, box_of, depth_range, framing_bust
 from app.seeing.material import CLAY, look_of
 from app.seeing.ribbon import Surface
 from app.seeing.section import SectionSheet
@@ -128,6 +128,11 @@ class Scene:
         self._visible[what] = visible
         self._apply_visible()
 
+    def still(self) -> list[pv.Actor]:
+        """Return what stays where it is while the body moves."""
+        ghost = () if self._ghost is None else (self._ghost.actor,)
+        return [self._stage.floor, *ghost, *(() if self.body is None else self.body.still)]
+
     def is_visible(self, what: str) -> bool:
         """Tell whether one of ``PARTS`` is shown."""
         return self._visible[what]
@@ -210,10 +215,6 @@ class Scene:
         level = None if laid is None else float(laid[0][:, 2].mean())
         return framing_bust(self._view, self._box(), level, aspect)
 
-    def framing(self, points: Points, aspect: float) -> View:
-        """Return the view from the same side of places on the body, shape (k, 3) [mm]."""
-        return framing_points(self._view, points, aspect)
-
     # -- what is under the pointer
 
     def hit_body(self, start: Floats, end: Floats) -> Floats | None:
@@ -279,7 +280,7 @@ class Scene:
 
     def _apply_visible(self) -> None:
         if self.body is not None:
-            self.body.actor.SetVisibility(self._visible["body"])
+            self.body.set_visible(self._visible["body"])
             self._stage.show_floor(self._visible["floor"])
             if self._visible["ghost"] and self._ghost is None:
                 self._ghost = Ghost(self.plotter, self.body.rest)

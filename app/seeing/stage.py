@@ -90,7 +90,7 @@ class Stage:
         for lamp in self._lamps:
             plotter.add_light(lamp)
         self._quad = pv.Plane(i_size=FLOOR_SIZE[0], j_size=FLOOR_SIZE[1], i_resolution=1, j_resolution=1)
-        self._floor = plotter.add_mesh(
+        self.floor = plotter.add_mesh(
             self._quad,
             texture=_shadow(LOOKS[False]),
             lighting=False,
@@ -99,8 +99,8 @@ class Stage:
             reset_camera=False,
             render=False,
         )
-        self._floor.SetPickable(False)
-        self._floor.SetVisibility(False)
+        self.floor.SetPickable(False)
+        self.floor.SetVisibility(False)
 
     def set_look(self, look: Look) -> None:
         """Repaint background, lamps and floor for one theme."""
@@ -110,16 +110,16 @@ class Stage:
         self._plotter.renderer.SetGradientMode(
             vtkViewport.GradientModes.VTK_GRADIENT_RADIAL_VIEWPORT_FARTHEST_CORNER
         )
-        self._floor.SetTexture(_shadow(look))
+        self.floor.SetTexture(_shadow(look))
 
     def stand(self, x: float, y: float, z: float) -> None:
         """Lay the floor under a body whose lowest point is at height ``z``, centred at (x, y) [mm]."""
-        self._floor.SetPosition(x, y, z - FLOOR_DROP)
-        self._floor.SetVisibility(True)
+        self.floor.SetPosition(x, y, z - FLOOR_DROP)
+        self.floor.SetVisibility(True)
 
     def show_floor(self, shown: bool) -> None:
         """Show or hide the shadow on the floor."""
-        self._floor.SetVisibility(shown)
+        self.floor.SetVisibility(shown)
 
 
 def _shadow(look: Look) -> pv.Texture:

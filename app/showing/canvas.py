@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable, Iterable
 from functools import cache
 
 import numpy as np
@@ -21,7 +22,9 @@ from PySide6.QtWidgets import QWidget
 from pyvistaqt import QtInteractor
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
+from vtkmodules.vtkRenderingCore import vtkProp
 
+from app.seeing.still import StillPicture
 from app.showing.graphics import is_safe_mode
 
 _GL_RENDERER = 0x1F01
@@ -70,7 +73,12 @@ def draw(canvas: QWidget) -> None:
 
 
 class PaintedCanvas(QWidget):
-    """Pictures of an off-screen plotter, painted as any other widget's: they need no OpenGL from Qt."""
+    """Pictures of an off-screen plotter, painted as any other widget's: they need no OpenGL from Qt.
+
+    While ``quick`` is set, what ``still`` returns is drawn again only if it has changed.
+    """
+
+    still: Callable[[], Iterable[vtkProp]] = staticmethod(tuple)
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
@@ -78,7 +86,14 @@ class PaintedCanvas(QWidget):
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
         self.plotter = pv.Plotter(off_screen=True, lighting="none")
         self.plotter.ren_win.SetMultiSamples(0)
+        self.quick = False
+        self._picture = StillPicture(self.plotter)
         self._image: QImage | None = None
+
+    def let_go(self) -> None:
+        """Give back what is kept of the graphics, before the plotter is closed."""
+        self._picture.forget()
+        del self.still
 
     def forget(self) -> None:
         """Have a new picture made at the next paint."""
@@ -103,7 +118,10 @@ class PaintedCanvas(QWidget):
         if list(self.plotter.window_size) != [width, height]:
             self.plotter.window_size = [width, height]
         window, pixels = self.plotter.ren_win, vtkUnsignedCharArray()
-        window.Render()
+        if self.quick:
+            self._picture.render(self.still())
+        else:
+            window.Render()
         window.GetRGBACharPixelData(0, 0, width - 1, height - 1, 0, pixels)
         rows = np.ascontiguousarray(vtk_to_numpy(pixels).reshape(height, width, 4)[::-1])
         rows[..., 3] = 255

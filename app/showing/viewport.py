@@ -22,6 +22,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.dress.theme import tokens_of
 from app.seeing.camera import View
+from app.seeing.framing import framing_points
 from app.seeing.quick_light import QuickLight
 from app.seeing.scene import Scene
 from app.showing.canvas import PaintedCanvas, draw, make_canvas
@@ -64,6 +65,8 @@ class Viewport(QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self._canvas)
         self.scene = Scene(self._plotter, tokens_of(self).dark, self.devicePixelRatioF())
+        if isinstance(self._canvas, PaintedCanvas):
+            self._canvas.still = self.scene.still
         self.overlay = Overlay(self._canvas)
         self._pointer = Pointer(self._canvas, self.scene, self.overlay)
         self._smoothing, self._light = "", QuickLight(self._plotter)
@@ -128,6 +131,7 @@ class Viewport(QWidget):
         """Let outlines be smoothed by one of VTK's filters, or by none while things move."""
         if isinstance(self._canvas, PaintedCanvas):
             self._light.use(quickly=not kind)
+            self._canvas.quick = not kind
         if kind != self._smoothing:
             self._smoothing = kind
             if kind:
@@ -142,6 +146,8 @@ class Viewport(QWidget):
             self._glide.stop()
             self._rest.stop()
             self._pointer.let_go()
+            if isinstance(self._canvas, PaintedCanvas):
+                self._canvas.let_go()
             self._plotter.close()
 
     # -- what is shown over the view
@@ -234,7 +240,7 @@ class Viewport(QWidget):
     def frame_points(self, points: Points) -> None:
         """Glide to places on the body, shape (k, 3) [mm]."""
         self._fit = None
-        self._go(self.scene.framing(points, self._aspect()))
+        self._go(framing_points(self.scene.view, points, self._aspect()))
 
     def frame_bust(self) -> None:
         """Glide to the bust, and keep it framed when the size changes."""
