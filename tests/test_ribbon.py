@@ -6,8 +6,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+import pyvista as pv
 
 from app.presenting.frame import bands
+from app.seeing.bands import RibbonActor
 from app.seeing.ribbon import NO_BACK, Surface, build_casing, build_ribbon, centre_line
 from core.mesh import Mesh
 from core.pipeline import Stages
@@ -98,3 +100,18 @@ def test_bands_of_the_template_go_round_a_body(name: str, built: Callable[[str],
         assert steps.sum() == pytest.approx(whole, rel=0.03)
         width = np.linalg.norm(rows[:, 1] - rows[:, -2], axis=1)
         assert np.median(width) == pytest.approx(band.width, rel=0.05)
+
+
+def test_a_ribbon_forgets_nothing_that_moved_once() -> None:
+    surface = Surface(tube(lambda turn: np.full_like(turn, RADIUS)))
+    ribbon = build_ribbon(arc(-80.0, 80.0, 20.0), surface, 12.0, arc(80.0, 280.0, 4.0))
+    plotter = pv.Plotter(off_screen=True)
+    actor = RibbonActor(plotter, ribbon, "ribbon")
+    skin = surface.mesh.vertices
+    for there in (skin[:, 0] > 60.0, skin[:, 0] < -60.0, np.zeros(len(skin), dtype=bool)):
+        displacement = np.outer(there, [3.0, -8.0, 5.0])
+        actor.move(displacement)
+        moved = ribbon.mesh.moved(ribbon.mesh.vertices + ribbon.follow @ displacement)
+        assert np.abs(actor.data.points - moved.vertices).max() < 1e-4
+        assert np.abs(actor.data["Normals"] - moved.vertex_normals).max() < 1e-6
+    plotter.close()

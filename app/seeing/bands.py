@@ -7,12 +7,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from app.seeing.ribbon import ACROSS, NO_BACK, Ribbon, Surface, build_casing, build_ribbon
 from app.seeing.sight import Sight
 from app.seeing.stage import rgb
-from core import kernels
-from core.mesh import Floats, Indices, Points, unit
+from core.mesh import Flags, Floats, Indices, Points, unit
+from core.moving import moving_faces
 
 _SHADE = np.array([0.62, 0.62, 0.86, 1.0, 1.0, 0.86, 0.62, 0.62])
 _SEAM = 0.72  # how dark the seam is where front part and back part meet
@@ -38,8 +39,7 @@ class RibbonActor:
 
     def __init__(self, plotter: pv.BasePlotter, ribbon: Ribbon, name: str) -> None:
         self.ribbon = ribbon
-        self._corners = np.ascontiguousarray(ribbon.mesh.faces.T)
-        self._still = np.zeros_like(ribbon.mesh.vertices)
+        self._moving = moving_faces(ribbon.mesh, np.empty(0, dtype=np.int64))
         self.data = pv.PolyData.from_regular_faces(ribbon.mesh.vertices.astype(np.float32), ribbon.mesh.faces)
         self.data.point_data["Normals"] = ribbon.mesh.vertex_normals.astype(np.float32)
         self.data.point_data["Colour"] = np.full(ribbon.mesh.vertices.shape, 255, dtype=np.uint8)
@@ -59,6 +59,9 @@ class RibbonActor:
         )
         self.actor.prop.interpolation = "Gouraud"
         self.data.point_data.active_normals_name = "Normals"
+        # Plain views of what is drawn: pyvista looks its own up by name each time.
+        self._places = vtk_to_numpy(self.data.GetPoints().GetData())
+        self._normals = vtk_to_numpy(self.data.GetPointData().GetNormals())
 
     def set_rank(self, rank: int) -> None:
         """Draw the ribbon over those of lower rank where they overlap; one is about 0.3 mm."""
@@ -83,12 +86,27 @@ class RibbonActor:
 
     def move(self, displacement: Points) -> None:
         """Follow the body: displacement of each body vertex, shape (n, 3) [mm]."""
-        points = self.ribbon.mesh.vertices + self.ribbon.follow @ displacement
-        self.data.points[:] = points
-        self.data.point_data["Normals"][:] = kernels.normals(points, self._corners, self._still)
+        shift = self.ribbon.follow @ displacement
+        known = self._moving.vertices[: self._moving.count]
+        moved: Flags = np.asarray(shift.any(axis=1))
+        moved[known] = True
+        if np.count_nonzero(moved) > len(known):
+            # What has moved once is followed from now on, back to where it rests as well.
+            self._moving = moving_faces(self.ribbon.mesh, np.flatnonzero(moved))
+        rows = self._moving.vertices
+        places = self._moving.rest + shift[rows]
+        self._places[rows], self._normals[rows] = places, self._moving.normals(places)
         self.data.GetPoints().Modified()
         self.data.GetPointData().GetNormals().Modified()
         self.sight.forget()
+
+    def spine(self) -> tuple[Points, Points]:
+        """Return the middle of the top of the ribbon as shown and its normals, both (rows, 3)."""
+        points, normals = (
+            part.reshape(-1, len(ACROSS), 3)[:, 3:5].mean(axis=1, dtype=np.float64)
+            for part in (self._places, self._normals)
+        )
+        return points, unit(normals)
 
 
 class Bands:
@@ -175,13 +193,7 @@ class Bands:
 
     def spine(self, name: str) -> tuple[Points, Points]:
         """Return the middle of the top of a ribbon as shown and its normals, both (rows, 3)."""
-        data, width = self._ribbons[name].data, len(ACROSS)
-        grid = (
-            np.asarray(part, dtype=np.float64).reshape(-1, width, 3)
-            for part in (data.points, data["Normals"])
-        )
-        points, normals = (part[:, 3:5].mean(axis=1) for part in grid)
-        return points, unit(normals)
+        return self._ribbons[name].spine()
 
     def _show_what_is_asked(self) -> None:
         for rank, (name, ribbon) in enumerate(self._ribbons.items()):

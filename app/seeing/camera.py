@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
-from core.mesh import Floats, Points
+from core.mesh import Floats, Points, frozen
 
 LENS = 20.0
 """Vertical opening angle [degrees]; a portrait lens, because a wider one makes the chest bulge."""
@@ -52,18 +53,18 @@ class View:
                 return name
         return None
 
-    @property
+    @cached_property
     def axes(self) -> Points:
         """Unit vectors right, up and towards the eye, shape (3, 3)."""
         a, e = np.radians([self.azimuth, self.elevation])
         back = np.array([np.sin(a) * np.cos(e), -np.cos(a) * np.cos(e), np.sin(e)])
         right = np.array([np.cos(a), np.sin(a), 0.0])
-        return np.stack([right, np.cross(back, right), back])
+        return frozen([right, np.cross(back, right), back])
 
-    @property
+    @cached_property
     def eye(self) -> Floats:
         """Position of the eye, shape (3,) [mm]."""
-        return np.asarray(np.asarray(self.focus) + self.distance * self.axes[2])
+        return frozen(np.asarray(self.focus) + self.distance * self.axes[2])
 
     @property
     def half_height(self) -> float:
