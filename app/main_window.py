@@ -25,6 +25,7 @@ from app.keeping.keeping_desk import KeepingDesk
 from app.keeping.recovery_desk import RecoveryDesk
 from app.keeping.variant_desk import VariantDesk
 from app.layout import Layout
+from app.lining.band_pull import BandPull
 from app.lining.limits_desk import LimitsDesk
 from app.lining.line_drawing import LineDrawing
 from app.lining.line_maker import LineMaker
@@ -84,7 +85,7 @@ class MainWindow(QMainWindow):
         self.start_desk, self.plot_desk = StartDesk(self), PlotDesk(self)
         self.lines_desk, self.line_maker = LinesDesk(self), LineMaker(self)
         self.line_drawing, self.line_routing = LineDrawing(self), LineRouting(self)
-        self.preset_desk = PresetDesk(self)
+        self.preset_desk, self.band_pull = PresetDesk(self), BandPull(self)
         self.help = HelpDesk(self)
         self.preferences = PreferencesDesk(self)
         self.rescuer = Rescue(self)

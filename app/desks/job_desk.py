@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from PySide6.QtCore import QObject
 
@@ -16,6 +16,19 @@ if TYPE_CHECKING:
 
 AGE = 0.3
 """Seconds that a job nobody waits for takes before it is worth a word."""
+
+
+class Carrier(Protocol):
+    """A desk whose things a hand carries over the body."""
+
+    @property
+    def carries(self) -> bool:
+        """Whether something is in the hand."""
+        ...
+
+    def let_go(self) -> bool:
+        """Bring it back to where it was; returns whether there was anything."""
+        ...
 
 
 class JobDesk(QObject):
@@ -37,8 +50,9 @@ class JobDesk(QObject):
     def show(self) -> None:
         """Show the work that the user waits for, with a card, else a job beside it in the status bar."""
         window = self._window
-        # While a pin is carried the model follows all the time: that is no work to wait for.
-        words, share = ("", 1.0) if window.landmark_desk.carries else self._built
+        # While a hand carries something the model follows all the time: that is no work to wait for.
+        carried = any(desk.carries for desk in self._carriers())
+        words, share = ("", 1.0) if carried else self._built
         job = None if words else self._shown_job()
         waited = bool(words) or (job is not None and job.waited)
         steps: Sequence[str] = work_steps() if words else ()
@@ -47,17 +61,21 @@ class JobDesk(QObject):
             words, shown = job.words, job.share
         window.status.set_job(words, shown)
         window.view.busy.show_work(words if waited else "", shown, steps)
-        window.actions_.cancel.setEnabled(waited or window.landmark_desk.carries)
+        window.actions_.cancel.setEnabled(waited or carried)
 
     def cancel(self) -> None:
-        """Let go of the pin that is carried, else of the work that is shown; all is as it was before."""
-        if self._window.landmark_desk.let_go():
+        """Let go of what a hand carries, else of the work that is shown; all is as it was before."""
+        if any(desk.let_go() for desk in self._carriers()):
             return
         if self._built[0]:
             self._session.cancel()
             self.show_work("", 1.0)
         else:
             self._window.jobs.leave(self._shown_job())
+
+    def _carriers(self) -> tuple[Carrier, ...]:
+        window = self._window
+        return window.landmark_desk, window.band_pull, window.section_desk
 
     def _shown_job(self) -> Job | None:
         now = time.monotonic()

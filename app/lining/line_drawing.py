@@ -49,6 +49,11 @@ class LineDrawing(QObject):
         card.left.connect(self.leave)
         self._sketching.lost.connect(self.leave)
 
+    @property
+    def at_work(self) -> bool:
+        """Whether a line is being drawn."""
+        return self._sketching.at_work
+
     def begin(self) -> None:
         """Let a line be drawn; until the skin is ready for it clicks are joined straight."""
         frame = self._sketching.frame

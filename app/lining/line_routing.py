@@ -45,6 +45,11 @@ class LineRouting(QObject):
         self._sketching.lost.connect(self.leave)
         window.session.design_changed.connect(self._check)
 
+    @property
+    def at_work(self) -> bool:
+        """Whether a path is being edited."""
+        return self._sketching.at_work
+
     def begin(self, name: str) -> None:
         """Let the path of an own line be edited."""
         design, frame = self._window.session.design, self._sketching.frame

@@ -14,6 +14,12 @@ from app.wording.words import number, tr
 GROOVE_Y, GROOVE_HEIGHT = 11.0, 6.0
 """Middle of the groove below the slider's top, and its height [px]."""
 
+SHORTEST, LONGEST = 0.80, 1.12
+"""Range of a line's length, as a share of its length at rest [1], that a hand can pull it through."""
+
+RESISTANCE = 24.0
+"""How much further a hand must pull to get a line into the red [px]."""
+
 _GAP = 1.5  # between two zones [px]
 _QUIET, _STALE = 0.42, 0.2  # strength of the zones of a line that is not in hand, and of those not up to date
 
@@ -60,6 +66,17 @@ class Feasible:
         }
         percent = number(100.0 * (self.impossible or 0.0))
         return words.get(self.why, tr("folds below {percent} %")).format(percent=percent)
+
+
+def wall_of(feasible: Feasible | None, ratio: float) -> float | None:
+    """Return the ratio at which a pull that begins at ``ratio`` meets the red, if it does [1]."""
+    red = feasible.impossible if feasible is not None else None
+    return red if red is not None and SHORTEST < red <= ratio else None
+
+
+def resisted(ratio: float, wall: float | None, more: float) -> float:
+    """Return what a hand gets that pulls to ``ratio``: past the wall it must pull ``more`` [1]."""
+    return ratio if wall is None or ratio >= wall else min(ratio + more, wall)
 
 
 def paint_groove(

@@ -18,19 +18,21 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QAbstractSlider, QSizePolicy, QToolTip, QWidget
 
 from app.dress.theme import tokens_of
-from app.panels.length_groove import GROOVE_HEIGHT, GROOVE_Y, Feasible, paint_groove
+from app.panels.length_groove import (
+    GROOVE_HEIGHT,
+    GROOVE_Y,
+    LONGEST,
+    RESISTANCE,
+    SHORTEST,
+    Feasible,
+    paint_groove,
+    resisted,
+    wall_of,
+)
 from app.wording.tokens import LINE_COLORS
 from app.wording.words import tr
 
-__all__ = ["LONGEST", "RESISTANCE", "SHORTEST", "STEPS_TO_ONE", "Feasible", "LengthSlider"]
-
-SHORTEST, LONGEST = 0.80, 1.12
-"""Range of a line's length as a share of its length at rest [1]."""
-
 STEPS_TO_ONE = 100_000  # one step of the slider is 1/1000 %
-
-RESISTANCE = 24.0
-"""How much further a hand must pull to get a handle into the red [px]."""
 
 _END_ROOM, _HANDLE_RADIUS = 13.0, 8.0
 _SMALLEST_WEDGE = 0.0005  # a reached length nearer to the set one shows no wedge
@@ -116,7 +118,7 @@ class LengthSlider(QAbstractSlider):
             return
         self._before_drag, self._previewed = self.value(), False
         self._grip = event.position().x() - self._x_of(self.ratio())
-        self._wall = self._wall_of(self.ratio())
+        self._wall = wall_of(self._feasible, self.ratio())
         self.setSliderDown(True)
         if abs(self._grip) > _HANDLE_RADIUS + 3:
             self._grip = 0.0
@@ -167,9 +169,8 @@ class LengthSlider(QAbstractSlider):
         self._paint_handle(painter, QPointF(self._x_of(self.ratio()), GROOVE_Y))
 
     def _drag_to(self, x: float) -> None:
-        if self._wall is not None and x < self._wall:
-            x = min(x + RESISTANCE, self._wall)
-        ratio = self._ratio_at(x)
+        more = self._ratio_at(x + RESISTANCE) - self._ratio_at(x)
+        ratio = resisted(self._ratio_at(x), self._wall, more)
         before = self.value()
         self.setValue(round(round(ratio * 1000) * STEPS_TO_ONE / 1000))
         if self.value() != before:
@@ -202,11 +203,6 @@ class LengthSlider(QAbstractSlider):
     def _ratio_at(self, x: float) -> float:
         share = (x - _END_ROOM) / max(self.width() - 2 * _END_ROOM, 1.0)
         return SHORTEST + share * (LONGEST - SHORTEST)
-
-    def _wall_of(self, ratio: float) -> float | None:
-        """Return where a drag that begins at ``ratio`` meets the red [px], if it does."""
-        red = self._feasible.impossible if self._feasible is not None else None
-        return self._x_of(red) if red is not None and SHORTEST < red <= ratio else None
 
     def _is_red(self, x: float) -> bool:
         red = self._feasible.impossible if self._feasible is not None else None

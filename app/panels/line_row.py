@@ -58,7 +58,7 @@ class LineRow(QFrame):
         for each in (self.slider, self.percent, self.millimetres):
             each.setVisible(view.constrained)
             each.setEnabled(view.settable)
-            each.setToolTip(_locked_tip() if view.locked else self._tips[each])
+            each.setToolTip(locked_tip() if view.locked else self._tips[each])
         self._measure.setVisible(not view.constrained)
         self._measure.setText(f"{number(view.reached_mm or view.rest_mm)} mm")
         still = tr("On points that do not move: measured only.")
@@ -206,5 +206,6 @@ class LineRow(QFrame):
         self.details.setVisible(self._open)
 
 
-def _locked_tip() -> str:
+def locked_tip() -> str:
+    """Return why the length of a line stays."""
     return tr("This line is locked: its length stays. Unlock it with the lock, or Shift+L.")

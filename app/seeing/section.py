@@ -46,8 +46,7 @@ class SectionSheet:
 
     def show(self, plane: Plane, low: Floats, high: Floats, curves: Sequence[Curve]) -> None:
         """Show a plane through the box from ``low`` to ``high``, each (3,) [mm], and the curves on it."""
-        corners = plane.flat(np.stack([low - _BEYOND, high + _BEYOND]))
-        (left, bottom), (right, top) = corners.min(axis=0), corners.max(axis=0)
+        (left, bottom), (right, top) = sheet_ends(plane, low, high)
         quad = plane.in_space(np.array([[left, bottom], [right, bottom], [right, top], [left, top]]))
         _fill(self._sheet, quad, faces=[4, 0, 1, 2, 3])
         _fill(self._rim, quad, [[0, 1, 2, 3, 0]])
@@ -71,6 +70,12 @@ class SectionSheet:
         """Repaint for one theme."""
         for actor in self._actors:
             actor.prop.color = COLOURS[dark]
+
+
+def sheet_ends(plane: Plane, low: Floats, high: Floats) -> tuple[Floats, Floats]:
+    """Return the least and the largest flat coordinates, (2,) each, of a sheet through a box, (3,) [mm]."""
+    corners = plane.flat(np.stack([low - _BEYOND, high + _BEYOND]))
+    return corners.min(axis=0), corners.max(axis=0)
 
 
 def _fill(

@@ -67,4 +67,11 @@ def gestures_in_words(gestures: Gestures) -> list[tuple[str, str]]:
     keys = {_NONE: "", _SHIFT: "Shift+", _CTRL: "Ctrl+"}
     drags = [(keys[held] + buttons[button], acts[act]) for (button, held), act in gestures.drags.items()]
     wheel = [(keys[held] + tr("Wheel"), acts[act]) for held, act in gestures.wheel.items()]
-    return [*drags, *wheel, (tr("Double-click"), tr("Turn about this place"))]
+    return [
+        *drags,
+        *wheel,
+        (tr("Double-click"), tr("Turn about this place")),
+        (tr("Click on a band"), tr("Select the line")),
+        (tr("Drag the selected band up or down"), tr("Shorter or longer by 0.1 % a pixel, Shift 0.01 %")),
+        (tr("Drag the knob of the section plane"), tr("Move the plane, with Shift a tenth as far")),
+    ]

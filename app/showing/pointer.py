@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.seeing.camera import View
 from app.seeing.scene import Scene
+from app.showing.band_grip import BandGrip
 from app.showing.gestures import ORBIT, PAN, ZOOM, chosen_gestures
 from app.showing.overlay import Overlay
 from core.mesh import Floats
@@ -24,6 +25,7 @@ NOTCH = 1.15
 NOTCH_PIXELS, WHEEL_PIXELS = 30.0, 40.0
 """Pixels of a drag that scale as much as a notch of the wheel, and of a notch that turns or moves."""
 
+_NONE = Qt.KeyboardModifier.NoModifier
 _HELD = Qt.KeyboardModifier.ShiftModifier | Qt.KeyboardModifier.ControlModifier
 _CLICK = 3.0  # pixels that the pointer may stray within a click
 
@@ -32,7 +34,8 @@ class Pointer(QObject):
     """Reads the pointer over a canvas, before VTK's own camera style does.
 
     ``turned`` asks for a view from the same distance, ``shifted`` for one that frames something else, and
-    ``centred`` for a glide to a new centre of turning; the other signals are the viewport's.
+    ``centred`` for a glide to a new centre of turning; the other signals are the viewport's. Whoever lets
+    bands be pulled finds ``band_grip`` among the children of the viewport.
     """
 
     turned = Signal(View)
@@ -50,6 +53,7 @@ class Pointer(QObject):
         self._canvas = canvas
         self._scene = scene
         self._overlay = overlay
+        self.band_grip = BandGrip(self)
         self._pressed = QPointF()
         self._last = QPointF()
         self._grip = self._drags = ""
@@ -83,20 +87,25 @@ class Pointer(QObject):
     def _press(self, event: QMouseEvent) -> None:
         self._pressed = self._last = event.position()
         self._drags = chosen_gestures().of_drag(event.button(), event.modifiers())
-        plain = event.button() == Qt.MouseButton.LeftButton and not event.modifiers() & _HELD
+        left, held = event.button() == Qt.MouseButton.LeftButton, event.modifiers() & _HELD
+        plain = left and not held
         self._pin = self._overlay.pin_at(event.position()) if plain else ""
-        self._grip = "pin" if self._pin else "click" if plain else self._drags
+        reaches = left and not self._pin and held in (_NONE, Qt.KeyboardModifier.ShiftModifier)
+        pulls = self.band_grip.reach(self._band_at(event.position()) if reaches else "")
+        self._grip = "pin" if self._pin else "click" if plain or pulls else self._drags
         if self._pin:
             self.pin_pressed.emit(self._pin)
 
     def _drag(self, event: QMouseEvent) -> None:
         step = event.position() - self._last
         if self._grip == "click" and (event.position() - self._pressed).manhattanLength() > _CLICK:
-            self._grip = self._drags
+            self._grip = "band" if self.band_grip.takes(event.position() - self._pressed) else self._drags
         if self._grip in (ORBIT, PAN, ZOOM):
             self._move(self._grip, step, self._pressed)
         elif self._grip == "pin" and (event.position() - self._pressed).manhattanLength() > _CLICK:
             self._drag_pin(event.position())
+        elif self._grip == "band":
+            self.band_grip.pull(step, event.modifiers())
         elif not self._grip:
             self._hover(event.position())
         if self._grip != "click":
@@ -119,6 +128,8 @@ class Pointer(QObject):
                 self.band_clicked.emit(name)
         if self._grip == "pin":
             self.pin_released.emit(self._pin)
+        if self._grip == "band":
+            self.band_grip.dropped.emit()
         self._grip = self._pin = ""
 
     def _centre(self, event: QMouseEvent) -> None:
@@ -152,7 +163,8 @@ class Pointer(QObject):
         pin = self._overlay.pin_at(place)
         name = "" if pin else self._band_at(place)
         shape = Qt.CursorShape.PointingHandCursor if pin or name else Qt.CursorShape.ArrowCursor
-        self._canvas.setCursor(shape)
+        pulled = self.band_grip.cursor_of(name) if name else None
+        self._canvas.setCursor(shape if pulled is None else pulled)
         self._set_hovered(name, pin)
 
     def _set_hovered(self, name: str, pin: str = "") -> None:

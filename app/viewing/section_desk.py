@@ -13,7 +13,9 @@ from app.panels.profile import ProfilePanel
 from app.presenting.body_now import BodyNow
 from app.presenting.maps import apex_words
 from app.presenting.run import PLOT_INTERVAL
+from app.showing.plane_handle import PlaneHandle
 from app.showing.profile_plot import Drawn
+from app.showing.viewport import Viewport
 from app.wording.words import number, tr
 from core.errors import UserError
 from core.export import write_profile
@@ -42,6 +44,8 @@ class SectionDesk(QObject):
         self.curves: dict[str, tuple[Curve, ...]] = {}
         self._through = "left"
         self._by_hand: dict[str, float] = {}
+        self._former: dict[str, float] | None = None  # ``_by_hand`` before a hand took the plane
+        self._hand_at = 0.0  # where that hand is on the axis [mm]
         self._now: BodyNow | None = None
         self._slicer: Slicer | None = None
         self._opposite: Slicer | None = None
@@ -80,6 +84,20 @@ class SectionDesk(QObject):
         self._by_hand[self.axis] = at
         self.refresh()
 
+    @property
+    def carries(self) -> bool:
+        """Whether a hand has hold of the plane."""
+        return self._former is not None
+
+    def let_go(self) -> bool:
+        """Put the plane back to where a hand took hold of it; returns whether one had."""
+        if self._former is None:
+            return False
+        self._by_hand = self._former
+        self._open_hand()
+        self.refresh()
+        return True
+
     def go_through(self, side: str) -> None:
         """Let the plane go through the left or the right bust point again."""
         self._through, self._again = side, True
@@ -105,6 +123,34 @@ class SectionDesk(QObject):
             said = tr("Curves written to {name}.").format(name=Path(path).name)
             self._window.desk.show_written("curves", said)
 
+    # -- the handle in the view
+
+    def _handle(self, viewport: Viewport) -> PlaneHandle:
+        """Return the handle of the plane in one view, made when it is first wanted."""
+        handle = viewport.findChild(PlaneHandle)
+        if handle is None:
+            handle = PlaneHandle(viewport)
+            handle.taken.connect(self._take)
+            handle.pulled.connect(self._pull)
+            handle.dropped.connect(self._open_hand)
+        return handle
+
+    def _take(self) -> None:
+        if self._slicer is not None:
+            self._former, self._hand_at = dict(self._by_hand), self._slicer.plane.at
+            self._window.job_desk.show()
+
+    def _pull(self, step: float) -> None:
+        """Go along the axis with the hand [mm], but not out of the body."""
+        if self._former is not None and self._now is not None:
+            number, (low, high) = AXES.index(self.axis), self._now.box
+            self._hand_at += step
+            self.move_to(float(np.clip(self._hand_at, low[number], high[number])))
+
+    def _open_hand(self) -> None:
+        self._former = None
+        self._window.job_desk.show()
+
     # -- what is shown
 
     def refresh(self) -> None:
@@ -125,6 +171,7 @@ class SectionDesk(QObject):
             self._draw()
         for body in () if shown else self._view.beside.live:
             body.viewport.scene.section.set_visible(False)
+            self._handle(body.viewport).hide()
 
     def _cut(self, frame: Frame) -> None:
         if self._now is None or not self._now.is_of(frame):
@@ -165,6 +212,7 @@ class SectionDesk(QObject):
         for body in self._view.beside.live:
             curves = self.curves["after" if body.after else "before"]
             body.viewport.scene.section.show(plane, low, high, curves)
+            self._handle(body.viewport).show_plane(plane, low, high)
         if not self._plot_clock.isActive():
             self._plot_clock.start()
 

@@ -1,0 +1,190 @@
+"""The handle of the section plane in a 3D view: it is dragged along the plane's normal."""
+
+# ruff: noqa: D102, N802 - Qt names its events and says what they are
+from __future__ import annotations
+
+import numpy as np
+from PySide6.QtCore import QEvent, QObject, QPointF, Qt, Signal
+from PySide6.QtGui import QColor, QEnterEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QPolygonF
+from PySide6.QtWidgets import QWidget
+
+from app.dress.theme import tokens_of
+from app.seeing.section import sheet_ends
+from app.showing.viewport import Viewport
+from app.wording.words import tr
+from core.mesh import Floats, Points
+from core.profile import Plane
+
+SIZE = 48
+"""Width and height of the handle with its arrows [px]."""
+
+FINE = 0.1
+"""What is left of a drag while Shift is held [1]."""
+
+_HOME = np.array([0.72, 0.2])  # where it stands if the sheet is seen there, as shares of the view
+_MARGIN = 30.0  # from the edges of the view [px]
+_CELLS = 24  # the sheet is looked through in so many rows and columns, then its best cell again
+_FLATTEST = 0.35  # a normal seen shorter than this points at the eye: the drag then goes up and down
+
+
+class PlaneHandle(QWidget):
+    """A knob that stands on the plane's sheet and stays there until the camera moves.
+
+    ``taken`` and ``dropped`` when a hand closes and opens; ``pulled`` carries each step along the normal
+    [mm], a tenth of it while Shift is held. Where the normal points at the eye, up is away from it.
+    """
+
+    taken = Signal()
+    pulled = Signal(float)
+    dropped = Signal()
+
+    def __init__(self, viewport: Viewport) -> None:
+        super().__init__(viewport.overlay.parentWidget())
+        self._viewport = viewport
+        self._plane = Plane("x", 0.0)
+        self._ends = np.zeros(2), np.zeros(2)
+        self._flat: Floats | None = None  # where it stands on the plane [mm]
+        self._way = np.array([1.0, 0.0])  # of one mm along the normal over the view [px]
+        self._last: QPointF | None = None
+        self._hovered = False
+        self.setFixedSize(SIZE, SIZE)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.setAccessibleName(tr("Handle of the section plane"))
+        self.setToolTip(tr("Drag to move the section plane; Shift: finer, Esc: back"))
+        viewport.view_changed.connect(self._stand_anew)
+        viewport.installEventFilter(self)
+        self.hide()
+
+    def show_plane(self, plane: Plane, low: Floats, high: Floats) -> None:
+        """Stand on a plane through the box from ``low`` to ``high``, each (3,) [mm]."""
+        if plane.axis != self._plane.axis:
+            self._flat = None
+        self._plane, self._ends = plane, sheet_ends(plane, low, high)
+        self.show()
+        self._stand()
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.Resize:
+            self._stand_anew()
+        return False
+
+    # -- where it stands
+
+    def _stand_anew(self) -> None:
+        if self._last is None:
+            self._flat = None
+        if not self.isHidden():
+            self._stand()
+
+    def _stand(self) -> None:
+        """Go where the plane is; look for another place on it only if this one is not in the picture."""
+        if self._flat is None or (self._last is None and not self._inside(self._spots(self._flat[None]))[0]):
+            self._flat = self._best()
+        spot = self._spots(self._flat[None])[0]
+        self._way = self._way_of(spot)
+        self.move(*(round(each) - SIZE // 2 for each in spot[:2]))
+        self._show_cursor()
+        self.update()
+
+    def _best(self) -> Floats:
+        """Return the flat place of the sheet, (2,) [mm], that is seen nearest to the handle's home."""
+        low, high = self._ends
+        home = _HOME * [self._viewport.width(), self._viewport.height()]
+        best = 0.5 * (low + high)
+        for _ in range(2):
+            steps = np.linspace(0.0, 1.0, _CELLS + 1)
+            grid = np.stack(np.meshgrid(*(low + steps[:, None] * (high - low)).T), axis=-1).reshape(-1, 2)
+            spots = self._spots(grid)
+            away = np.linalg.norm(spots[:, :2] - home, axis=1)
+            best = grid[int(np.argmin(np.where(self._inside(spots), away, away + 1e6)))]
+            cell = (high - low) / _CELLS
+            low, high = np.maximum(best - cell, self._ends[0]), np.minimum(best + cell, self._ends[1])
+        return np.asarray(best)
+
+    def _way_of(self, spot: Floats) -> Floats:
+        """Return the way of one mm along the normal, (2,) [px], for a handle that is seen at ``spot``."""
+        assert self._flat is not None
+        view, plane = self._viewport.scene.view, self._plane
+        further = Plane(plane.axis, plane.at + 1.0).in_space(self._flat[None])
+        way = np.asarray(view.to_picture(further, self._viewport.width(), self._viewport.height())[0] - spot)
+        right, _, back = view.axes
+        beside = plane.in_space(self._flat[None]) + right
+        across = view.to_picture(beside, self._viewport.width(), self._viewport.height())[0] - spot
+        full = float(np.linalg.norm(across[:2]))
+        if np.linalg.norm(way[:2]) >= _FLATTEST * full:
+            return way[:2]
+        return np.array([0.0, full if plane.normal @ back > 0.0 else -full])
+
+    def _spots(self, flat: Floats) -> Points:
+        places = self._plane.in_space(flat)
+        return self._viewport.scene.view.to_picture(places, self._viewport.width(), self._viewport.height())
+
+    def _inside(self, spots: Points) -> Floats:
+        """Tell which places are seen well within the view, shape (k,)."""
+        room = np.array([self._viewport.width(), self._viewport.height()]) - _MARGIN
+        within = (spots[:, :2] >= _MARGIN) & (spots[:, :2] <= room)
+        return np.asarray(within.all(axis=1) & (spots[:, 2] > 0.0))
+
+    # -- the hand
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        if event.button() != Qt.MouseButton.LeftButton:
+            event.ignore()
+            return
+        self._last = event.globalPosition()
+        self._show_cursor()
+        self.taken.emit()
+        self.update()
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        if self._last is None:
+            event.ignore()
+            return
+        step, self._last = event.globalPosition() - self._last, event.globalPosition()
+        fine = FINE if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else 1.0
+        along = self._way @ [step.x(), step.y()] / max(float(self._way @ self._way), 1e-6)
+        self.pulled.emit(fine * float(along))
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        if self._last is None or event.button() != Qt.MouseButton.LeftButton:
+            event.ignore()
+            return
+        self._last = None
+        self._stand()
+        self.dropped.emit()
+
+    def enterEvent(self, event: QEnterEvent) -> None:
+        self._hovered = True
+        self.update()
+
+    def leaveEvent(self, event: QEvent) -> None:
+        self._hovered = False
+        self.update()
+
+    def _show_cursor(self) -> None:
+        held = self._last is not None
+        self.setCursor(Qt.CursorShape.ClosedHandCursor if held else Qt.CursorShape.OpenHandCursor)
+
+    # -- painting
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        tokens, painter = tokens_of(self), QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.translate(SIZE / 2.0, SIZE / 2.0)
+        lively = self._hovered or self._last is not None
+        if lively:
+            halo = QColor(tokens.accent)
+            halo.setAlpha(60)
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(halo)
+            painter.drawEllipse(QPointF(), 13.0, 13.0)
+        painter.rotate(float(np.degrees(np.arctan2(self._way[1], self._way[0]))))
+        # A rim of the other brightness keeps arrows and knob apart from any skin behind them.
+        painter.setPen(QPen(QColor(tokens.raised), 1.4))
+        painter.setBrush(QColor(tokens.accent))
+        for side in (-1.0, 1.0):
+            corners = ((13.0, -5.5), (21.0, 0.0), (13.0, 5.5))
+            painter.drawPolygon(QPolygonF([QPointF(side * x, y) for x, y in corners]))
+        painter.setPen(QPen(QColor(tokens.accent), 2.4 if lively else 1.8))
+        painter.setBrush(QColor(tokens.raised))
+        painter.drawEllipse(QPointF(), 8.5, 8.5)
