@@ -169,6 +169,7 @@ def _as_preset(name: str, design: Design, line: OwnLine | None, template: Templa
 def with_preset(design: Design, preset: Preset) -> Design:
     """Return the design with the lines of a preset; its other lines stay, and are taken off unless locked.
 
+    Ready-made lines that are there stay as they were led; those through places are led through these.
     Raises LineError if the preset's places are those of another template, or a line of it is locked.
     """
     if preset.template not in ("", design.template):
@@ -181,7 +182,7 @@ def with_preset(design: Design, preset: Preset) -> Design:
         names = [each.name for each in own] or [line.line]
         present = {each.name: each for each in after.own_lines}
         for each in own:
-            if each != present.get(each.name):
+            if each.name not in present or (line.places and each != present[each.name]):
                 after = after.with_own_line(each)
         for name in names:
             if after.traits_of(name).locked:

@@ -11,11 +11,12 @@ from window_tools import Script, drag, run_main, settled, undrawn
 from app.asking.editing import Editing
 from app.main_window import MainWindow
 from app.panels.length_groove import Feasible
+from app.panels.notice import Notice
 from app.presenting.lines import titled
 from core.design import Design, ScanSource
-from core.design_lines import LineTraits
+from core.design_lines import LineTraits, OwnLine
 from core.document import Document
-from core.presets import built_in
+from core.presets import built_in, preset_from
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -133,6 +134,7 @@ def preset(window: MainWindow) -> Script:
     assert last(window) == "Preset Bra"
     assert window.session.design.worn() == {"mid-bust", "strap left", "strap right"}
     yield settled(window)
+    a_preset_that_leads_lines_otherwise_says_so_and_can_be_taken_back(window)
     row = window.lines.rows["mid-bust"]
     window.lines_desk.feasible = lambda _: {"mid-bust": Feasible(0.95, 0.93)}
     window.lines_desk.show_rows()
@@ -143,6 +145,33 @@ def preset(window: MainWindow) -> Script:
     QTest.keyClick(row.slider, Qt.Key.Key_Escape)
     window.actions_.undo.trigger()
     assert window.session.design == before
+
+
+def a_preset_that_leads_lines_otherwise_says_so_and_can_be_taken_back(window: MainWindow) -> None:
+    session = window.session
+    ours = preset_from(session.design, "Ours")
+    left = next(line for line in session.design.own_lines if line.name == "strap left")
+    by_hand = OwnLine(left.name, left.points[1:])
+    session.edit(lambda design: design.with_own_line(by_hand).with_line("full-bust", 0.98), "led by hand")
+    led = session.design
+    window.notices.clear()
+    window.preset_desk.wear(built_in()[0])
+    assert left.name not in _notice(window).sentence
+    assert session.design.own_lines == led.own_lines, "ready-made lines stay as they were led"
+    window.notices.clear()
+    window.preset_desk.wear(ours)
+    assert left in session.design.own_lines
+    assert _notice(window).sentence == "Led as in the preset Ours: Lift tape"
+    (word, undo), *_ = _notice(window).actions
+    undo()
+    assert (word, session.design) == ("Undo", led)
+    session.undo_stack.undo()
+
+
+def _notice(window: MainWindow) -> Notice:
+    notice = window.notices.notice()
+    assert notice is not None
+    return notice
 
 
 class _Editing(Editing):

@@ -9,7 +9,7 @@ from core.comparison import shape_of
 from core.design_lines import LineTraits, OwnLine
 from core.errors import LineError
 from core.exact import solve_exact
-from core.own_lines import ready_made
+from core.own_lines import place_of, ready_made
 from core.pipeline import build, targets_of
 from core.presets import (
     FORMAT,
@@ -62,6 +62,18 @@ def test_a_preset_takes_other_lines_off_but_keeps_them_and_leaves_locked_ones(bu
     assert (after.ratio("full-bust"), after.ratio("mid-bust")) == (0.98, 0.92)
     assert after.own_lines == design.own_lines
     assert after.traits_of("full-bust").width == 9.0
+
+
+def test_a_ready_made_line_stays_as_it_was_led_and_one_through_places_goes_through_them(built):
+    template = read_template("168")
+    left, right = ready_made(template)["straps"]
+    led = OwnLine("strap left", left.points[1:])
+    design = replace(built("mannequin").design, lines=()).with_own_line(led).with_own_line(right)
+    after = with_preset(design, Preset("X", (PresetLine("straps", length=0.95),)))
+    assert after.own_lines == design.own_lines
+    assert after.ratio("strap left") == 0.95
+    through = PresetLine("strap left", ",".join(place_of(point, template) for point in left.points))
+    assert with_preset(design, Preset("X", (through,), template="168")).own_lines == (left, right)
 
 
 def test_the_lines_of_a_design_come_back_from_their_preset(built, monkeypatch, tmp_path):

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QInputDialog
 
+from app.presenting.lines import row_title
 from app.wording.words import say, tr
+from core.design import Design
 from core.design_lines import LONGEST_TITLE
 from core.errors import UserError
 from core.presets import Preset, built_in, own_presets, preset_from, save_preset, with_preset
@@ -52,12 +54,18 @@ class PresetDesk(QObject):
         before = session.design
         if before is None:
             return
-        session.edit(
-            lambda design: with_preset(design, preset), tr("Preset {name}").format(name=say(preset.title))
-        )
+        step, title = session.undo_stack.index(), say(preset.title)
+        session.edit(lambda design: with_preset(design, preset), tr("Preset {name}").format(name=title))
         self._window.desk.go_to("lines")
-        if session.design is not before and preset.leaves_out:
-            self._window.notices.show_notice("info", say(preset.title), say(preset.leaves_out))
+        if session.design is None or session.design is before:
+            return
+        led = _led_anew(before, session.design)
+        if led:
+            said = tr("Led as in the preset {name}: {lines}").format(name=title, lines=led)
+            undo = tr("Undo"), partial(session.undo_stack.setIndex, step)
+            self._window.notices.show_notice("info", said, say(preset.leaves_out), [undo])
+        elif preset.leaves_out:
+            self._window.notices.show_notice("info", title, say(preset.leaves_out))
 
     def ask(self) -> None:
         """Ask for a name, and keep the present lines as a preset."""
@@ -79,3 +87,10 @@ class PresetDesk(QObject):
             return
         self._window.notices.withdraw("preset")
         self._window.notices.show_notice("ok", tr("Preset {name} saved.").format(name=title), str(path))
+
+
+def _led_anew(before: Design, after: Design) -> str:
+    """Return the titles of the lines that were led by hand and are led otherwise now."""
+    paths = {line.name: line.points for line in before.own_lines}
+    names = [line.name for line in after.own_lines if paths.get(line.name, line.points) != line.points]
+    return ", ".join(dict.fromkeys(row_title(name, after) for name in names))
