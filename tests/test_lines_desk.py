@@ -158,14 +158,16 @@ def a_preset_that_leads_lines_otherwise_says_so_and_can_be_taken_back(window: Ma
     window.preset_desk.wear(built_in()[0])
     assert left.name not in _notice(window).sentence
     assert session.design.own_lines == led.own_lines, "ready-made lines stay as they were led"
+    worn = session.design
     window.notices.clear()
     window.preset_desk.wear(ours)
     assert left in session.design.own_lines
     assert _notice(window).sentence == "Led as in the preset Ours: Lift tape"
     (word, undo), *_ = _notice(window).actions
     undo()
-    assert (word, session.design) == ("Undo", led)
-    session.undo_stack.undo()
+    assert (word, session.design) == ("Undo", worn)
+    for _ in range(2):
+        session.undo_stack.undo()
 
 
 def _notice(window: MainWindow) -> Notice:
