@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
 import pytest
-from PySide6.QtWidgets import QApplication, QLabel, QPushButton
+from PySide6.QtCore import QEvent, QObject
+from PySide6.QtWidgets import QApplication, QLabel, QPushButton, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.dress.theme import apply_theme, tokens_of
+from app.panels.line_parts import LineChip
 from app.panels.notice import NoticeBar
 from app.panels.rail import Rail
 from app.panels.status import StatusBar
@@ -67,6 +69,62 @@ def test_the_rail_says_what_is_chosen_not_what_is_set(qtbot: QtBot) -> None:
     assert said.args == ["landmarks"]
     with pytest.raises(ValueError, match="locked"):
         rail.set_state("scan", "locked")
+
+
+class Paints(QObject):
+    """Counts how often widgets are painted."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.count = 0
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+        self.count += event.type() == QEvent.Type.Paint
+        return False
+
+
+def rail_item() -> tuple[QWidget, Callable[[str], None]]:
+    item = Rail().items["lines"]
+    item.setParent(None)
+    return item, lambda state: item.set_state(state, 0)
+
+
+def chip() -> tuple[QWidget, Callable[[str], None]]:
+    pill = VerdictChip()
+    return pill, pill.set_state
+
+
+def line_chip() -> tuple[QWidget, Callable[[str], None]]:
+    mark = LineChip()
+    return mark, lambda colour: mark.show_line(colour, 12.0, True)
+
+
+@pytest.mark.parametrize(
+    ("made", "one", "other"),
+    [
+        (rail_item, "done", "available"),
+        (chip, "settled", "folded"),
+        (line_chip, "#102030", "#405060"),
+    ],
+)
+def test_what_is_told_the_same_again_is_not_painted_anew(
+    qtbot: QtBot, made: Callable[[], tuple[QWidget, Callable[[str], None]]], one: str, other: str
+) -> None:
+    widget, tell = made()
+    qtbot.addWidget(widget)
+    tell(one)
+    with qtbot.waitExposed(widget):
+        widget.show()
+    paints = Paints()
+    widget.installEventFilter(paints)
+    tell(other)
+    qtbot.waitUntil(lambda: paints.count > 0)
+    qtbot.wait(2 * SHORTEST_SHOW_MS)
+    before = paints.count
+    tell(other)
+    QApplication.processEvents()
+    assert paints.count == before
+    widget.removeEventFilter(paints)
 
 
 def test_every_view_tool_has_name_tip_and_key(qtbot: QtBot) -> None:

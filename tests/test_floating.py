@@ -5,11 +5,15 @@ from __future__ import annotations
 from itertools import combinations
 
 import pytest
-from PySide6.QtCore import QRect, QSize
+from PySide6.QtCore import QPoint, QRect, QSize, Qt
+from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QApplication, QWidget
 
 from app.dress.parts import FloatingPanel
+from app.dress.shadow import floating_ground
+from app.dress.theme import apply_theme
 from app.showing.floating import GAP, Floating
+from app.wording.tokens import DARK, LIGHT
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -69,3 +73,22 @@ def test_panels_keep_their_corners_and_clear_each_other() -> None:
     assert inset.geometry() == before
     view.close()
     view.deleteLater()
+
+
+def test_a_shadow_is_painted_once_and_follows_theme_and_size(qapp: QApplication) -> None:
+    panel, inside, shadow = Panel(200, 40), QPoint(100, 20), QPoint(100, 3)
+    panel.setAttribute(Qt.WidgetAttribute.WA_TranslucentBackground)
+    for dark, tokens in ((False, LIGHT), (True, DARK)):
+        apply_theme(qapp, dark)
+        for size in (QSize(200, 60), QSize(260, 80)):
+            panel.resize(size)
+            image = panel.grab().toImage()
+            fill = image.pixelColor(inside)
+            assert fill.alpha() >= tokens.floating_alpha
+            assert abs(fill.lightness() - QColor(tokens.floating).lightness()) < 6
+            assert 0 < image.pixelColor(shadow).alpha() < 200
+            assert image.pixelColor(QPoint(size.width() - 15, size.height() - 16)).alpha() > 200
+            painted = floating_ground.cache_info().misses
+            assert panel.grab().toImage() == image
+            assert floating_ground.cache_info().misses == painted
+    qapp.setStyleSheet("")

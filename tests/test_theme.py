@@ -143,6 +143,11 @@ def test_shipped_type_is_used(themed: QApplication) -> None:
         assert (found.family(), found.pixelSize()) == ("Inter", size)
 
 
+def test_a_changed_type_changes_no_other(themed: QApplication) -> None:
+    font("name").setPixelSize(40)
+    assert font("name").pixelSize() == 13
+
+
 @pytest.mark.parametrize("path", sorted(ICONS.glob("*.svg")), ids=lambda path: path.stem)
 def test_every_icon_takes_its_colour(qapp: QApplication, path: Path) -> None:
     image = pixmap(path.stem, "#FF0000", 24, 2.0).toImage()

@@ -22,6 +22,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.dress.icons import icon, pixmap
+from app.dress.shadow import MARGINS, floating_ground
 from app.dress.theme import font, label, set_tag, tokens_of
 
 
@@ -82,8 +83,9 @@ class IconLabel(QLabel):
 
     def show_icon(self, name: str, token: str) -> None:
         """Show another drawing in another colour."""
-        self._drawing = (name, token, self._drawing[2])
-        self.update()
+        if (name, token) != self._drawing[:2]:
+            self._drawing = (name, token, self._drawing[2])
+            self.update()
 
     def paintEvent(self, event: QPaintEvent) -> None:
         name, token, size = self._drawing
@@ -124,8 +126,9 @@ class ToolButton(QToolButton):
 
     def show_icon(self, drawing: str) -> None:
         """Show another drawing."""
-        self._drawing = drawing
-        self._repaint_icon()
+        if drawing != self._drawing:
+            self._drawing = drawing
+            self._repaint_icon()
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
@@ -217,12 +220,8 @@ class Disclosure(QAbstractButton):
         if self.hasFocus():
             painter.setPen(QPen(QColor(tokens.accent), 2))
             painter.drawRoundedRect(QRectF(self.rect()).adjusted(1, 1, -1, -1), 6, 6)
-        caret = pixmap(
-            "caret-down" if self.isChecked() else "caret-right",
-            tokens.text_quiet,
-            12,
-            self.devicePixelRatioF(),
-        )
+        drawing = "caret-down" if self.isChecked() else "caret-right"
+        caret = pixmap(drawing, tokens.text_quiet, 12, self.devicePixelRatioF())
         painter.drawPixmap(QPointF(8, self.height() / 2 - 6), caret)
         painter.setFont(font("secondary"))
         painter.setPen(QColor(tokens.text_quiet))
@@ -233,8 +232,7 @@ class Disclosure(QAbstractButton):
 class FloatingPanel(QWidget):
     """A translucent rounded panel with a soft shadow, to lie on the view."""
 
-    MARGINS = (10, 8, 10, 12)
-    RADIUS = 10.0
+    MARGINS = MARGINS
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -244,21 +242,8 @@ class FloatingPanel(QWidget):
         self.row.setSpacing(2)
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        tokens = tokens_of(self)
-        left, top, right, bottom = self.MARGINS
-        panel = QRectF(self.rect()).adjusted(left, top, -right, -bottom)
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(QColor(0, 0, 0, tokens.shadow_alpha))
-        for spread in range(10):
-            wider = panel.adjusted(-spread, -spread, spread, spread).translated(QPointF(0, 3))
-            painter.drawRoundedRect(wider, self.RADIUS + spread, self.RADIUS + spread)
-        fill = QColor(tokens.floating)
-        fill.setAlpha(tokens.floating_alpha)
-        painter.setBrush(fill)
-        painter.setPen(QColor(tokens.line))
-        painter.drawRoundedRect(panel.adjusted(0.5, 0.5, -0.5, -0.5), self.RADIUS, self.RADIUS)
+        ratio, dark = self.devicePixelRatioF(), tokens_of(self).dark
+        QPainter(self).drawPixmap(0, 0, floating_ground(self.width(), self.height(), ratio, dark))
 
 
 class EmptyState(QFrame):

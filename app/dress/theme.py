@@ -30,6 +30,9 @@ ROLES = {
 """Size [px], weight and colour token of each kind of text."""
 
 
+_OUTLINE = QPalette.ColorRole.Mid
+
+
 @cache
 def load_fonts() -> tuple[str, ...]:
     """Make the shipped fonts known to Qt and return their families; empty when none is shipped."""
@@ -41,6 +44,11 @@ def load_fonts() -> tuple[str, ...]:
 
 def font(role: str, tabular: bool = False) -> QFont:
     """Return the type of one role of ``ROLES``; ``tabular`` gives figures of equal width, for numbers."""
+    return QFont(_type(role, tabular))  # its holder may change it
+
+
+@cache
+def _type(role: str, tabular: bool) -> QFont:
     size, weight, _ = ROLES[role]
     result = QFont(list(FAMILIES))
     result.setPixelSize(size)
@@ -70,7 +78,7 @@ def set_tag(widget: QWidget, name: str, value: object) -> None:
 def tokens_of(widget: QWidget) -> Tokens:
     """Return the colours of the theme that ``widget`` is shown in; ask again on a palette change."""
     # A style sheet rewrites the colours of window, button and text in a widget's palette, but never this one.
-    return DARK if widget.palette().color(QPalette.ColorRole.Mid).lightness() < 128 else LIGHT
+    return DARK if widget.palette().color(_OUTLINE).lightness() < 128 else LIGHT
 
 
 def tone_of(confidence: float) -> str:
@@ -104,7 +112,7 @@ def palette(t: Tokens) -> QPalette:
         role.HighlightedText: t.on_accent,
         role.ToolTipBase: t.ink,
         role.ToolTipText: t.on_ink,
-        role.Mid: t.outline,
+        _OUTLINE: t.outline,
         role.Dark: t.control,
         role.Light: t.raised,
         role.Midlight: t.line,

@@ -36,8 +36,9 @@ class LineChip(QWidget):
 
     def show_line(self, color: str, width_mm: float, filled: bool) -> None:
         """Show a line's colour and the width of its band, filled or as an outline."""
-        self._color, self._width, self._filled = color, width_mm, filled
-        self.update()
+        if (color, width_mm, filled) != (self._color, self._width, self._filled):
+            self._color, self._width, self._filled = color, width_mm, filled
+            self.update()
 
     def paintEvent(self, event: QPaintEvent) -> None:
         painter = QPainter(self)

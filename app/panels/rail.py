@@ -85,10 +85,12 @@ class RailItem(QAbstractButton):
         """Show how the step stands."""
         if state not in STATES:
             raise ValueError(state)
+        changed = (state, count) != (self._state, self._count)
         self._state, self._count = state, count
         said = {"done": tr("done"), "look": tr("wants a look"), "missing": tr("not yet possible")}
         self.setAccessibleDescription(said.get(state, ""))
-        self.update()
+        if changed:
+            self.update()
 
     def paintEvent(self, event: QPaintEvent) -> None:
         tokens = tokens_of(self)

@@ -114,6 +114,8 @@ class VerdictChip(QWidget):
 
     def _take(self) -> None:
         self._change.stop()
+        if self._next == self._state and self._since.isValid():
+            return
         if self._next != self._state or not self._since.isValid():
             self._since.restart()
         self._state = self._next
