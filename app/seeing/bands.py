@@ -57,6 +57,9 @@ class RibbonActor:
             specular=0.14,
             specular_power=20,
         )
+        # Else a filter in Python stands between, which copies at each move.
+        self.data.set_active_scalars("Colour")
+        self.actor.mapper.SetInputDataObject(self.data)
         self.actor.prop.interpolation = "Gouraud"
         self.data.point_data.active_normals_name = "Normals"
         # Plain views of what is drawn: pyvista looks its own up by name each time.

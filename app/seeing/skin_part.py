@@ -47,6 +47,9 @@ class SkinPart:
             specular=0.10,
             specular_power=14,
         )
+        # Else a filter in Python stands between, which is asked several times a picture.
+        self._data.set_active_scalars("Colour")
+        self.actor.mapper.SetInputDataObject(self._data)
         self.actor.prop.interpolation = "Gouraud"
         # Of a closed body no inside is seen; not to fill it halves the time of a frame on software GL.
         self.actor.prop.culling = "none" if inside_seen else "back"
