@@ -22,7 +22,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.dress.icons import icon, pixmap
-from app.dress.shadow import MARGINS, floating_ground
+from app.dress.shadow import MARGINS, RADIUS, floating_ground
 from app.dress.theme import font, label, set_tag, tokens_of
 
 
@@ -232,7 +232,7 @@ class Disclosure(QAbstractButton):
 class FloatingPanel(QWidget):
     """A translucent rounded panel with a soft shadow, to lie on the view."""
 
-    MARGINS = MARGINS
+    MARGINS, RADIUS = MARGINS, RADIUS
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)

@@ -13,7 +13,8 @@ from app.wording.tokens import DARK, LIGHT
 MARGINS = (10, 8, 10, 12)
 """Room for the shadow left of a sheet, above, right of it and below [px]."""
 
-_RADIUS = 10.0
+RADIUS = 10.0
+"""Of the corners of a sheet [px]."""
 
 
 @lru_cache(maxsize=32)
@@ -34,11 +35,11 @@ def floating_ground(width: int, height: int, ratio: float, dark: bool) -> QPixma
     painter.setBrush(QColor(0, 0, 0, tokens.shadow_alpha))
     for spread in range(10):
         wider = sheet.adjusted(-spread, -spread, spread, spread).translated(QPointF(0, 3))
-        painter.drawRoundedRect(wider, _RADIUS + spread, _RADIUS + spread)
+        painter.drawRoundedRect(wider, RADIUS + spread, RADIUS + spread)
     fill = QColor(tokens.floating)
     fill.setAlpha(tokens.floating_alpha)
     painter.setBrush(fill)
     painter.setPen(QColor(tokens.line))
-    painter.drawRoundedRect(sheet.adjusted(0.5, 0.5, -0.5, -0.5), _RADIUS, _RADIUS)
+    painter.drawRoundedRect(sheet.adjusted(0.5, 0.5, -0.5, -0.5), RADIUS, RADIUS)
     painter.end()
     return result
