@@ -33,3 +33,17 @@ def test_quick_light_looks_like_that_of_every_pixel_and_goes_without_a_trace() -
     assert np.array_equal(quick, quick_again)
     assert np.array_equal(back, at_pixels)
     plotter.close()
+
+
+def test_what_comes_later_is_lit_quickly_too() -> None:
+    plotter = pv.Plotter(off_screen=True, window_size=[64, 64], lighting="none")
+    scene, light = Scene(plotter), QuickLight(plotter)
+    light.use(True)
+    ball = pv.Icosphere(radius=150.0, nsub=2)
+    scene.show_body(Mesh(ball.points, ball.regular_faces))
+    assert scene.body is not None
+    quick = scene.body.still[0].GetShaderProperty()
+    assert quick.GetNumberOfShaderReplacements() == 1, "the inside lies in its own shadow"
+    light.use(True)
+    assert quick.GetNumberOfShaderReplacements() == 5
+    plotter.close()

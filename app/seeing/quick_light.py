@@ -40,9 +40,14 @@ class QuickLight:
     def __init__(self, plotter: pv.BasePlotter) -> None:
         self._plotter = plotter
         self._quick: WeakSet[pv.Actor] = WeakSet()
+        self._used: tuple[bool, int] | None = None
 
     def use(self, quickly: bool) -> None:
         """Light at the vertices, or again at each pixel, as VTK does by itself."""
+        using = quickly, self._plotter.renderer.GetViewProps().GetMTime()
+        if using == self._used:
+            return
+        self._used = using
         for actor in self._plotter.renderer.actors.values():
             if (actor in self._quick) != quickly and _is_smooth(actor):
                 _switch(actor, quickly)
