@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QApplication, QLabel, QPushButton, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.dress.theme import apply_theme, tokens_of
+from app.panels.length_slider import LengthSlider
 from app.panels.line_parts import LineChip
 from app.panels.notice import NoticeBar
 from app.panels.rail import Rail
@@ -99,12 +100,18 @@ def line_chip() -> tuple[QWidget, Callable[[str], None]]:
     return mark, lambda colour: mark.show_line(colour, 12.0, True)
 
 
+def slider() -> tuple[QWidget, Callable[[str], None]]:
+    length = LengthSlider()
+    return length, length.set_color
+
+
 @pytest.mark.parametrize(
     ("made", "one", "other"),
     [
         (rail_item, "done", "available"),
         (chip, "settled", "folded"),
         (line_chip, "#102030", "#405060"),
+        (slider, "#102030", "#405060"),
     ],
 )
 def test_what_is_told_the_same_again_is_not_painted_anew(

@@ -75,6 +75,12 @@ def set_tag(widget: QWidget, name: str, value: object) -> None:
         widget.style().polish(widget)
 
 
+def set_tip(widget: QWidget, tip: str) -> None:
+    """Say something else on hovering; what is said already makes no event."""
+    if widget.toolTip() != tip:
+        widget.setToolTip(tip)
+
+
 def tokens_of(widget: QWidget) -> Tokens:
     """Return the colours of the theme that ``widget`` is shown in; ask again on a palette change."""
     # A style sheet rewrites the colours of window, button and text in a widget's palette, but never this one.

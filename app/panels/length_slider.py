@@ -87,23 +87,27 @@ class LengthSlider(QAbstractSlider):
 
     def set_reached(self, ratio: float | None) -> None:
         """Show the reached length as a share of the rest length [1], or none."""
-        self._reached = ratio
-        self.update()
+        if ratio != self._reached:
+            self._reached = ratio
+            self.update()
 
     def set_color(self, color: str) -> None:
         """Give the handle the colour of its line."""
-        self._color = color
-        self.update()
+        if color != self._color:
+            self._color = color
+            self.update()
 
     def set_feasible(self, feasible: Feasible | None) -> None:
         """Show how short the line may become, or that this is not known."""
-        self._feasible = feasible
-        self.update()
+        if feasible != self._feasible:
+            self._feasible = feasible
+            self.update()
 
     def set_strong(self, strong: bool) -> None:
         """Show the zones at full strength, as for the selected line."""
-        self._strong = strong
-        self.update()
+        if strong != self._strong:
+            self._strong = strong
+            self.update()
 
     def event(self, event: QEvent) -> bool:
         if isinstance(event, QHelpEvent) and self._feasible is not None and self._is_red(event.pos().x()):

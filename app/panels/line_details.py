@@ -8,7 +8,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from app.dress.parts import IconLabel, ToolButton, hairline, sentence
-from app.dress.theme import label, set_tag
+from app.dress.theme import label, set_tag, set_tip
 from app.panels.line_parts import PaletteMenu, StiffnessField
 from app.panels.line_view import LineView, SideView
 from app.wording.words import number, tr
@@ -87,7 +87,7 @@ class LineDetails(QWidget):
         self._tools["link"].setVisible(bool(view.partner))
         self._tools["link"].show_icon("unlink" if view.sides else "link")
         tip = tr("Set left and right apart (L)") if view.sides else tr("Link with the other side (L)")
-        self._tools["link"].setToolTip(tip)
+        set_tip(self._tools["link"], tip)
         self._tools["link"].setAccessibleName(tip)
         for name in ("path", "remove"):
             self._tools[name].setVisible(view.own)

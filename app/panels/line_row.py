@@ -8,7 +8,7 @@ from PySide6.QtGui import QColor, QEnterEvent, QMouseEvent, QPainter, QPaintEven
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.dress.parts import ToolButton, sentence
-from app.dress.theme import label, set_tag, tokens_of
+from app.dress.theme import label, set_tag, set_tip, tokens_of
 from app.panels.length_slider import LengthSlider
 from app.panels.line_details import LineDetails
 from app.panels.line_parts import LineChip, LineTitle
@@ -50,27 +50,31 @@ class LineRow(QFrame):
         """Show new values of the same line, without disturbing a drag or a number being typed."""
         self.view = view
         self.title.setText(view.title)
-        self.title.setToolTip(f"{view.title}\n{tr('Double click or F2: another name')}")
+        set_tip(self.title, f"{view.title}\n{tr('Double click or F2: another name')}")
         set_tag(self.title, "tone", "" if view.visible else "faint")
         self._chip.show_line(view.color, view.width_mm, view.visible)
         self._show_slider(view)
-        self._show_lengths(self.slider.ratio() if self.slider.isSliderDown() else view.ratio)
+        self._show_lengths(self._set_ratio())
         for each in (self.slider, self.percent, self.millimetres):
             each.setVisible(view.constrained)
             each.setEnabled(view.settable)
-            each.setToolTip(locked_tip() if view.locked else self._tips[each])
+            set_tip(each, locked_tip() if view.locked else self._tips[each])
         self._measure.setVisible(not view.constrained)
         self._measure.setText(f"{number(view.reached_mm or view.rest_mm)} mm")
         still = tr("On points that do not move: measured only.")
         self._note.setText(still if view.own else tr("On the rib cage: measured, it does not move."))
         self._note.setVisible(not view.constrained)
-        self.details.show_view(view)
+        if self._open:  # while the row is closed nobody sees them
+            self.details.show_view(view)
         self._eye.show_icon("eye" if view.visible else "eye-slash")
         self._lock.show_icon("lock" if view.locked else "unlock")
         self._show_opened()
 
     def set_open(self, open_: bool) -> None:
         """Open or close the row."""
+        if open_ and not self._open:
+            self.details.show_view(self.view)
+            self.details.show_lengths(self.view, self._set_ratio())
         self._open = open_
         self.slider.set_strong(open_)
         self._show_opened()
@@ -190,7 +194,12 @@ class LineRow(QFrame):
         """Write a set length, which during a drag runs ahead of the view."""
         for field in (self.percent, self.millimetres):
             field.show_length(ratio, self.view.rest_mm, self.view.whole_mm)
-        self.details.show_lengths(self.view, ratio)
+        if self._open:
+            self.details.show_lengths(self.view, ratio)
+
+    def _set_ratio(self) -> float:
+        """Return the set length: during a drag the one in the hand."""
+        return self.slider.ratio() if self.slider.isSliderDown() else self.view.ratio
 
     def _hover(self, hovered: bool) -> None:
         self._hovered = hovered
