@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
-from window_tools import Script, points, run_main, settled
+from window_tools import Script, drag, points, run_main, settled, undrawn
 
 from app.lining import line_maker
 from app.lining.line_dialog import LineDialog
@@ -156,3 +156,30 @@ def test_ready_made_lines_pull_on_their_own_side_of_every_template(name: str, bu
         for line in pair:
             design = design.with_own_line(line)
     assert len(build(design, built("mannequin")).model.lines) == 3 + 8
+
+
+def test_a_handle_in_the_hand_stays_while_lines_come_and_its_preview_goes_with_its_line() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        undrawn(window)
+        session, row = window.session, window.lines.rows["mid-bust"]
+        drag(window, "mid-bust", -20, release=False)
+        window.actions_.add_lines["straps"].trigger()
+        yield lambda: "strap left" in window.lines.rows
+        assert window.lines.rows["mid-bust"] is row
+        ratio = row.slider.ratio()
+        QTest.mouseRelease(row.slider, Qt.MouseButton.LeftButton)
+        assert session.design.ratio("mid-bust") == ratio < 0.99
+        session.undo_stack.undo()
+        yield settled(window)
+        window.desk.plot_now()
+        drag(window, "strap left", -20, release=False)
+        slider = window.lines.rows["strap left"].slider
+        session.undo_stack.undo()
+        QTest.mouseMove(slider, QPoint(round(slider._x_of(0.9)), slider.height() // 2))
+        assert session._preview is not None, "the list is one frame behind"
+        yield settled(window)
+        assert session._preview is None
+        assert "strap left" not in window.lines.rows
+
+    run_main([], script)

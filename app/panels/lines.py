@@ -158,13 +158,20 @@ class LinesPanel(QWidget):
         return self._scroll
 
     def _rebuild(self, lines: Sequence[LineView]) -> None:
-        for row in self.rows.values():
+        """Make the rows anew; those of lines that stay are kept, one of them may be in the user's hand."""
+        names = [view.name for view in lines]
+        for name, row in self.rows.items():
             self._list.removeWidget(row)
-            row.deleteLater()
-        self.rows = {view.name: LineRow(view) for view in lines}
-        for place, (name, row) in enumerate(self.rows.items()):
+            if name not in names:
+                if row.slider.isSliderDown():
+                    self.drag_cancelled.emit(name)
+                row.deleteLater()
+        former, self.rows = self.rows, {}
+        for place, view in enumerate(lines):
+            row = self.rows[view.name] = former.get(view.name) or LineRow(view)
             self._list.insertWidget(place, row)
-            self._connect(name, row)
+            if view.name not in former:
+                self._connect(view.name, row)
         self.select(self._selected if self._selected in self.rows else None)
 
     def _connect(self, name: str, row: LineRow) -> None:
