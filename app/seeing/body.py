@@ -16,6 +16,9 @@ from app.seeing.skin_part import DIFFUSE, Singles, SkinPart
 from app.seeing.stage import Look
 from core.mesh import Flags, Floats, Indices, Mesh, Points, area_vectors, incidence, unit
 
+NONE: Indices = np.empty(0, dtype=np.int64)
+"""No vertices."""
+
 _EVENLY = 0.18
 """How much of what the skin throws back comes from all sides in a map."""
 
@@ -24,10 +27,11 @@ class BodyActor:
     """The body on one plotter: shown once, then moved in place.
 
     ``points`` are the moved positions of the body's n vertices, (n, 3) [mm], shown or not. What moves is
-    drawn apart from what stands still, so that little is handed to the graphics when it does.
+    drawn apart from what stands still, so that little is handed to the graphics when it does: ``moving`` are
+    the vertices of which that is known already, shape (k,).
     """
 
-    def __init__(self, plotter: pv.BasePlotter, mesh: Mesh, look: Look) -> None:
+    def __init__(self, plotter: pv.BasePlotter, mesh: Mesh, look: Look, moving: Indices = NONE) -> None:
         self.rest = mesh
         self.points = np.array(mesh.vertices)
         self._plotter = plotter
@@ -42,6 +46,7 @@ class BodyActor:
         self._normals: Singles = self._rest_normals.copy()
         self._colours: Colours = np.zeros(rest.vertices.shape, dtype=np.uint8)
         self._moves: Flags = np.zeros(len(mesh.vertices), dtype=bool)
+        self._moves[moving] = True
         self._still: SkinPart | None = None
         self._moving: SkinPart | None = None
         self._outline = pv.PolyData.from_regular_faces(mesh.vertices.astype(np.float32), mesh.faces)
@@ -65,6 +70,11 @@ class BodyActor:
         self._visible = visible
         for part in self._parts:
             part.actor.SetVisibility(visible)
+
+    @property
+    def box(self) -> Floats:
+        """Its least and largest coordinates at rest, shape (3, 2) [mm]."""
+        return self._skin.box
 
     @property
     def still(self) -> tuple[pv.Actor, ...]:

@@ -10,6 +10,7 @@ from scipy.interpolate import CubicSpline
 from scipy.ndimage import convolve1d
 from scipy.spatial import cKDTree
 
+from app.seeing.skin import skin_of
 from core.mesh import Faces, Floats, Indices, Mesh, Points, unit
 from core.sections import arc_length, resample
 
@@ -50,7 +51,7 @@ class Surface:
 
     def __init__(self, mesh: Mesh) -> None:
         self.mesh = mesh
-        self._tree = cKDTree(mesh.vertices)
+        self._tree = skin_of(mesh).tree
 
     def near(self, points: Points, count: int = 5) -> tuple[Indices, Floats]:
         """Return the nearest vertices and their weights, both (k, count); weights sum to 1 and fade out."""

@@ -9,10 +9,10 @@ import numpy as np
 import pyvista as pv
 
 from app.seeing.bands import Band, Bands
-from app.seeing.body import BodyActor, Ghost
+from app.seeing.body import NONE, BodyActor, Ghost
 from app.seeing.camera import LENS, View
 from app.seeing.control import ControlActor
-from app.seeing.framing import NOBODY, box_of, depth_range, framing_bust
+from app.seeing.framing import NOBODY, depth_range, framing_bust
 from app.seeing.material import CLAY, look_of
 from app.seeing.ribbon import Surface
 from app.seeing.section import SectionSheet
@@ -52,14 +52,14 @@ class Scene:
 
     # -- what is shown
 
-    def show_body(self, mesh: Mesh) -> None:
-        """Show a body at rest in place of the former one; its lines and control mesh leave."""
+    def show_body(self, mesh: Mesh, moving: Indices = NONE) -> None:
+        """Show a body at rest, and nothing on it; ``moving`` (k,) are vertices that will move, if known."""
         self.bands.clear()
         self._trace.show(np.empty((0, 3)))
         self._drop_control()
-        self.body = BodyActor(self.plotter, mesh, self._look)
+        self.body = BodyActor(self.plotter, mesh, self._look, moving)
         self._surface = Surface(mesh)
-        low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+        low, high = self._box().T
         self._stage.stand(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), low[2])
         self._before, self._ghost = False, None
         self.plotter.remove_actor("ghost", reset_camera=False, render=False)
@@ -293,7 +293,7 @@ class Scene:
         self.bands.set_visible(self._visible["bands"])
 
     def _box(self) -> Floats:
-        return NOBODY if self.body is None else box_of(self.body.rest.vertices)
+        return NOBODY if self.body is None else self.body.box
 
     def _aspect(self) -> float:
         width, height = self.plotter.window_size

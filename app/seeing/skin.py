@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
-from core.mesh import Flags, Indices, Mesh
+from app.seeing.framing import box_of
+from core.mesh import Flags, Floats, Indices, Mesh
 
 PLATE_AREA = 1500.0
 """Smallest flat area that counts as a cut plate and not as skin [mm^2]."""
@@ -26,6 +29,16 @@ class Skin:
     mesh: Mesh
     source: Indices
     plate: Flags
+
+    @cached_property
+    def tree(self) -> cKDTree:
+        """The body's own vertices, to find those nearest to a place."""
+        return cKDTree(self.mesh.vertices[: int(self.source.max(initial=-1)) + 1])
+
+    @cached_property
+    def box(self) -> Floats:
+        """The body's least and largest coordinates, shape (3, 2) [mm]."""
+        return box_of(self.mesh.vertices)
 
 
 def split_plates(mesh: Mesh) -> Skin:
@@ -74,5 +87,5 @@ def skin_of(mesh: Mesh) -> Skin:
     if skin is None:
         skin = _KNOWN[mesh] = split_plates(mesh)
     # They are kept where they belong once they were asked for.
-    _ = skin.mesh.vertex_normals, mesh.vertex_normals, mesh.boundary_loops
+    _ = skin.mesh.vertex_normals, mesh.vertex_normals, mesh.boundary_loops, skin.tree, skin.box
     return skin

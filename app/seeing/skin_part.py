@@ -28,13 +28,14 @@ class SkinPart:
     ) -> None:
         self._plotter = plotter
         self._held = np.zeros(len(skin.vertices), dtype=bool)
-        self._held[skin.faces[faces]] = True
+        corners = skin.faces[faces]
+        self._held[corners] = True
         self.rows: Indices = np.flatnonzero(self._held)
         place = np.cumsum(self._held) - 1
-        corners = skin.vertices[self.rows].astype(np.float32)
-        self._data = pv.PolyData.from_regular_faces(corners, place[skin.faces[faces]])
+        places = skin.vertices[self.rows].astype(np.float32)
+        self._data = pv.PolyData.from_regular_faces(places, place[corners])
         self._data.point_data["Normals"] = skin.vertex_normals[self.rows].astype(np.float32)
-        self._data.point_data["Colour"] = np.zeros(corners.shape, dtype=np.uint8)
+        self._data.point_data["Colour"] = np.zeros(places.shape, dtype=np.uint8)
         self.actor = plotter.add_mesh(
             self._data,
             scalars="Colour",

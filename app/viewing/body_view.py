@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from app.presenting.frame import band_label, bands, drawn
+from app.seeing.body import NONE
 from app.showing.viewport import Viewport
 from core.body import Body
 from core.control_mesh import ControlMesh
 from core.live import Frame
-from core.mesh import Floats
+from core.mesh import Floats, Indices
 from core.pipeline import Stages
 
 SCENE_PARTS = {"control-mesh": "control", "bands": "bands", "ghost": "ghost"}
@@ -33,7 +34,7 @@ class BodyView:
         fresh = stages.body is not self.body
         laid = stages.control is not self._control
         if fresh:
-            self.show_body(stages.body)
+            self.show_body(stages.body, stages.moving.vertices)
         if laid:
             self._control = stages.control
             scene.show_control_mesh(stages.control.mesh, stages.control.fixed)
@@ -49,10 +50,10 @@ class BodyView:
         if self.after or fresh or laid or redrawn:
             self.viewport.request_draw()
 
-    def show_body(self, body: Body) -> None:
-        """Show a body on which nothing lies yet."""
+    def show_body(self, body: Body, moving: Indices = NONE) -> None:
+        """Show a body on which nothing lies yet; ``moving`` are the vertices that will move, if known."""
         self.body, self.frame = body, None
-        self.viewport.scene.show_body(body.mesh)
+        self.viewport.scene.show_body(body.mesh, moving)
         if not self.after:
             self.viewport.scene.before(True)
 

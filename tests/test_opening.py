@@ -1,0 +1,60 @@
+"""What opening a scan must not do in the window's thread, whatever its size."""
+
+from __future__ import annotations
+
+import threading
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from app.seeing import skin as skin_module
+from app.seeing.scene import Scene
+from app.seeing.skin import skin_of
+from app.seeing.skin_part import SkinPart
+from core.body import read_scan
+from core.mesh import Mesh
+
+BALL = pv.Sphere(radius=100.0, theta_resolution=60, phi_resolution=60)
+
+
+@pytest.fixture
+def ball() -> Mesh:
+    return Mesh(BALL.points, BALL.regular_faces)
+
+
+@pytest.fixture
+def scene():
+    plotter = pv.Plotter(off_screen=True)
+    yield Scene(plotter)
+    plotter.close()
+
+
+def test_what_a_scene_looks_up_was_worked_out_where_the_skin_was_prepared(ball, scene, monkeypatch):
+    skin_of(ball)  # as the solver's thread does
+    monkeypatch.setattr(skin_module, "cKDTree", _refuse)
+    monkeypatch.setattr(skin_module, "box_of", _refuse)
+    scene.show_body(ball)
+    scene.frame_all()
+    assert np.allclose(scene.carried(ball.vertices[:3]), ball.vertices[:3])
+
+
+def test_a_body_whose_moving_vertices_are_known_is_parted_once(ball, scene, monkeypatch):
+    made = []
+    real = SkinPart.__init__
+    monkeypatch.setattr(SkinPart, "__init__", lambda *a: made.append(a[4]) or real(*a))
+    upper = np.flatnonzero(ball.vertices[:, 2] > 20.0)
+    scene.show_body(ball, upper)
+    scene.move_body(upper, ball.vertices[upper] + 1.0, ball.vertex_normals[upper])
+    assert made == ["body", "body that moves"]
+    assert np.allclose(scene.body.points[upper], ball.vertices[upper] + 1.0)
+
+
+def test_the_tree_holds_the_vertices_of_the_body_alone(mannequin):
+    body = read_scan(mannequin).mesh
+    assert len(skin_of(body).source) > len(body.vertices)  # the rims of its plates are doubled
+    assert skin_of(body).tree.n == len(body.vertices)
+
+
+def _refuse(*_: object) -> None:
+    raise AssertionError(f"worked out in {threading.current_thread().name}")
