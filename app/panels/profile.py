@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
+from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QSlider, QStyle, QStyleOptionSlider, QVBoxLayout, QWidget
 
 from app.dress.parts import FloatingPanel, ToolButton
@@ -19,9 +19,18 @@ from app.wording.words import tr
 STEPS = 2
 """Steps of the slider in a millimetre."""
 
+NARROW, WIDE = 196, 244
+"""Least and largest width of the plot, which leaves the body the rest of the view [px]."""
+
+_SHARE = 0.26  # of the view's width that the plot takes between these
+_FLAT = 0.78  # its height by its width
+_ROOMY = 224  # a narrower panel leaves the axis' letter to the slider
+
 
 class ProfilePanel(FloatingPanel):
-    """Title, place of the plane, plot, slider and what the curves are.
+    """Title, plot, place of the plane and what the curves are; folded, only title and place.
+
+    The plot is the smaller the smaller the view is that the panel lies on.
 
     ``axis_chosen`` carries x, y or z; ``moved`` a place on it [mm]; ``through_asked`` left or right: the bust
     point that the plane is to go through.
@@ -45,23 +54,59 @@ class ProfilePanel(FloatingPanel):
         column.setSpacing(4)
         column.addLayout(self._head())
         self.plot = ProfilePlot()
-        self.plot.setFixedSize(self.plot.sizeHint())
         self.plot.setAccessibleName(tr("Curves of the section in millimetres"))
         self.plot.setToolTip(tr("Wheel: zoom. Drag: move. Double click: all that changed."))
         column.addWidget(self.plot)
+        column.addLayout(self._place_row())
+        self.keys = CurveKeys()
+        column.addWidget(self.keys)
+        self.readout = label("", "secondary", tabular=True)
+        self.readout.setWordWrap(True)
+        column.addWidget(self.readout)
+        self.row.addLayout(column)
+        self.set_folded(False)
+        self._fit(WIDE)
+        if parent is not None:
+            parent.installEventFilter(self)
+
+    @property
+    def is_folded(self) -> bool:
+        """Whether only title and place are shown."""
+        return self.plot.isHidden()
+
+    def set_folded(self, folded: bool) -> None:
+        """Hide or show the curves."""
+        for part in (self.plot, self.keys, self.readout):
+            part.setVisible(not folded)
+        self.fold.show_icon("caret-up" if folded else "caret-down")
+        self.fold.setAccessibleName(tr("Show the curves") if folded else tr("Fold the curves away"))
+        self.fold.setToolTip(self.fold.accessibleName())
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if isinstance(event, QResizeEvent) and watched is self.parent():
+            self._fit(min(max(round(_SHARE * event.size().width()), NARROW), WIDE))
+        return False
+
+    def _fit(self, width: int) -> None:
+        self.plot.setFixedSize(width, round(_FLAT * width))
+        self.readout.setFixedWidth(width)
+        self._axis.setVisible(width >= _ROOMY)
+
+    def _place_row(self) -> QHBoxLayout:
+        row = QHBoxLayout()
+        row.setSpacing(6)
         self.slider = PlaneSlider()
         self.slider.setAccessibleName(tr("Place of the section plane"))
         self.slider.setToolTip(tr("Move the section plane [mm]; ← → 0.5 mm"))
         self.slider.setPageStep(10 * STEPS)
         self.slider.valueChanged.connect(lambda value: self.moved.emit(value / STEPS))
-        column.addWidget(self.slider)
-        self.keys = CurveKeys()
-        column.addWidget(self.keys)
-        self.readout = label("", "secondary", tabular=True)
-        self.readout.setWordWrap(True)
-        self.readout.setFixedWidth(self.plot.width())
-        column.addWidget(self.readout)
-        self.row.addLayout(column)
+        self._axis = label("", "caption")
+        self.place = FigureField("mm", tr("Place of the section plane"), widest="−888.8")
+        self.place.entered.connect(self.moved)
+        row.addWidget(self.slider, 1)
+        row.addWidget(self._axis)
+        row.addWidget(self.place)
+        return row
 
     def _head(self) -> QHBoxLayout:
         head = QHBoxLayout()
@@ -79,15 +124,13 @@ class ProfilePanel(FloatingPanel):
         menu.addSeparator()
         self.export = menu.addAction(tr("Export the curves as CSV…"))
         self.export.triggered.connect(self.export_asked)
-        self._axis = label("", "caption")
-        self.place = FigureField("mm", tr("Place of the section plane"), widest="−888.8")
-        self.place.entered.connect(self.moved)
+        self.fold = ToolButton("caret-down", size=14, room=24)
+        self.fold.clicked.connect(lambda: self.set_folded(not self.is_folded))
         close = ToolButton("x", tr("Close the section  P"), size=14, room=24)
         close.clicked.connect(self.closed)
         head.addWidget(self.title)
         head.addStretch(1)
-        head.addWidget(self._axis)
-        head.addWidget(self.place)
+        head.addWidget(self.fold)
         head.addWidget(close)
         return head
 
@@ -114,6 +157,7 @@ class PlaneSlider(QSlider):
     def __init__(self) -> None:
         super().__init__(Qt.Orientation.Horizontal)
         self.setFixedHeight(22)
+        self.setMinimumWidth(60)
 
     def paintEvent(self, event: QPaintEvent) -> None:
         tokens, painter = tokens_of(self), QPainter(self)
