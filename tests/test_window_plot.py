@@ -15,6 +15,8 @@ from window_tools import Script, drag, run_main, settled
 
 import app.desks.plot_desk
 from app.main_window import MainWindow
+from app.presenting.frame import measure_views
+from app.presenting.run import PLOTTED_TURNS, tracks
 from core.live import Frame
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -27,6 +29,8 @@ def test_turns_can_be_watched_marked_and_saved(tmp_path: Path, monkeypatch: pyte
         yield settled(window)
         yield from each_turn_is_seen_while_they_are_slow(window)
         yield from an_edit_is_marked_where_it_was_made(window)
+        what_is_plotted_is_what_was_made(window)
+        measures_are_worked_out_only_where_they_are_seen(window)
         the_saved_table_holds_every_turn(window, tmp_path)
         what_is_plotted_is_saved_as_it_is_seen(window, tmp_path)
 
@@ -67,6 +71,33 @@ def an_edit_is_marked_where_it_was_made(window: MainWindow) -> Script:
     assert (plot.plotted.events[-1].turn, plot.plotted.events[-1].words) == (frame.changed_at, words)
     plot.point_at(float(frame.changed_at))
     assert plot.readout()[-1][0] == words
+
+
+def what_is_plotted_is_what_was_made(window: MainWindow) -> None:
+    frame = window.session.frame
+    assert frame is not None
+    rest = frame.stages.rest_marks
+    for control, track in tracks(frame).items():
+        rows = [row for row in frame.tracks[control] if row.marks is not None][-PLOTTED_TURNS:]
+        assert len(rows) > 3
+        for place in (0, len(rows) // 2, -1):
+            row, marks = rows[place], rows[place].marks
+            assert marks is not None
+            bust = 0.5 * (marks.nipple_left_z + marks.nipple_right_z)
+            said = (row.turn, 100.0 * row.error, row.error_ml, marks.apex_z - rest.apex_z)
+            drawn = (track.turns, track.error_percent, track.error_ml, track.apex_mm)
+            assert tuple(each[place] for each in drawn) == said
+            assert track.bust_mm[place] == bust - 0.5 * (rest.nipple_left_z + rest.nipple_right_z)
+
+
+def measures_are_worked_out_only_where_they_are_seen(window: MainWindow) -> None:
+    frame, table = window.session.frame, window.result._table
+    assert frame is not None
+    assert not window.result.isVisible()
+    assert list(table._rows) != measure_views(frame), "nobody has seen them yet"
+    window.desk.go_to("result")
+    assert list(table._rows) == measure_views(frame)
+    window.desk.go_to("lines")
 
 
 def the_saved_table_holds_every_turn(window: MainWindow, folder: Path) -> None:

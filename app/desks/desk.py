@@ -260,8 +260,13 @@ class Desk(QObject):
         strip = self._window.strip
         strip.set_verdict(strip_verdict(frame))
         strip.set_run(tracks(frame), main, exact_answer(frame))
-        self._window.result.set_rows(measure_views(frame))
+        self.show_measures()
         state = frame.verdict.state
         bad, reached = state in ("folded", "overstrained"), "done" if state == "settled" else "available"
         self._window.rail.set_state("lines", "look" if bad else reached, int(bad))
         self._window.rail.set_state("result", reached)
+
+    def show_measures(self) -> None:
+        """Bring the table of measures up to date, if it is seen; unseen it would cost each frame the same."""
+        if self._plotted is not None and self._window.result.isVisible():
+            self._window.result.set_rows(measure_views(self._plotted))

@@ -7,8 +7,8 @@ import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from PySide6.QtCore import QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QPainter, QPaintEvent
+from PySide6.QtCore import QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QShowEvent
 from PySide6.QtWidgets import QFrame, QScrollArea, QVBoxLayout, QWidget
 
 from app.dress.parts import EmptyState, sentence
@@ -27,7 +27,9 @@ class MeasureView:
 
 
 class ResultPanel(QWidget):
-    """The table of measures."""
+    """The table of measures; ``opened`` when it comes to be seen, and what it shows has to be new."""
+
+    opened = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -62,6 +64,10 @@ class ResultPanel(QWidget):
         self._empty.setVisible(not rows)
         self._area.setVisible(bool(rows))
         self._table.set_rows(rows)
+
+    def showEvent(self, event: QShowEvent) -> None:
+        """Ask for the measures of now."""
+        self.opened.emit()
 
 
 class _Table(QWidget):

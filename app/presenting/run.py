@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from operator import attrgetter
 
 import numpy as np
 
@@ -18,18 +19,22 @@ PLOTTED_TURNS = 600
 PLOT_INTERVAL = 100
 """Milliseconds between two pictures of plots and figures: the body is what has to follow the hand."""
 
+_FOLLOWED = attrgetter(
+    "turn", "error", "error_ml", "marks.nipple_left_z", "marks.nipple_right_z", "marks.apex_z"
+)
+"""What is plotted of a record: in one call, because hundreds of them are read at each picture."""
+
 
 def tracks(frame: Frame) -> dict[str, Track]:
     """Return the runs of a frame as curves; heights are counted from those of the body at rest."""
     rest = frame.stages.rest_marks
     result = {}
     for control, records in frame.tracks.items():
-        rows = [
-            (row.turn, *_figures(row, row.marks, rest))
-            for row in records[-PLOTTED_TURNS:]
-            if row.marks is not None
-        ]
-        result[control] = Track(*np.array(rows, dtype=np.float64).reshape(-1, 5).T)
+        watched = [row for row in records[-PLOTTED_TURNS:] if row.marks is not None]
+        figures = np.array(list(map(_FOLLOWED, watched)), dtype=np.float64).reshape(-1, 6)
+        turns, error, error_ml, left, right, apex = figures.T
+        bust = 0.5 * (left + right) - _bust_height(rest)
+        result[control] = Track(turns, 100.0 * error, error_ml, bust, apex - rest.apex_z)
     return result
 
 
