@@ -39,10 +39,13 @@ class Ramp:
 
 def clay_colours(occlusion: Floats, plate: Flags, look: Look) -> Colours:
     """Return the colour of each vertex, (n, 3) uint8: clay in the open, deep in folds, plaster plates."""
-    open_sky = np.clip((occlusion - 0.36) / 0.50, 0.0, 1.0)[:, None]
-    colours = rgb(look.deep) + (rgb(look.clay) - rgb(look.deep)) * open_sky
-    colours[plate] = rgb(look.plaster)
-    return np.asarray(np.round(colours), dtype=np.uint8)
+    open_sky = np.clip((occlusion - 0.36) / 0.50, 0.0, 1.0)
+    deep, clay = rgb(look.deep), rgb(look.clay)
+    colours = np.empty((len(occlusion), 3), dtype=np.uint8)
+    for k in range(3):  # channel by channel a million vertices take half the time
+        colours[:, k] = np.round(deep[k] + (clay[k] - deep[k]) * open_sky)
+    colours[plate] = np.round(rgb(look.plaster))
+    return colours
 
 
 def map_colours(colours: Floats, occlusion: Floats, plate: Flags, look: Look) -> Colours:
