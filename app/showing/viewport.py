@@ -163,9 +163,8 @@ class Viewport(QWidget):
         self.request_draw()
 
     def label_band(self, name: str | None, text: str = "", detail: str = "") -> None:
-        """Write beside a line, or take the label away."""
+        """Write beside a line, or take the label away, when it is drawn the next time."""
         self._label = (name or "", text, detail)
-        self._place_label()
 
     def _place_label(self) -> None:
         name, text, detail = self._label

@@ -95,8 +95,8 @@ class BodyView:
         self.selected_line = name
         names = {line.name for line in self._laid.model.lines} if self._laid is not None else set()
         shown = name in names - self.hidden_lines
-        self.viewport.select_band(name if shown else None)
         self._show_label()
+        self.viewport.select_band(name if shown else None)
 
     def _show_label(self) -> None:
         """Write beside the selected line, if it can be seen."""
