@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QByteArray, QEvent, QObject, QSettings, Qt
-from PySide6.QtWidgets import QApplication, QHBoxLayout, QSplitter, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QApplication, QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
 
+from app.dress.divider import Divider
 from app.dress.focus import FocusRing, stops
 from app.wording.words import tr
 
@@ -33,7 +34,8 @@ class Layout(QObject):
         self._height: int | None = None  # of the strip, once the user has chosen them
         self._keeps = False
         self.pages = QStackedWidget()
-        self._across, self._down = QSplitter(Qt.Orientation.Horizontal), QSplitter(Qt.Orientation.Vertical)
+        self._across = Divider(Qt.Orientation.Horizontal, tr("Width of the inspector"))
+        self._down = Divider(Qt.Orientation.Vertical, tr("Height of the live plot"))
         self._middle, self._right = QVBoxLayout(), QVBoxLayout()
         self._ring = FocusRing(window)
         self._build()
@@ -58,8 +60,6 @@ class Layout(QObject):
             (self._down, (window.view, window.strip)),
             (self._across, (work, window.inspector)),
         ):
-            splitter.setHandleWidth(1)
-            splitter.setChildrenCollapsible(False)
             for stretch, part in zip((1, 0), parts, strict=True):
                 splitter.addWidget(part)
                 splitter.setStretchFactor(splitter.count() - 1, stretch)
@@ -127,13 +127,28 @@ class Layout(QObject):
 
     def next_stop(self, forward: bool) -> bool:
         """Let the keyboard go on to the next field or button, through all panes; returns whether it did."""
-        order, has = [stop for pane in self._panes() for stop in stops(pane)], QApplication.focusWidget()
+        order, has = self._stops(), QApplication.focusWidget()
         if not order:
             return False
         at = order.index(has) if has in order else -1 if forward else 0
         reason = Qt.FocusReason.TabFocusReason if forward else Qt.FocusReason.BacktabFocusReason
         order[(at + (1 if forward else -1)) % len(order)].setFocus(reason)
         return True
+
+    def _stops(self) -> list[QWidget]:
+        """Return what takes the keyboard, and before strip and inspector the line that gives them room."""
+        order: list[QWidget] = []
+        lines: dict[QWidget, QWidget] = {
+            self._window.strip: self._down.handle(1),
+            self._window.inspector: self._across.handle(1),
+        }
+        for pane in self._panes():
+            line = lines.get(pane)
+            fixed = pane is self._window.strip and self._window.strip.is_folded()
+            if line is not None and line.isVisible() and not fixed:
+                order.append(line)
+            order += stops(pane)
+        return order
 
     def _panes(self) -> list[QWidget]:
         """Return the parts of the window in the order in which they are read."""

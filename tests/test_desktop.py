@@ -16,11 +16,12 @@ from PySide6.QtGui import QDesktopServices, QGuiApplication
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
-from window_tools import Script, drag, run_main, settled
+from window_tools import Script, drag, run_main, settled, undrawn
 
 import app.helping.safe_mode
 from app.application import log_folder
 from app.asking.session import Session
+from app.dress.divider import STEP
 from app.dress.sheet import Sheet
 from app.helping.safe_mode import SafeMode
 from app.main_window import MainWindow
@@ -73,6 +74,8 @@ def test_help_finds_keys_commands_versions_and_licences() -> None:
         }
         assert said["Ctrl+O"] == "Open"
         assert said["Shift+Middle drag"] == "Move the body"
+        assert said["L"] == "Link left and right, or set apart"
+        assert {"Backspace", "← →, - +", "← → ↑ ↓", "Home, End", "Page Up, Page Down", "Del"} <= said.keys()
         keys.accept()
         recovery_folder().mkdir(parents=True, exist_ok=True)
         window.help.show_machine()
@@ -131,6 +134,38 @@ def the_hand_of_another_program_is_understood(window: MainWindow) -> None:
             assert tuple(turned.focus) == tuple(start.focus)
     assert viewport.scene.view.azimuth == turned.azimuth
     assert tuple(viewport.scene.view.focus) != tuple(turned.focus)
+
+
+def test_the_room_is_shared_out_by_keys() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.activateWindow()
+        yield window.isActiveWindow
+        window.strip.set_folded(False)
+        fitted: list[bool] = []
+        window.view.tools.actions_by_name["fit"].triggered.connect(fitted.append)
+        focus = QApplication.focusWidget
+        for name, key, part, size in (
+            ("Height of the live plot", Qt.Key.Key_Up, window.strip, QWidget.height),
+            ("Width of the inspector", Qt.Key.Key_Left, window.inspector, QWidget.width),
+        ):
+            for _ in range(60):
+                if focus().accessibleName() == name:
+                    break
+                QTest.keyClick(focus(), Qt.Key.Key_Tab)
+            before = size(part)
+            QTest.keyClick(focus(), key)
+            assert size(part) == before + STEP, name
+            QTest.keyClick(focus(), Qt.Key.Key_Home)
+            assert size(part) == getattr(part, f"maximum{size.__name__.title()}")(), "as far as it goes"
+            QTest.keyClick(focus(), Qt.Key.Key_End)
+            assert size(part) < before
+        assert not fitted, "Home shows all of the body elsewhere"
+        window.strip.set_folded(True)
+        assert "Height of the live plot" not in [each.accessibleName() for each in window.layout_._stops()]
+
+    run_main([], script)
 
 
 def test_the_layout_is_shared_out_by_hand_and_kept(mannequin: Path) -> None:

@@ -257,12 +257,12 @@ def test_a_measured_line_has_no_slider(lines: LinesPanel) -> None:
     assert "390.0 mm" in said
 
 
-def test_lines_are_chosen_and_hidden_by_key(lines: LinesPanel, qtbot: QtBot) -> None:
+def test_lines_are_chosen_by_key_and_hidden_by_the_menu(lines: LinesPanel, qtbot: QtBot) -> None:
     with qtbot.waitSignal(lines.selected) as said:
         QTest.keyClick(lines, Qt.Key.Key_Down)
     assert said.args == ["waist"]
     with qtbot.waitSignal(lines.visibility_changed) as said:
-        QTest.keyClick(lines, Qt.Key.Key_H)
+        lines.do("hide")
     assert said.args == ["waist", False]
     with qtbot.assertNotEmitted(lines.selected):
         lines.select("under-bust")

@@ -9,11 +9,11 @@ from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QWhatsThis, QWidget
 
 from app.helping.folders import folders, show_folder
+from app.helping.keys import keys_of_parts
 from app.helping.machine import machine_facts
 from app.helping.whats_this import explain
 from app.panels.about import AboutSheet, DiagnosticsSheet
 from app.panels.commands import Command, CommandSheet
-from app.showing.gestures import chosen_gestures, gestures_in_words
 from app.wording.licences import licences
 from app.wording.words import in_all_languages, tr
 from core import __version__
@@ -55,13 +55,10 @@ class HelpDesk(QObject):
         CommandSheet(self._window, tr("Find a command"), self.commands(), to_give=True).open()
 
     def show_keys(self) -> None:
-        """Show every key: those of the commands, and what the pointer does in the view."""
+        """Show every key: those of the commands, and those that parts of the window read themselves."""
         keyed = [command for command in self.commands() if command.keys]
-        view = [
-            Command(what, tr("In the view"), how, f"{what} {how}".casefold())
-            for how, what in gestures_in_words(chosen_gestures())
-        ]
-        CommandSheet(self._window, tr("Keyboard shortcuts"), [*keyed, *view], to_give=False).open()
+        keys = [*keyed, *keys_of_parts()]
+        CommandSheet(self._window, tr("Keyboard shortcuts"), keys, to_give=False).open()
 
     def show_machine(self) -> None:
         """Show what the program is made of, what draws for it, and where it writes."""

@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import partial, reduce
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Qt
 
 from app.panels.length_groove import Feasible
 from app.presenting.lines import line_views, pair_title, row_title
@@ -91,7 +91,7 @@ class LinesDesk(QObject):
         return words.format(line=pair_title(name, design))
 
     def _add_actions(self) -> None:
-        """Offer in the menu what the keys do in the list."""
+        """Offer what can be done with the selected line; the keys are those of the menu."""
         do = self._window.actions_
         do.rule("lines")
         for text, key, act in (
@@ -101,6 +101,11 @@ class LinesDesk(QObject):
             (tr("Link left and right, or set apart"), "L", "link"),
         ):
             do.add("lines", text, key, do=partial(self._row_asked, act), of_document=True)
+        said = tr("Lines of the control mesh stay: at 100 % they are off")
+        remove = do.add("lines", tr("Remove the line"), "Del", said, do=partial(self._row_asked, "remove"))
+        # Elsewhere the key takes other things away.
+        remove.setShortcutContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
+        self._window.lines.addAction(remove)
 
     def _row_asked(self, what: str) -> None:
         self._window.desk.go_to("lines")

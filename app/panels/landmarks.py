@@ -15,6 +15,15 @@ from app.panels.landmark_row import LandmarkRow, LandmarkView
 from app.wording.words import say, tr
 
 
+def keys_in_words() -> list[tuple[str, str]]:
+    """Return what the keys do in the list and then on a pin, ready to read."""
+    return [
+        ("↑ ↓", tr("The landmark above or below")),
+        ("Enter", tr("Move its pin by keys, then put it down")),
+        ("← → ↑ ↓", tr("Move the pin by 1 mm, with Shift by 5 mm")),
+    ]
+
+
 class LandmarksPanel(QWidget):
     """All landmarks, one row each; under them the rule of the selected one.
 

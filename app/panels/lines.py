@@ -15,16 +15,16 @@ from app.wording.words import tr
 
 __all__ = ["LineView", "LinesPanel"]
 
-_KEYS = {
-    (Qt.Key.Key_H, False): "hide",
-    (Qt.Key.Key_L, True): "lock",
-    (Qt.Key.Key_L, False): "link",
-    (Qt.Key.Key_F2, False): "rename",
-    (Qt.Key.Key_Delete, False): "remove",
-    (Qt.Key.Key_Return, False): "type",
-    (Qt.Key.Key_Enter, False): "type",
-}
-"""What a key, without or with Shift, asks of the selected line."""
+
+def keys_in_words() -> list[tuple[str, str]]:
+    """Return what the keys do in the list and on a slider that no menu has, ready to read."""
+    return [
+        ("↑ ↓", tr("The line above or below")),
+        ("← →, - +", tr("Shorter or longer by 0.1 %, with Shift 1 %, with Alt 0.01 %")),
+        ("Backspace", tr("Back to the length at rest")),
+        ("Enter", tr("Type the length in percent, Tab: in millimetres")),
+        ("Esc", tr("Put back what is being dragged")),
+    ]
 
 
 class _Area(QScrollArea):
@@ -94,18 +94,17 @@ class LinesPanel(QWidget):
             self._scroll.ensureWidgetVisible(self.rows[self._selected], 0, 8)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        key = Qt.Key(event.key())
-        shift = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
-        steps = {Qt.Key.Key_Up: -1, Qt.Key.Key_Down: 1}
-        if key in steps and self.rows:
-            self._step(steps[key])
-        elif (key, shift) in _KEYS:
-            self.do(_KEYS[key, shift])
+        step = {Qt.Key.Key_Up: -1, Qt.Key.Key_Down: 1}.get(Qt.Key(event.key()))
+        row = self.rows.get(self._selected or "")
+        if step is not None and self.rows:
+            self._step(step)
+        elif event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and row is not None and row.view.settable:
+            row.percent.setFocus(Qt.FocusReason.ShortcutFocusReason)
         else:
             super().keyPressEvent(event)
 
     def do(self, what: str) -> None:
-        """Do with the selected line what can be done: type, hide, lock, link, rename, remove."""
+        """Do with the selected line what can be done: hide, lock, link, rename, remove."""
         row = self.rows.get(self._selected or "")
         if row is None:
             return
@@ -120,8 +119,6 @@ class LinesPanel(QWidget):
             row.title.begin()
         elif what == "remove" and view.own:
             self.removed.emit(view.name)
-        elif what == "type" and view.settable:
-            row.percent.setFocus(Qt.FocusReason.ShortcutFocusReason)
 
     def _head(self) -> QHBoxLayout:
         head = QHBoxLayout()

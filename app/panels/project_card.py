@@ -47,6 +47,11 @@ class ProjectView:
     look: str = ""
 
 
+def keys_in_words() -> list[tuple[str, str]]:
+    """Return what the keys do on a picture of the start page, ready to read."""
+    return [("← → ↑ ↓", tr("Another project")), ("Enter", tr("Open it")), ("Del", tr("Take it off the page"))]
+
+
 class ProjectCard(QAbstractButton):
     """Opens its file, or asks where one that is gone has moved to; Delete takes it off the list."""
 

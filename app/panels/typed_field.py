@@ -10,8 +10,14 @@ from PySide6.QtGui import QFocusEvent, QKeyEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QLineEdit
 
 from app.dress.theme import font, set_tag, tokens_of
+from app.wording.words import tr
 
 _RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
+
+
+def keys_in_words() -> list[tuple[str, str]]:
+    """Return what the keys do in a field that is typed into, ready to read."""
+    return [("Enter", tr("Take what is typed")), ("Esc", tr("Leave it as it was"))]
 
 
 class TypedField(QLineEdit):

@@ -9,6 +9,8 @@ from PySide6.QtCore import QEvent, QObject, QPointF, Qt, Signal
 from PySide6.QtGui import QKeyEvent, QMouseEvent
 from PySide6.QtWidgets import QApplication, QWidget
 
+from app.wording.words import tr
+
 _CLICK = 3.0  # pixels that the pointer may stray within a click
 
 _KEYS = {
@@ -17,6 +19,15 @@ _KEYS = {
     Qt.Key.Key_Backspace: "back",
     Qt.Key.Key_Escape: "leave",
 }
+
+
+def keys_in_words() -> list[tuple[str, str]]:
+    """Return what the keys do while a line is drawn or led, ready to read."""
+    return [
+        ("Enter", tr("Keep the line")),
+        ("Backspace", tr("Take the last point back")),
+        ("Esc", tr("Leave it as it was")),
+    ]
 
 
 class Hand(QObject):

@@ -33,6 +33,16 @@ _NEAR_EVENT = 5.0  # [px]
 _ROW = 15.0
 
 
+def keys_in_words() -> list[tuple[str, str]]:
+    """Return what the keys do in the plots, ready to read."""
+    return [
+        ("← →", tr("Read the next turn, with Shift ten on")),
+        ("+ -", tr("Closer or farther")),
+        ("Home", tr("Show all turns")),
+        ("Esc", tr("Read no turn any more")),
+    ]
+
+
 class PlotCanvas(QWidget):
     """Paints what is plotted; ``pointed`` carries the turn under the pointer or None, ``zoomed`` the turns
     that are wanted in view, or None for all of them.
@@ -139,6 +149,13 @@ class PlotCanvas(QWidget):
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
         self.menu_asked.emit(event.globalPos())
+
+    def event(self, event: QEvent) -> bool:
+        """Take Home, which elsewhere shows all of the body."""
+        if event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent):
+            event.setAccepted(event.key() == Qt.Key.Key_Home)
+            return True
+        return super().event(event)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         key = event.key()

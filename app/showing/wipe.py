@@ -20,6 +20,11 @@ WHOLE = 1000
 _KNOB = (22.0, 32.0)
 
 
+def keys_in_words() -> list[tuple[str, str]]:
+    """Return what the keys do on the handle, ready to read."""
+    return [("← →", tr("Wipe by 1 %")), ("Page Up, Page Down", tr("Wipe by 10 %"))]
+
+
 class WipeHandle(QAbstractSlider):
     """A slider as high as the view, ``2 REACH`` wide; its parent puts it where its value says."""
 
