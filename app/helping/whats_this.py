@@ -27,7 +27,11 @@ def _said(window: MainWindow) -> dict[QWidget, str]:
         window.view: tr(
             "The body as the model reshapes it. What you see moves at once while you drag a line, and is the "
             "model's answer when the verdict below says settled. How near a worn garment comes to it is not "
-            "measured."
+            "measured. The selected band can be pulled up or down to make its line shorter or longer."
+        ),
+        window.section_desk.panel: tr(
+            "The body cut by a plane, before and after, in millimetres. Move the plane by the handle on it in "
+            "the view, by the slider here, or by typing where it is."
         ),
         window.strip: tr(
             "The model comes to rest turn by turn. A garment whose model vibrates or folds tells nothing "
