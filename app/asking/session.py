@@ -168,6 +168,8 @@ class Session(Editing):
         """Stop the solver, and wait until it has ended, and the last file is written."""
         self._solving.close()
         self._saving.wait()
+        # A stack with edits tells its own end too, when nobody is there any more to hear it.
+        self.undo_stack.blockSignals(True)
 
     def _open(self, document: Document, path: Path | None, stamp: Stamp | None, unsaved: bool) -> None:
         if self._opening is not None:

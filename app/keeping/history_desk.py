@@ -99,9 +99,8 @@ class HistoryDesk(QObject):
             self._session.go_back(snapshot.within(document), said)
 
     def close(self) -> None:
-        """Stop the clock, and hear no more of edits: the stack tells its own end too."""
+        """Stop the clock."""
         self._clock.stop()
-        self._session.undo_stack.indexChanged.disconnect(self.show_edits)
 
     def _is_kept(self) -> bool:
         document = self._session.document
