@@ -44,6 +44,11 @@ class Body:
         """The skin without the noise of the scanner: what is measured [mm]."""
         return calmed(self.mesh)
 
+    def calm_down(self, progress: Progress) -> None:
+        """Work out ``calm`` now, telling how far it is: a large skin takes seconds. Raises Cancelled."""
+        if "calm" not in vars(self):
+            vars(self)["calm"] = calmed(self.mesh, progress)
+
     @cached_property
     def noise(self) -> float:
         """The noise of the scanner, its standard deviation along each axis [mm]."""

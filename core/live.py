@@ -62,7 +62,7 @@ class LiveSolver:
         self,
         tell: Progress = quiet,
         ready: Callable[[], None] = lambda: None,
-        prepare: Callable[[Body], object] = lambda _: None,
+        prepare: Callable[[Body, Progress], object] = lambda body, progress: None,
     ) -> None:
         self._tell, self._ready, self._prepare = tell, ready, prepare
         self._at_work = 0
@@ -126,6 +126,9 @@ class LiveSolver:
         if self._stopping or self._at_work <= self._unwanted:
             raise Cancelled
         self._tell(what, share)
+
+    def _hear_last(self, what: str, share: float) -> None:
+        self._hear(what, 0.98 + 0.02 * share)
 
     @contextmanager
     def held(self) -> Iterator[None]:
@@ -224,11 +227,10 @@ class LiveSolver:
         try:
             stages = build(request.design, stuck if again else self._stages, self._hear)
             if self._stages is None or stages.body is not self._stages.body:
-                self._hear("preparing the view", 0.98)
-                self._prepare(stages.body)
+                self._prepare(stages.body, self._hear_last)
             self._hear("", 1.0)
         except StuckError as how_far:
-            self._prepare(how_far.body)
+            self._prepare(how_far.body, self._hear_last)
             # An edit of the scan that is open goes back to what stands.
             if self._stages is None or how_far.body is not self._stages.body:
                 self._stuck = how_far

@@ -96,7 +96,8 @@ READING = {
     "rebuilding the surface": (0.3, 0.6),
     "repairing": (0.6, 0.8),
     "finding up and front": (0.8, 0.9),
-    "closing holes": (0.9, 1.0),
+    "closing holes": (0.9, 0.92),
+    "calming the skin": (0.92, 1.0),
 }
 """Where each part of the reading of a scan begins and ends, as shares of its time, roughly."""
 
@@ -226,7 +227,9 @@ def read_body(source: ScanSource, progress: Progress = quiet) -> tuple[ScanFile,
     """Return a scan as it came and the body read from it. Raises ScanError, ProjectError or Cancelled."""
     scan = read_scan_file(source, progress)
     told = {"unit": source.unit, "up": source.up, "front": source.front}
-    return scan, body_of(scan.name, scan.data, **told, progress=progress)
+    body = body_of(scan.name, scan.data, **told, progress=progress)
+    body.calm_down(progress)
+    return scan, body
 
 
 def find(body: Body, placed: tuple[PlacedMark, ...]) -> Landmarks:

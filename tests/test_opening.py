@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,8 +13,12 @@ from app.seeing import skin as skin_module
 from app.seeing.scene import Scene
 from app.seeing.skin import skin_of
 from app.seeing.skin_part import SkinPart
+from core import pipeline
 from core.body import read_scan
+from core.cleaning import calm
+from core.design import Design, ScanSource
 from core.mesh import Mesh
+from core.progress import Cancelled
 
 BALL = pv.Sphere(radius=100.0, theta_resolution=60, phi_resolution=60)
 
@@ -54,6 +59,52 @@ def test_the_tree_holds_the_vertices_of_the_body_alone(mannequin):
     body = read_scan(mannequin).mesh
     assert len(skin_of(body).source) > len(body.vertices)  # the rims of its plates are doubled
     assert skin_of(body).tree.n == len(body.vertices)
+
+
+def test_preparing_a_body_tells_how_far_it_is_and_can_be_stopped(ball):
+    heard = []
+    skin_of(Mesh(ball.vertices, ball.faces), lambda _, share: heard.append(share))
+    assert len(heard) > 4
+    assert heard == sorted(heard)
+    with pytest.raises(Cancelled):
+        skin_of(ball, _stop_after(2))
+
+
+def test_thinning_a_giant_skin_tells_how_far_it_is_and_can_be_stopped(ball, monkeypatch):
+    monkeypatch.setattr(calm, "GIANT", 1000)
+    heard = []
+    rough = ball.moved(ball.vertices + np.random.default_rng(3).normal(0.0, 1.0, ball.vertices.shape))
+    calm.calmed(rough, lambda _, share: heard.append(share))
+    assert len(heard) > 5
+    assert heard == sorted(heard)
+    with pytest.raises(Cancelled):
+        calm.calmed(rough, _stop_after(3))
+
+
+def test_a_build_that_is_cancelled_stops_while_the_skin_is_calmed(mannequin, monkeypatch):
+    fresh = replace(read_scan(mannequin))  # what other tests have read may be calm already
+    monkeypatch.setattr(pipeline, "body_of", lambda *_, **__: fresh)
+    heard = []
+
+    def hear(what, share):
+        heard.append((what, share))
+        if [each for each, _ in heard].count(calm.CALMING) == 2:
+            raise Cancelled
+
+    with pytest.raises(Cancelled):
+        pipeline.build(Design(ScanSource(str(mannequin))), progress=hear)
+    shares = [share for _, share in heard]
+    assert shares == sorted(shares)
+
+
+def _stop_after(times):
+    left = iter(range(times))
+
+    def stop(what, share):
+        if next(left, None) is None:
+            raise Cancelled
+
+    return stop
 
 
 def _refuse(*_: object) -> None:

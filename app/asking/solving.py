@@ -5,8 +5,10 @@ from __future__ import annotations
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.seeing.skin import skin_of
+from core.body import Body
 from core.design import Design
 from core.live import Failure, LiveSolver
+from core.progress import Progress
 
 FRAME_INTERVAL = 16
 """Milliseconds between two looks at the solver, which also says itself when there is something to see."""
@@ -29,7 +31,7 @@ class Solving(QObject):
         self._soon = QTimer(self, interval=0, singleShot=True)
         self._soon.timeout.connect(self._look)
         self._ready.connect(self._soon.start)
-        self._solver = LiveSolver(self._hear, self._ready.emit, lambda body: skin_of(body.mesh))
+        self._solver = LiveSolver(self._hear, self._ready.emit, _prepare)
         self._clock = QTimer(self, interval=FRAME_INTERVAL)
         self._clock.timeout.connect(self._look)
         self._clock.start()
@@ -72,3 +74,7 @@ class Solving(QObject):
         elif answer is not None:
             with self._solver.held():
                 self.answered.emit(answer)
+
+
+def _prepare(body: Body, progress: Progress) -> None:
+    skin_of(body.mesh, progress)

@@ -118,6 +118,7 @@ def work_words(what: str) -> str:
         "closing holes": tr("Repairing the scan"),
         "rebuilding the surface": tr("Laying a skin through the points"),
         "finding up and front": tr("Finding up and front"),
+        "calming the skin": tr("Finding the landmarks"),
         "find landmarks": tr("Finding the landmarks"),
         "fit control mesh": tr("Fitting the control mesh"),
         "find patch": tr("Binding the body"),

@@ -13,6 +13,10 @@ from scipy.spatial import cKDTree
 
 from app.seeing.framing import box_of
 from core.mesh import Flags, Floats, Indices, Mesh
+from core.progress import Progress, quiet
+
+PREPARING = "preparing the view"
+"""What is said to be at work."""
 
 PLATE_AREA = 1500.0
 """Smallest flat area that counts as a cut plate and not as skin [mm^2]."""
@@ -78,14 +82,19 @@ def plate_faces(mesh: Mesh) -> Flags:
 _KNOWN: WeakKeyDictionary[Mesh, Skin] = WeakKeyDictionary()
 
 
-def skin_of(mesh: Mesh) -> Skin:
+def skin_of(mesh: Mesh, progress: Progress = quiet) -> Skin:
     """Return the skin of ``mesh``, worked out once, with all that takes long to work out before it is drawn.
 
-    Runs in any thread: of a large scan it takes seconds, and the window's thread has none.
+    Runs in any thread: of a large scan it takes seconds, and the window's thread has none. Raises Cancelled.
     """
+    progress(PREPARING, 0.0)
     skin = _KNOWN.get(mesh)
     if skin is None:
         skin = _KNOWN[mesh] = split_plates(mesh)
     # They are kept where they belong once they were asked for.
-    _ = skin.mesh.vertex_normals, mesh.vertex_normals, mesh.boundary_loops, skin.tree, skin.box
+    normals = "vertex_normals"
+    kept = (skin.mesh, normals), (mesh, normals), (mesh, "boundary_loops"), (skin, "tree"), (skin, "box")
+    for done, (owner, what) in enumerate(kept, 1):
+        progress(PREPARING, done / (len(kept) + 1))
+        getattr(owner, what)
     return skin

@@ -8,6 +8,7 @@ from scipy import sparse
 from core.cleaning.repair import without_fins
 from core.cleaning.skin import Skin, first_equal, grouped
 from core.mesh import Indices, Mesh
+from core.progress import Progress, quiet
 
 GIANT = 250_000
 """A skin of more triangles is thinned before it is measured."""
@@ -27,29 +28,41 @@ SHAPE = 0.0009
 NOISELESS = 0.35
 """Less noise than this is left as it is [mm]."""
 
+CALMING = "calming the skin"
+"""What is said to be at work."""
+
 EDGE = 4.5
 """Edge for which the rounds of smoothing are given [mm]."""
 
 
-def calmed(mesh: Mesh) -> Mesh:
+def calmed(mesh: Mesh, progress: Progress = quiet) -> Mesh:
     """Return ``mesh`` without the noise of the scanner; one without noise and of usual size stays as it is.
 
     A giant skin is thinned, noise is smoothed without shrinking: the more noise the more, and over the same
-    distance [mm] on coarse and fine skins. Source: ours; smoothing after Taubin 1995.
+    distance [mm] on coarse and fine skins. Raises Cancelled. Source: ours; smoothing after Taubin 1995.
     """
     if len(mesh.faces) > GIANT:
         # noise as large as the triangles would fold the thinned skin
-        mesh = thinned(_smoothed(mesh, 0.05 * _edge(mesh), 10), CELL)
-    return _smoothed(mesh, NOISELESS, 40)
+        smooth = _smoothed(mesh, 0.05 * _edge(mesh), 10, progress)
+        progress(CALMING, 0.6)
+        mesh = thinned(smooth, CELL)
+    return _smoothed(mesh, NOISELESS, 40, progress, 0.8)
 
 
-def _smoothed(mesh: Mesh, noiseless: float, most: int) -> Mesh:
-    """Return ``mesh`` smoothed if it has more than ``noiseless`` noise [mm], in ``most`` rounds at most."""
+def _smoothed(mesh: Mesh, noiseless: float, most: int, progress: Progress, begun: float = 0.0) -> Mesh:
+    """Return ``mesh`` smoothed if it has more than ``noiseless`` noise [mm], in ``most`` rounds at most.
+
+    ``begun`` is the share of the work that was done before.
+    """
+    progress(CALMING, begun)
     mean, vertices = _mean_of_neighbours(mesh), mesh.vertices
+    progress(CALMING, begun + 0.05)
     noise = _noise(mesh, mean)
     if noise < noiseless:
         return mesh
-    for _ in range(int(np.clip(8.0 * noise * (EDGE / _edge(mesh)) ** 2, 1, most))):
+    rounds = int(np.clip(8.0 * noise * (EDGE / _edge(mesh)) ** 2, 1, most))
+    for number in range(rounds):
+        progress(CALMING, begun + 0.1 + 0.1 * number / rounds)
         for share in (0.5, -0.53):
             vertices = vertices + share * (mean @ vertices - vertices)
     return mesh.moved(vertices)
