@@ -24,6 +24,7 @@ from app.keeping.history_desk import HistoryDesk
 from app.keeping.keeping_desk import KeepingDesk
 from app.keeping.recovery_desk import RecoveryDesk
 from app.keeping.variant_desk import VariantDesk
+from app.keeping.variant_figures import VariantFigures
 from app.layout import Layout
 from app.lining.band_pull import BandPull
 from app.lining.limits_desk import LimitsDesk
@@ -43,6 +44,7 @@ from app.panels.result import ResultPanel
 from app.panels.scan import ScanPanel
 from app.panels.status import StatusBar
 from app.panels.top_bar import TopBar
+from app.panels.variants import VariantsPanel
 from app.showing.convergence import Strip
 from app.view_area import ViewArea
 from app.viewing.map_desk import MapDesk
@@ -72,7 +74,7 @@ class MainWindow(QMainWindow):
         self.scan, self.landmarks = ScanPanel(), LandmarksPanel()
         self.lines, self.result = LinesPanel(), ResultPanel()
         self.model, self.door = ModelPanel(), ModelDoor()
-        self.history, self.inspector = HistoryPanel(), Inspector()
+        self.history, self.variants, self.inspector = HistoryPanel(), VariantsPanel(), Inspector()
         self._fill_inspector()
         self.layout_ = Layout(self)
         self.pages = self.layout_.pages
@@ -81,6 +83,7 @@ class MainWindow(QMainWindow):
         self.desk = Desk(self)
         self.keeping_desk, self.recovery_desk = KeepingDesk(self), RecoveryDesk(self)
         self.history_desk, self.variant_desk = HistoryDesk(self, self.history), VariantDesk(self)
+        self.variant_figures = VariantFigures(self, self.variants)
         self.map_desk, self.section_desk = MapDesk(self), SectionDesk(self)
         self.start_desk, self.plot_desk = StartDesk(self), PlotDesk(self)
         self.lines_desk, self.line_maker = LinesDesk(self), LineMaker(self)
@@ -104,6 +107,7 @@ class MainWindow(QMainWindow):
         self.inspector.add("landmarks", self.landmarks)
         self.inspector.add("lines", lines, tr("Lines"))
         self.inspector.add("result", self.result, tr("Measures"))
+        self.inspector.add("variants", self.variants, tr("Variants"))
         self.inspector.add("history", self.history, tr("History"))
         self.inspector.add("model", self.model)
 

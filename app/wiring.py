@@ -80,6 +80,8 @@ def _connect_safe(window: MainWindow) -> None:
     session.design_changed.connect(history.show_snapshots)
     session.design_changed.connect(window.variant_desk.show_variants)
     session.frame_ready.connect(history.note)
+    for changed in (session.frame_ready, session.design_changed, window.variant_desk.solved):
+        changed.connect(lambda *_: window.variant_figures.follow())
     stack.cleanChanged.connect(safe.note)
     stack.indexChanged.connect(history.show_edits)
     window.history.jumped.connect(history.jump)

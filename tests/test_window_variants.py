@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import csv
+from pathlib import Path
+
 import pytest
 from PySide6.QtCore import Qt
+from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled, undrawn
 
+import app.keeping.variant_desk
+import app.keeping.variant_figures
 from app.main_window import MainWindow
 from app.viewing import flip_key
+from core.errors import LineError
+from core.live import Frame
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 SPACE = Qt.Key.Key_Space
@@ -44,6 +52,68 @@ def test_the_space_bar_goes_back_to_the_way_it_was_flipped_from(monkeypatch: pyt
         assert view.beside.way == "before"
 
     run_main([], script)
+
+
+def test_the_figures_of_all_variants_stand_beside_each_other(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "variants.csv"
+
+    def script(window: MainWindow) -> Script:
+        panel, desk = window.variants, window.variant_figures
+        undrawn(window)
+        yield settled(window)
+        window.inspector.open("variants")
+        assert panel.view is None, "one variant has nothing to be compared with"
+        first = window.session.frame
+        window.variant_desk.choose("B")
+        window.lines_desk.commit_length("mid-bust", 0.92)
+        yield settled(window)
+        yield lambda: panel.view is not None and panel.view.states == ("settled", "settled")
+        assert (panel.view.names, panel.view.shown) == (("A", "B"), 1)
+        mid = next(row for row in panel.view.rows if row.label == "Mid-bust")
+        percent, length = mid.figures
+        assert percent.values == (95.0, 92.0)
+        assert percent.apart(1) == -3.0
+        rest = next(line.rest_length for line in first.stages.model.lines if line.name == "mid-bust")
+        assert length.values == pytest.approx((0.95 * rest, 0.92 * rest))
+        lift = next(row for row in panel.view.rows if row.label == "Lift of bust points").figures[0]
+        assert lift.values[1] == pytest.approx(lift_of(window.session.frame))
+        assert lift.values[0] == pytest.approx(lift_of(first), abs=0.2), "solved anew, from rest"
+        monkeypatch.setattr(app.keeping.variant_figures, "ask_save", lambda *_: str(path))
+        desk.export()
+        table = list(csv.reader(path.read_text("utf-8-sig").splitlines()))
+        assert table[0] == ["Figure", "Unit", "A", "B", "B - A"]
+        assert ["Mid-bust", "%", "95.0", "92.0", "-3.0"] in table
+        desk.copy()
+        assert "Mid-bust\t%\t95.0\t92.0\t-3.0\n" in QGuiApplication.clipboard().text()
+        yield from what_cannot_be_solved_is_told_once(window, monkeypatch)
+        window.session.remove_variant("B")
+        yield lambda: panel.view is None
+
+    run_main([], script)
+
+
+def what_cannot_be_solved_is_told_once(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> Script:
+    asked: list[int] = []
+
+    def refuse(*_: object) -> None:
+        asked.append(1)
+        raise LineError("No balance holds this.", "Set it longer.")
+
+    monkeypatch.setattr(app.keeping.variant_desk, "settled_frame", refuse)
+    window.variant_desk.choose("A")
+    yield lambda: bool(asked)
+    yield settled(window)
+    window.lines_desk.commit_length("full-bust", 0.99)
+    yield settled(window)
+    assert window.variants.view.states[1] == "", "it is said that this one is not solved"
+    assert len(asked) == 1
+
+
+def lift_of(frame: Frame) -> float:
+    now, rest = frame.marks, frame.stages.rest_marks
+    return (now.nipple_left_z + now.nipple_right_z - rest.nipple_left_z - rest.nipple_right_z) / 2
 
 
 def show(window: MainWindow, way: str) -> None:

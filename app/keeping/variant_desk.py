@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, Qt
+from PySide6.QtCore import QObject, Qt, Signal
 from PySide6.QtWidgets import QMenu
 
 from app.dress.parts import Segment
@@ -23,14 +23,21 @@ _MOST_KEPT = 12
 
 
 class VariantDesk(QObject):
-    """Owns the segment A B C of the top bar, and the settled frames of variants that are not worked on."""
+    """Owns the segment A B C of the top bar, and the settled frames of variants that are not worked on.
+
+    ``solved`` tells that there is one more of these.
+    """
+
+    solved = Signal()
 
     def __init__(self, window: MainWindow) -> None:
         super().__init__(window)
         self._window = window
         self._session = window.session
         self._solved: dict[Design, Frame] = {}
+        self._unsolvable: set[Design] = set()
         self._job: Job | None = None
+        self._asked = False
         self._beside: dict[str, Design] | None = None
         self.segment = Segment([(name, name) for name in VARIANTS])
         self.segment.chosen.connect(self.choose)
@@ -81,6 +88,7 @@ class VariantDesk(QObject):
                 self._window.notices.show_notice("info", *said)
             return
         missing = [each for each in others.items() if each[1] not in self._solved]
+        self._asked = bool(missing)
         if missing:
             self._solve(*missing[0])
             return
@@ -91,11 +99,31 @@ class VariantDesk(QObject):
         ]
         self._window.view.show_variants([(_title(name, each), each) for name, each in shown])
 
+    def frames(self) -> list[tuple[str, Design, Frame | None]]:
+        """Return all variants, each with its frame if it is solved; that of the shown one may be at work."""
+        document, frame = self._session.document, self._session.frame
+        if document is None:
+            return []
+        variants = [(name, design, self._solved.get(design)) for name, design in document.designs]
+        # While a line is dragged the frame is that of a design which is not decided yet.
+        if frame is not None and (frame.at_work or frame.stages.design == document.design):
+            place = [name for name, _ in document.designs].index(document.shown)
+            variants[place] = (document.shown, frame.stages.design, frame)
+        return variants
+
+    def solve_others(self) -> None:
+        """Have one more variant solved that is not, if there is one; ``solved`` tells when."""
+        for name, design in self._others().items():
+            if design not in self._solved and design not in self._unsolvable:
+                self._solve(name, design)
+                return
+
     def close_side_by_side(self) -> None:
         """Forget what belongs to another body, and what is being solved for it."""
         self._window.jobs.cancel(self._job)
-        self._job = None
+        self._job, self._asked = None, False
         self._solved.clear()
+        self._unsolvable.clear()
         self._beside = None
         if self._window.view.beside.way == "variants":
             self._window.view.compare_by("after")
@@ -115,9 +143,14 @@ class VariantDesk(QObject):
             tr("Solving variant {name}").format(name=name),
             partial(settled_frame, design, near.stages),
             partial(self._take, design),
-            self._window.desk.show_failure,
+            partial(self._give_up, design),
             waited=True,
         )
+
+    def _give_up(self, design: Design, error: Exception) -> None:
+        self._job, self._asked = None, False
+        self._unsolvable.add(design)
+        self._window.desk.show_failure(error)
 
     def _take(self, design: Design, frame: object) -> None:
         if isinstance(frame, Frame):
@@ -125,7 +158,9 @@ class VariantDesk(QObject):
             self._solved[design] = frame
             for old in list(self._solved)[:-_MOST_KEPT]:
                 del self._solved[old]
-            self.show_side_by_side()
+            if self._asked:
+                self.show_side_by_side()
+            self.solved.emit()
 
     def _set_up(self, name: str) -> None:
         button = self.segment.button(name)
