@@ -71,7 +71,8 @@ def gestures_in_words(gestures: Gestures) -> list[tuple[str, str]]:
         *drags,
         *wheel,
         (tr("Double-click"), tr("Turn about this place")),
-        (tr("Click on a band"), tr("Select the line")),
-        (tr("Drag the selected band up or down"), tr("Shorter or longer by 0.1 % a pixel, Shift 0.01 %")),
-        (tr("Drag the knob of the section plane"), tr("Move the plane, with Shift a tenth as far")),
+        (tr("Click"), tr("Select a line by its band")),
+        (f"{tr('Left drag')} ↑ ↓", tr("Selected band: shorter, longer")),
+        (tr("Left drag"), tr("Handle of the section: move the plane")),
+        (f"Shift+{tr('Left drag')}", tr("Band or section in the hand: a tenth as far")),
     ]
