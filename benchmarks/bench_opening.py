@@ -1,15 +1,16 @@
-"""A million vertices opened in the real window: how long the window stands still, how soon it lets go of them.
+"""A million vertices opened in the real window: how long it stands still, how soon it lets go of them.
 
 Run: QT_QPA_PLATFORM=xcb xvfb-run -a -s "-screen 0 2600x1500x24" python benchmarks/bench_opening.py [SCAN]
 with [--cancel 0.1 0.3 0.5 0.7 0.9] [--noise 0.1]; on a display of your own without xvfb-run.
 
 Without SCAN the mannequin is split until it has a million vertices, with noise [mm] like that of a scanner. A
-timer of 5 ms beats in the window's thread; every pause of over 50 ms between two beats is printed, with how long
-that thread was busy itself, and with where all threads stood. What is not busy waits for the interpreter or for
-another program: only busy pauses compare between machines that do other work too.
+timer of 5 ms beats in the window's thread; every pause of over 50 ms between two beats is printed, with how
+long that thread was busy itself, and where all threads stood. What is not busy waits for the interpreter or
+for another program: only busy pauses can be compared on a machine that does other work too.
 
-First the scan is opened and the Cancel button pressed at some shares of the work: prints how long it takes until
-the card has gone and the window beats again, until the solver's thread has ended the work, and what memory stays.
+First the scan is opened and the Cancel button pressed at some shares of the work: prints how long it takes
+until the card has gone and the window beats again, until the solver's thread has ended the work, and what
+memory the process still has from the system.
 """
 
 from __future__ import annotations

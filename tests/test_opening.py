@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import threading
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,6 +23,7 @@ from core.design import Design, ScanSource
 from core.mesh import Mesh
 from core.progress import Cancelled
 
+ROOT = Path(__file__).parent.parent
 BALL = pv.Sphere(radius=100.0, theta_resolution=60, phi_resolution=60)
 
 
@@ -95,6 +99,13 @@ def test_a_build_that_is_cancelled_stops_while_the_skin_is_calmed(mannequin, mon
         pipeline.build(Design(ScanSource(str(mannequin))), progress=hear)
     shares = [share for _, share in heard]
     assert shares == sorted(shares)
+
+
+def test_the_window_starts_without_what_only_some_commands_need():
+    rare = ("trimesh", "numba", "app.printing", "app.commands.picture", "pandas", "IPython")
+    code = f"import sys, app.window, app.main_window; print(*[n for n in {rare} if n in sys.modules])"
+    told = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert told.stdout.split() == []
 
 
 def _stop_after(times):
