@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from hand_tools import PLAIN, SHIFT, move, press, release
-from PySide6.QtCore import QPoint, QSize, Qt
+from PySide6.QtCore import QEvent, QObject, QPoint, QSize, Qt
 from window_tools import Script, run_main, settled, undrawn
 
 from app.main_window import MainWindow
@@ -42,6 +42,7 @@ def test_the_section_plane_is_dragged_in_every_view() -> None:
         a_plane_that_faces_the_eye_is_dragged_up_and_down(window)
         shift_is_fine_and_escape_brings_it_back(window)
         the_handle_stays_where_it_is_seen(window)
+        a_picture_is_saved_without_the_handle(window)
         for way in ("wipe", "side"):
             window.view.compare_by(way)
             the_hand_on_one_side_cuts_both(window)
@@ -127,6 +128,28 @@ def the_handle_stays_where_it_is_seen(window: MainWindow) -> None:
             framed()
             assert view.rect().contains(handle.geometry()), name
             assert not handle.geometry().intersects(window.view.compare.geometry())
+
+
+def a_picture_is_saved_without_the_handle(window: MainWindow) -> None:
+    handle = handle_of(window.view.viewport)
+    shown = [handle.isVisible()]
+    handle.installEventFilter(heard := Heard(shown))
+    window.view.picture()
+    handle.removeEventFilter(heard)
+    assert shown == [True, False, True]
+
+
+class Heard(QObject):
+    """Notes when a widget is hidden and shown."""
+
+    def __init__(self, shown: list[bool]) -> None:
+        super().__init__()
+        self._shown = shown
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+        if event.type() in (QEvent.Type.Hide, QEvent.Type.Show):
+            self._shown.append(event.type() == QEvent.Type.Show)
+        return False
 
 
 def the_hand_on_one_side_cuts_both(window: MainWindow) -> None:

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.dress.theme import font, tokens_of
 from app.showing.floating import GAP
+from app.showing.plane_handle import PlaneHandle
 from app.showing.viewport import Viewport
 from app.showing.wipe import WipeHandle
 
@@ -51,8 +52,15 @@ class Panes(QWidget):
 
     def picture(self) -> QImage:
         """Return all that is seen at its best, in device pixels."""
+        # A handle is there for the hand: who looks at the picture has none.
+        handles = [handle for handle in self.findChildren(PlaneHandle) if not handle.isHidden()]
+        for handle in handles:
+            handle.hide()
         pictures = [viewport.picture() for viewport in self.viewports]
-        return pictures[0] if len(pictures) == 1 else self.grab().toImage()
+        picture = pictures[0] if len(pictures) == 1 else self.grab().toImage()
+        for handle in handles:
+            handle.show()
+        return picture
 
     def close_views(self) -> None:
         """Give all 3D objects back."""
