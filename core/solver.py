@@ -30,12 +30,14 @@ class Targets:
 
 @dataclass(frozen=True)
 class Marks:
-    """What is watched on the body: heights of the bust points, height and protrusion of the apex [mm]."""
+    """What is watched on the body: height and protrusion of the bust points and of the apex [mm]."""
 
     nipple_left_z: float
     nipple_right_z: float
     apex_z: float
     apex_protrusion: float
+    nipple_left_out: float
+    nipple_right_out: float
 
 
 Watch = Callable[[Points], Marks]

@@ -1,4 +1,4 @@
-"""What is watched on the moved body: the heights of its bust points, its foremost place and its girths."""
+"""What is watched on the moved body: its bust points, its foremost place and its girths."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ class BodyWatch:
 
     The bust points are the body vertices nearest to the landmarks. The apex of a breast is the mean of its
     vertices, weighted by exp(-d / 1 mm) with their distance d behind the foremost: a single foremost vertex
-    jumps about on a flat breast (ours). Protrusion is the distance of the apex in front of the centre of the
-    control mesh's border. Calling it with control points, shape (n, 3) [mm], gives Marks; apex of both sides.
+    jumps about on a flat breast (ours). Protrusion is the distance in front of the centre of the control
+    mesh's border. Calling it with control points, shape (n, 3) [mm], gives Marks; apex of both sides.
     """
 
     def __init__(self, binding: Binding, control: ControlMesh, landmarks: Landmarks) -> None:
@@ -42,15 +42,16 @@ class BodyWatch:
         self._right = slice(2 + len(left), None)
         rows = np.concatenate([nipples, left, right])
         self._binding, self._rest, self._operator = binding, rest[rows], binding.operator.of_rows(rows)
-        self._offset = points[:, 2] - rest[nipples, 2]
+        self._offset = points[:, 1:] - rest[nipples, 1:]
         self._back = float(control.mesh.vertices[control.border, 1].mean())
 
     def __call__(self, control_points: Points) -> Marks:
         """Return the marks for control points, shape (n, 3) [mm]."""
         places = self._rest + self._operator @ self._binding.change(control_points)
         apex = np.mean([_apex(places[self._left]), _apex(places[self._right])], axis=0)
-        heights = places[:2, 2] + self._offset
-        return Marks(float(heights[0]), float(heights[1]), float(apex[1]), self._back - float(apex[0]))
+        heights = places[:2, 2] + self._offset[:, 1]
+        out = self._back - places[:2, 1] - self._offset[:, 0]
+        return Marks(*heights.tolist(), float(apex[1]), self._back - float(apex[0]), *out.tolist())
 
 
 def _sides(rest: Points, control: ControlMesh) -> tuple[Flags, Flags]:

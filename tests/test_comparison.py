@@ -186,7 +186,7 @@ def test_one_diverged_run_does_not_disturb_the_others():
 
 
 def test_body_marks_are_recorded_from_the_start():
-    marks = Marks(1.0, 2.0, 3.0, 4.0)
+    marks = Marks(1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
     comparison = Comparison(MODEL, targets(0.9), watch=lambda points: marks)
     comparison.advance()
     assert [measured.marks for measured in comparison.runs["adaptive"].records] == [marks, marks]

@@ -96,6 +96,8 @@ def test_the_watched_points_are_the_landmarks(built: Built, sample: str) -> None
     foremost = -min(stages.landmarks.position(f"bust_point_{side}")[1] for side in ("left", "right"))
     border = stages.control.mesh.vertices[stages.control.border, 1].mean()
     assert marks.apex_protrusion > foremost + border - 2.0
+    for side, out in (("left", marks.nipple_left_out), ("right", marks.nipple_right_out)):
+        assert out == pytest.approx(border - stages.landmarks.position(f"bust_point_{side}")[1], abs=1e-9)
 
 
 def test_targets_follow_the_design(built: Built) -> None:

@@ -212,7 +212,7 @@ def test_the_same_run_twice_is_the_same_to_the_bit():
 
 
 def test_what_is_watched_is_recorded():
-    marks = Marks(1.0, 2.0, 3.0, 4.0)
+    marks = Marks(1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
     assert record(TORSO, at_rest(TORSO), 0.0, lambda points: marks).marks is marks
     assert turn(TORSO, Targets((1.0,) * 3), at_rest(TORSO))[1].marks is None
 
