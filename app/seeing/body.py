@@ -58,7 +58,7 @@ class BodyActor:
         """Repaint for one theme."""
         self._look = look
         self._light()
-        self._paint(np.arange(len(self._skin.source)))
+        self._paint(slice(None))
 
     def set_occlusion(self, occlusion: Floats) -> None:
         """Darken folds: openness to the sky of each body vertex, shape (n,) [1]."""
@@ -90,7 +90,7 @@ class BodyActor:
         """Lay a map over the clay: the colour of each body vertex, shape (n, 3) 0..255; None takes it off."""
         self._map = None if colours is None else np.array(colours)
         self._light()
-        self._paint(np.arange(len(self._skin.source)))
+        self._paint(slice(None))
 
     def recolour(self, indices: Indices, colours: Floats) -> None:
         """Change the map at some body vertices, shapes (k,) and (k, 3) 0..255."""
@@ -151,7 +151,7 @@ class BodyActor:
         for part in self._parts:
             part.light(self._look.ambient + evenly, DIFFUSE - evenly)
 
-    def _paint(self, rows: Indices) -> None:
+    def _paint(self, rows: Indices | slice) -> None:
         """Colour some of the drawn vertices anew."""
         source, plate = self._skin.source[rows], self._skin.plate[rows]
         sky = self._occlusion[source]

@@ -60,7 +60,7 @@ class SkinPart:
         )
         self._data.point_data.active_normals_name = "Normals"
 
-    def has(self, rows: Indices) -> bool:
+    def has(self, rows: Indices | slice) -> bool:
         """Tell whether one of some vertices of the skin, shape (k,), belongs to it."""
         return bool(self._held[rows].any())
 
