@@ -4,18 +4,25 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QByteArray, QEvent, QObject, QSettings, Qt
+from PySide6.QtCore import QByteArray, QEvent, QObject, QSettings, QSize, Qt, QTimer
 from PySide6.QtWidgets import QApplication, QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
 
 from app.dress.divider import Divider
 from app.dress.focus import FocusRing, stops
+from app.dress.place import put_first, put_on_screen
 from app.wording.words import tr
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
 
+FIRST = QSize(1600, 1000)
+"""First size of the window [px], where the screen has room for it."""
+
 NARROW, WIDE = 340, 364
 """First width of the inspector in windows narrower and wider than 1400 pixels."""
+
+KEPT_AFTER = 1000
+"""Stillness after which the place of the window is remembered [ms]."""
 
 LOW, HIGH = 168, 172
 """First height of the strip in windows lower and higher than 850 pixels."""
@@ -32,7 +39,9 @@ class Layout(QObject):
         self._window = window
         self._width: int | None = None  # of the inspector and
         self._height: int | None = None  # of the strip, once the user has chosen them
-        self._keeps = False
+        self._keeps = QTimer(window, interval=KEPT_AFTER, singleShot=True)
+        self._keeps.timeout.connect(self.keep)
+        self._restored = False
         self.pages = QStackedWidget()
         self._across = Divider(Qt.Orientation.Horizontal, tr("Width of the inspector"))
         self._down = Divider(Qt.Orientation.Vertical, tr("Height of the live plot"))
@@ -182,8 +191,11 @@ class Layout(QObject):
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
         """Follow the size of the window; a low one opens with its plots folded away."""
-        if watched is self._window and event.type() == QEvent.Type.Resize:
-            self.fit()
+        if watched is self._window and event.type() in (QEvent.Type.Resize, QEvent.Type.Move):
+            # Not at the end alone: a window that does not close in order has a place too.
+            self._keeps.start()
+            if event.type() == QEvent.Type.Resize:
+                self.fit()
         elif watched is self._window and event.type() == QEvent.Type.Show and not event.spontaneous():
             if self._window.height() < 740 and self._height is None:
                 self._window.strip.set_folded(True)
@@ -198,11 +210,13 @@ class Layout(QObject):
     # -- between sessions
 
     def restore(self) -> None:
-        """Put the window where it stood last, as far as its screen is still there; ``keep`` is then due."""
-        settings, self._keeps = QSettings(), True
+        """Put the window where it stood last, or on a screen that is there; ``keep`` is then due."""
+        settings, self._restored = QSettings(), True
         place = settings.value("window/geometry")
-        if isinstance(place, QByteArray):
-            self._window.restoreGeometry(place)
+        if isinstance(place, QByteArray) and self._window.restoreGeometry(place):
+            put_on_screen(self._window, self._window.normalGeometry())
+        else:
+            put_first(self._window, FIRST)
         self._width = _number(settings.value("window/inspector"))
         self._height = _number(settings.value("window/strip"))
         if settings.value("window/folded") == "true":
@@ -211,7 +225,8 @@ class Layout(QObject):
 
     def keep(self) -> None:
         """Remember where the window stands, if it was put there from memory: pictures leave no trace."""
-        if not self._keeps:
+        self._keeps.stop()
+        if not self._restored:
             return
         settings, do = QSettings(), self._window.actions_
         settings.setValue("window/geometry", self._window.saveGeometry())
