@@ -66,10 +66,19 @@ def linked(window: MainWindow) -> Script:
     assert last(window) == "Straps set apart"
     window.lines.length_committed.emit("strap right", 0.98)
     assert session.design.ratio("strap left") == ratio
-    window.lines.select("strap left")
-    QTest.keyClick(window.lines, Qt.Key.Key_L)
+    left, right = rows["strap left"], window.lines.rows["strap right"]
+    assert [row.view.apart for row in (left, right)] == ["left", "right"]
+    assert list(window.lines.rows)[-2:] == ["strap left", "strap right"], "one under the other, in a bracket"
+    assert [row._side.accessibleName() for row in (left, right)] == ["left", "right"]
+    window.lines.select("mid-bust")
+    assert left._link.isVisible()
+    assert not window.lines.rows["mid-bust"]._link.isVisible()
+    left._link.click()
     yield lambda: "strap right" not in window.lines.rows
     assert (last(window), session.design.ratio("strap right")) == ("Straps linked", ratio)
+    rows = window.lines.rows
+    assert not rows["strap left"].view.apart
+    window.lines.select("strap left")
     rows["strap left"].percent.setFocus()
     QTest.keyClick(rows["strap left"].percent, Qt.Key.Key_Delete)
     assert last(window) == "Straps linked", "in a field the key takes letters away"

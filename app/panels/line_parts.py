@@ -53,6 +53,32 @@ class LineChip(QWidget):
         painter.drawRoundedRect(QRectF(0.75, (18.0 - high) / 2.0, 12.5, high), round_, round_)
 
 
+class SideMark(QWidget):
+    """The side of a line that is set apart from its partner: a letter in a small frame."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._letter = ""
+        self.setFixedSize(QSize(17, 16))
+        self.setToolTip(tr("Set apart: left and right have lengths of their own"))
+
+    def show_side(self, side: str) -> None:
+        """Show "left" or "right"; anything else is no side, and nothing is shown."""
+        self._letter = {"left": tr("L"), "right": tr("R")}.get(side, "")
+        self.setAccessibleName({"left": tr("left"), "right": tr("right")}.get(side, ""))
+        self.setVisible(bool(self._letter))
+        self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        tokens, painter = tokens_of(self), QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(QColor(tokens.control))
+        painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 4, 4)
+        painter.setPen(QColor(tokens.text))
+        painter.setFont(font("caption"))
+        painter.drawText(self.rect(), Qt.AlignmentFlag.AlignCenter, self._letter)
+
+
 class LineTitle(ElidedLabel):
     """The name of a line, where there is no room for it its beginning; ``renamed`` when another was typed.
 

@@ -3,15 +3,15 @@
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, QRectF, Qt, Signal
-from PySide6.QtGui import QColor, QEnterEvent, QMouseEvent, QPainter, QPaintEvent
+from PySide6.QtCore import QEvent, QPointF, QRectF, Qt, Signal
+from PySide6.QtGui import QColor, QEnterEvent, QMouseEvent, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.dress.parts import ToolButton, sentence
 from app.dress.theme import label, set_tag, set_tip, tokens_of
 from app.panels.length_slider import LengthSlider
 from app.panels.line_details import LineDetails
-from app.panels.line_parts import LineChip, LineTitle
+from app.panels.line_parts import LineChip, LineTitle, SideMark
 from app.panels.line_view import LineView
 from app.panels.number_field import NumberField
 from app.wording.words import number, tr
@@ -49,9 +49,10 @@ class LineRow(QFrame):
     def show_view(self, view: LineView) -> None:
         """Show new values of the same line, without disturbing a drag or a number being typed."""
         self.view = view
-        self.title.setText(view.title)
+        self.title.setText(view.pair_title if view.apart else view.title)  # its side stands beside it
         set_tip(self.title, f"{view.title}\n{tr('Double click or F2: another name')}")
         set_tag(self.title, "tone", "" if view.visible else "faint")
+        self._side.show_side(view.apart)
         self._chip.show_line(view.color, view.width_mm, view.visible)
         self._show_slider(view)
         self._show_lengths(self._set_ratio())
@@ -110,6 +111,16 @@ class LineRow(QFrame):
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(QColor(tokens.hover))
             painter.drawRoundedRect(card, 9, 9)
+        self._paint_bracket(painter)
+
+    def _paint_bracket(self, painter: QPainter) -> None:
+        """Draw a half of the bracket that holds left and right together, the left one above the right one."""
+        if self.view.apart:
+            first, level = self.view.apart == "left", self._chip.geometry().center().y() + 0.5
+            ends = (level, self.height() + 0.5) if first else (-0.5, level)
+            painter.setPen(QPen(QColor(self.view.color), 1.5))
+            painter.drawLine(QPointF(6, ends[0]), QPointF(6, ends[1]))
+            painter.drawLine(QPointF(6, level), QPointF(10, level))
 
     def _build(self) -> None:
         column = QVBoxLayout(self)
@@ -118,7 +129,10 @@ class LineRow(QFrame):
         head = QHBoxLayout()
         head.setSpacing(5)
         self._chip, self.title = LineChip(), LineTitle()
-        self._both = label(tr("left + right"), "caption")
+        self._both, self._side = label(tr("left + right"), "caption"), SideMark()
+        self._link = ToolButton(
+            "link", tr("Link with the other side, which takes this length (L)"), size=15, room=20
+        )
         self._eye = ToolButton("eye", tr("Show or hide this line (H)"), size=15, room=20)
         self._lock = ToolButton(
             "unlock", tr("Lock or unlock the length of this line (Shift+L)"), size=16, room=22
@@ -127,10 +141,11 @@ class LineRow(QFrame):
         self._measure.setContentsMargins(0, 3, 6, 3)
         marks = QHBoxLayout()
         marks.setSpacing(0)
-        for each in (self._eye, self._lock):
+        for each in (self._link, self._eye, self._lock):
             marks.addWidget(each)
         head.addWidget(self._chip)
         head.addWidget(self.title)
+        head.addWidget(self._side)
         head.addWidget(self._both)
         head.addLayout(marks)
         head.addStretch(1)
@@ -163,6 +178,7 @@ class LineRow(QFrame):
         self.details.decided.connect(self.decided)
         self.details.asked.connect(self._do)
         self._eye.clicked.connect(lambda: self.visibility_changed.emit(not self.view.visible))
+        self._link.clicked.connect(lambda: self.decided.emit("linked", True))
         self._lock.clicked.connect(lambda: self.decided.emit("locked", not self.view.locked))
 
     def _do(self, what: str) -> None:
@@ -210,6 +226,7 @@ class LineRow(QFrame):
         """Show what only a row in hand has, and the marks that say something by being there."""
         in_hand = self._hovered or self._open
         self._both.setVisible(bool(self.view.sides) and not in_hand)
+        self._link.setVisible(bool(self.view.apart) and not self._open)
         self._eye.setVisible(in_hand or not self.view.visible)
         self._lock.setVisible((in_hand and self.view.constrained) or self.view.locked)
         self.details.setVisible(self._open)

@@ -24,6 +24,8 @@ class LineView:
     ``reached_mm`` is None before a run. A line that is not ``constrained`` is only measured; an ``own`` one
     can be removed and led elsewhere. ``partner`` names its line of the other side, if there is one; the row
     of a linked pair has both ``sides``, and means of their lengths. ``own_title`` is empty for the usual one.
+    ``apart`` is the side, "left" or "right", of a line that is set apart from its partner; ``pair_title``
+    what both are called together.
     ``width_mm`` is that of its band; ``stiffness`` [1] its own, or None for the ``usual_stiffness``.
     """
 
@@ -45,6 +47,8 @@ class LineView:
     stiffness: float | None = None
     usual_stiffness: float = 16.0
     feasible: Feasible | None = None
+    apart: str = ""
+    pair_title: str = ""
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -130,6 +130,7 @@ def _view(design: Design, frame: Frame, lines: list[Line], colour: str) -> LineV
     name, traits = lines[0].name, design.traits_of(lines[0].name)
     own = {each.name for each in design.own_lines}
     sides = [SideView(_side(line.name), line.rest_length, frame.lengths[line.name]) for line in lines]
+    partner = partner_of(name) if partner_of(name) in own else ""
     return LineView(
         name,
         row_title(name, design),
@@ -141,11 +142,13 @@ def _view(design: Design, frame: Frame, lines: list[Line], colour: str) -> LineV
         True,
         sum(line.whole_length for line in lines) / len(lines),
         name in own,
-        partner=partner_of(name) if partner_of(name) in own else "",
+        partner=partner,
         sides=tuple(sides) if len(sides) > 1 else (),
         locked=traits.locked,
         own_title=traits.title,
         width_mm=band_width(name, design),
         stiffness=traits.stiffness,
         usual_stiffness=design.line_stiffness,
+        apart=name.rsplit(" ", 1)[-1] if partner and len(lines) == 1 else "",
+        pair_title=pair_title(name, design),
     )
