@@ -91,7 +91,7 @@ class Recovery:
             }
             with whole_file(self.folder / _DOCUMENT) as partial:
                 partial.write_text(json.dumps(told), encoding="utf-8")
-        except OSError as problem:
+        except (OSError, ProjectError) as problem:
             raise _unkept(self.folder, problem) from problem
         self._sweep(place.parent)
 
@@ -183,9 +183,11 @@ def _kept(folder: Path, told: Mapping[str, Any]) -> Kept:
     )
 
 
-def _unkept(folder: Path, problem: OSError) -> ProjectError:
+def _unkept(folder: Path, problem: Exception) -> ProjectError:
+    # What could not be written has been told of a file that nobody has chosen: its cause is what counts.
+    cause = problem.__cause__ or problem
     return ProjectError(
-        f"Busk cannot keep your changes in {folder}: {problem.strerror or problem}.",
+        f"Busk cannot keep your changes in {folder}: {getattr(cause, 'strerror', None) or cause}.",
         "Make room on the disk, or save often.",
     )
 
