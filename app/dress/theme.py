@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from importlib import resources
+from string import Template
 
 from PySide6.QtGui import QColor, QFont, QFontDatabase, QPalette
 from PySide6.QtWidgets import QApplication, QLabel, QWidget
@@ -149,71 +150,20 @@ def faded(color: str, ground: str, share: float) -> QColor:
 
 def style_sheet(t: Tokens) -> str:
     """Return the style sheet of one theme: what the palette cannot say."""
-    roles = "\n".join(
-        f'QLabel[role="{role}"] {{ color: {getattr(t, token)}; }}' for role, (_, _, token) in ROLES.items()
+    roles = (
+        f'QLabel[role="{role}"] {{ color: {getattr(t, token)}; }}' for role, (*_, token) in ROLES.items()
     )
-    tones = "\n".join(
+    tones = (
         f'QLabel[tone="{tone}"] {{ color: {getattr(t, tone)}; }}'
         f'QWidget[fill="{tone}"] {{ background: {getattr(t, tone + "_fill")}; }}'
         for tone in ("ok", "info", "warn", "bad")
     )
-    return f"""
-{roles}
-{tones}
-QLabel[tone="faint"] {{ color: {t.text_caption}; }}
-QWidget[fill="panel"] {{ background: {t.panel}; }}
-QFrame[rule="true"] {{ background: {t.line}; border: none; }}
-QPushButton {{ border-radius: 6px; padding: 0 12px; min-height: 28px; border: 1px solid {t.outline};
-    background: {t.raised}; color: {t.text}; }}
-QPushButton:hover {{ background: {t.hover}; }}
-QPushButton:pressed {{ background: {t.pressed}; }}
-QPushButton:focus {{ border: 2px solid {t.accent}; padding: 0 11px; min-height: 26px; }}
-QPushButton:disabled {{ color: {faded(t.text_caption, t.panel, 0.6).name()}; border-color: {t.line}; }}
-QPushButton[kind="primary"] {{ background: {t.ink}; color: {t.on_ink}; border-color: {t.ink}; }}
-QPushButton[kind="primary"]:hover {{ background: {faded(t.ink, t.panel, 0.88).name()}; }}
-QPushButton[kind="primary"]:focus {{ border-color: {t.accent}; }}
-QPushButton[kind="primary"]:disabled {{ background: {t.pressed}; border-color: {t.pressed};
-    color: {t.text_caption}; }}
-QPushButton[kind="quiet"] {{ background: transparent; border-color: transparent; color: {t.text_quiet}; }}
-QPushButton[kind="quiet"]:hover {{ background: {t.pressed}; color: {t.text}; }}
-QPushButton[kind="quiet"]:focus {{ border-color: {t.accent}; }}
-QPushButton[kind="quiet"]:disabled {{ color: {faded(t.text_caption, t.panel, 0.6).name()}; }}
-QPushButton[kind="pull"] {{ padding: 0 28px 0 10px; text-align: left; }}
-QPushButton[kind="pull"]:focus {{ padding: 0 27px 0 9px; }}
-QFrame[kind="segment"] {{ background: {t.app if t.dark else t.pressed}; border-radius: 7px; }}
-QPushButton[kind="segment"] {{ border: 2px solid transparent; border-radius: 6px; padding: 0; min-height: 0;
-    background: transparent; color: {t.text_quiet}; }}
-QPushButton[kind="segment"]:hover {{ color: {t.text}; }}
-QPushButton[kind="segment"]:checked {{ background: {t.pressed if t.dark else t.raised}; color: {t.text}; }}
-QPushButton[kind="segment"]:disabled {{ color: {faded(t.text_caption, t.panel, 0.4).name()}; }}
-QPushButton[kind="segment"]:focus {{ border-color: {t.accent}; }}
-QFrame[kind="card"] {{ background: {t.hover}; border-radius: 9px; }}
-QToolButton {{ border: 2px solid transparent; border-radius: 6px; background: transparent; padding: 2px; }}
-QToolButton:hover {{ background: {t.pressed}; }}
-QToolButton:checked {{ background: {t.selected}; }}
-QToolButton:focus {{ border-color: {t.accent}; }}
-QLineEdit {{ border: 1px solid {t.outline}; border-radius: 5px; background: {t.raised}; padding: 1px 6px;
-    color: {t.text}; selection-background-color: {t.accent}; selection-color: {t.on_accent}; }}
-QLineEdit:focus {{ border: 2px solid {t.accent}; padding: 0 5px; }}
-QLineEdit[kind="number"] {{ border-color: transparent; background: transparent; padding: 0 4px; }}
-QLineEdit[kind="number"]:hover {{ border-color: {t.outline}; background: {t.raised}; }}
-QLineEdit[kind="number"]:focus {{ border: 2px solid {t.accent}; background: {t.raised}; padding: 0 3px; }}
-QLineEdit[wrong="true"]:focus {{ border-color: {t.bad}; }}
-QTreeView, QPlainTextEdit {{ border: 1px solid {t.line}; border-radius: 6px; background: {t.raised};
-    padding: 2px; selection-background-color: {t.accent}; selection-color: {t.on_accent}; outline: none; }}
-QTreeView:focus, QPlainTextEdit:focus {{ border: 2px solid {t.accent}; padding: 1px; }}
-QTreeView::item {{ min-height: 28px; padding: 0 8px; border: none; }}
-QTreeView::item:hover {{ background: {t.hover}; }}
-QTreeView::item:selected {{ background: {t.selected}; color: {t.text}; }}
-QScrollArea, QScrollArea > QWidget > QWidget[scrolled="true"] {{ background: transparent; border: none; }}
-QScrollBar:vertical {{ width: 10px; background: transparent; margin: 2px; }}
-QScrollBar::handle:vertical {{ background: {t.outline}; border-radius: 3px; min-height: 28px; }}
-QScrollBar::handle:vertical:hover {{ background: {t.control}; }}
-QScrollBar::add-line:vertical, QScrollBar::sub-line:vertical {{ height: 0; }}
-QScrollBar::add-page:vertical, QScrollBar::sub-page:vertical {{ background: transparent; }}
-QMenuBar {{ background: transparent; border: none; }}
-QMenuBar::item {{ padding: 5px 9px; border-radius: 6px; background: transparent; color: {t.text_quiet}; }}
-QMenuBar::item:selected, QMenuBar::item:pressed {{ background: {t.pressed}; color: {t.text}; }}
-QToolTip {{ background: {t.ink}; color: {t.on_ink}; border: none; padding: 5px 7px; }}
-QSplitter::handle {{ background: {t.line}; }}
-"""
+    made = {
+        "disabled": faded(t.text_caption, t.panel, 0.6).name(),
+        "disabled_segment": faded(t.text_caption, t.panel, 0.4).name(),
+        "ink_hover": faded(t.ink, t.panel, 0.88).name(),
+        "segment_ground": t.app if t.dark else t.pressed,
+        "segment_on": t.pressed if t.dark else t.raised,
+    }
+    sheet = (resources.files("resources") / "style.qss").read_text(encoding="utf-8")
+    return "\n".join((*roles, *tones, Template(sheet).substitute(vars(t) | made)))
