@@ -127,3 +127,15 @@ def test_nothing_is_kept_while_the_camera_moves_or_after_it_is_forgotten(scene: 
     assert still._kept is None
     picture, _ = drawn_with(scene, still)
     assert np.array_equal(picture, drawn_whole(scene))
+
+
+def test_a_sight_meets_what_moved_and_looks_up_anew_only_that(scene: Scene) -> None:
+    press(scene, 0.0)
+    behind, before = np.array([0.0, 300.0, 0.0]), np.array([0.0, -300.0, 0.0])
+    assert scene.hit_body(before, behind)[1] == pytest.approx(-100.0, abs=1.0)
+    still, moving = (part.sight._locator for part in scene.body._parts)
+    press(scene, 0.4)
+    assert scene.hit_body(before, behind)[1] == pytest.approx(-60.0, abs=1.0)
+    assert scene.hit_body(behind, before)[1] == pytest.approx(100.0, abs=1.0)
+    assert scene.body._parts[0].sight._locator is still
+    assert scene.body._parts[1].sight._locator is not moving

@@ -10,7 +10,6 @@ from scipy import sparse
 
 from app.seeing.camera import View
 from app.seeing.paint import Colours, clay_colours, map_colours
-from app.seeing.sight import Sight
 from app.seeing.skin import skin_of
 from app.seeing.skin_part import DIFFUSE, Singles, SkinPart
 from app.seeing.stage import Look
@@ -49,8 +48,6 @@ class BodyActor:
         self._moves[moving] = True
         self._still: SkinPart | None = None
         self._moving: SkinPart | None = None
-        self._outline = pv.PolyData.from_regular_faces(mesh.vertices.astype(np.float32), mesh.faces)
-        self.sight = Sight(self._outline)
         self._part()
         self.set_look(look)
 
@@ -125,6 +122,11 @@ class BodyActor:
         """The positions on the screen, shape (n, 3) [mm]."""
         return self.rest.vertices if self._before else self.points
 
+    def hit(self, start: Floats, end: Floats) -> Floats | None:
+        """Return where the segment between two points, each (3,) [mm], first meets the body, or None."""
+        met = [place for part in self._parts if (place := part.sight.hit(start, end)) is not None]
+        return min(met, key=lambda place: float(np.linalg.norm(place - start)), default=None)
+
     @property
     def _parts(self) -> tuple[SkinPart, ...]:
         return tuple(part for part in (self._still, self._moving) if part is not None)
@@ -179,9 +181,6 @@ class BodyActor:
         source = self._skin.source[rows]
         normals = self._rest_normals if self._before else self._normals
         self._moving.move(shown[source], normals[rows])
-        self._outline.points[source] = shown[source]
-        self._outline.GetPoints().Modified()
-        self.sight.forget()
 
 
 class Ghost:

@@ -219,7 +219,7 @@ class Scene:
 
     def hit_body(self, start: Floats, end: Floats) -> Floats | None:
         """Return where the segment between two points, each (3,) [mm], first meets the body, or None."""
-        return None if self.body is None else self.body.sight.hit(start, end)
+        return None if self.body is None else self.body.hit(start, end)
 
     def hidden(self, point: Floats, clearance: float = 4.0) -> bool:
         """Tell whether the body stands between the eye and ``point``, shape (3,) [mm]."""

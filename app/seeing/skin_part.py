@@ -7,6 +7,7 @@ import numpy.typing as npt
 import pyvista as pv
 
 from app.seeing.paint import Colours
+from app.seeing.sight import Sight
 from core.mesh import Flags, Indices, Mesh, Points
 
 Singles = npt.NDArray[np.float32]
@@ -59,6 +60,7 @@ class SkinPart:
             "//VTK::Color::Impl", True, _DIM_INSIDE, False
         )
         self._data.point_data.active_normals_name = "Normals"
+        self.sight = Sight(self._data)
 
     def has(self, rows: Indices | slice) -> bool:
         """Tell whether one of some vertices of the skin, shape (k,), belongs to it."""
@@ -70,6 +72,7 @@ class SkinPart:
         self._data.point_data["Normals"][:] = normals
         self._data.GetPoints().Modified()
         self._data.GetPointData().GetNormals().Modified()
+        self.sight.forget()
 
     def paint(self, colours: Colours) -> None:
         """Take its colours out of those of the whole skin, shape (n, 3)."""
