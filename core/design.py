@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from core.design_lines import LineTraits, OwnLine, WornLine, partner_of
+from core.design_measures import OwnMeasure
 from core.errors import LandmarkError, LineError, UserError
 from core.lines import RATIO_LIMITS
 from core.mechanics import CHOICES, DEFAULT_LINE_STIFFNESS, RANGES, Mechanics
@@ -50,8 +51,8 @@ class Design:
     what stands off the control mesh grow with it; ``dense_volume`` lets the exact answer hold the volume of
     the body itself and not that of the control mesh. For the choices of the model see ``core.mechanics``.
     ``own_lines`` are lines beside those of the template, ``traits`` how lines are treated where that is
-    not as usual, ``placed`` the landmarks that were placed by hand. ``unknown`` keeps what a later version
-    wrote.
+    not as usual, ``placed`` the landmarks that were placed by hand, ``own_measures`` what is measured beside
+    the usual. ``unknown`` keeps what a later version wrote.
     """
 
     scan: ScanSource
@@ -74,6 +75,7 @@ class Design:
     own_lines: tuple[OwnLine, ...] = ()
     traits: tuple[LineTraits, ...] = ()
     placed: tuple[PlacedMark, ...] = ()
+    own_measures: tuple[OwnMeasure, ...] = ()
     unknown: Mapping[str, Any] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
@@ -94,6 +96,9 @@ class Design:
         twice = _twice([mark.name for mark in self.placed])
         if twice:
             raise LandmarkError(f"The landmark {twice} is placed twice.", "Place it once.")
+        twice = _twice([measure.name for measure in self.own_measures])
+        if twice:
+            raise UserError(f"There are two measures '{twice}'.", "Give each measure a name of its own.")
 
     def _check_words(self) -> None:
         for value, choices, what in (
@@ -200,6 +205,17 @@ class Design:
         others = tuple(mark for mark in self.placed if mark.name != name)
         placed = others if position is None else (*others, PlacedMark(name, position))
         return replace(self, placed=tuple(sorted(placed, key=lambda mark: mark.name)))
+
+    def with_own_measure(self, measure: OwnMeasure) -> Design:
+        """Return the design with an own measure, in the place of one of the same name if there is one."""
+        if measure.name in {each.name for each in self.own_measures}:
+            own = tuple(measure if each.name == measure.name else each for each in self.own_measures)
+            return replace(self, own_measures=own)
+        return replace(self, own_measures=(*self.own_measures, measure))
+
+    def without_own_measure(self, name: str) -> Design:
+        """Return the design without an own measure."""
+        return replace(self, own_measures=tuple(each for each in self.own_measures if each.name != name))
 
     def with_line(self, name: str, ratio: float | None) -> Design:
         """Return the design with a line at ``ratio``, or off (None). Raises LineError if it is locked."""

@@ -9,6 +9,7 @@ from typing import Any
 
 from core.design import Design, ScanSource
 from core.design_lines import LineTraits, OwnLine, WornLine
+from core.design_measures import OwnMeasure
 from core.errors import ProjectError, UserError
 from core.placing import PlacedMark
 
@@ -38,10 +39,18 @@ def from_json(text: str) -> Design:
         own = tuple(_own_line(line) for line in values.pop("own_lines", ()))
         placed = tuple(_placed(mark) for mark in values.pop("placed", ()))
         traits = tuple(_traits(line) for line in values.pop("traits", ()))
+        measures = tuple(_own_measure(each) for each in values.pop("own_measures", ()))
         known = {f.name for f in fields(Design)} - {"unknown"}
         unknown = {key: values.pop(key) for key in list(values) if key not in known}
         return Design(
-            scan=scan, lines=lines, own_lines=own, traits=traits, placed=placed, unknown=unknown, **values
+            scan=scan,
+            lines=lines,
+            own_lines=own,
+            traits=traits,
+            placed=placed,
+            own_measures=measures,
+            unknown=unknown,
+            **values,
         )
     except UserError:
         raise
@@ -61,6 +70,14 @@ def _own_line(values: Mapping[str, Any]) -> OwnLine:
 def _placed(values: Mapping[str, Any]) -> PlacedMark:
     x, y, z = map(float, values["position"])
     return PlacedMark(str(values["name"]), (x, y, z))
+
+
+def _own_measure(values: Mapping[str, Any]) -> OwnMeasure:
+    marks = values.get("marks", ())
+    if isinstance(marks, str):
+        raise TypeError("marks are a list of names")
+    level = float(values.get("level", 0.0))
+    return OwnMeasure(str(values["name"]), str(values["kind"]), tuple(map(str, marks)), level)
 
 
 def _traits(values: Mapping[str, Any]) -> LineTraits:

@@ -15,8 +15,8 @@ VARIANTS = ("A", "B", "C")
 class Document:
     """The variants of a design by name, of which one is ``shown``.
 
-    All lie on one body: what is said of the scan and its landmarks is said of every variant. Raises UserError
-    if a variant has no name of ``VARIANTS`` or the shown one is not there.
+    All lie on one body: what is said of the scan, its landmarks and own measures is said of every variant.
+    Raises UserError if a variant has no name of ``VARIANTS`` or the shown one is not there.
     """
 
     designs: tuple[tuple[str, Design], ...]
@@ -61,6 +61,7 @@ class Document:
 
 
 def _on_same_body(design: Design, model: Design) -> Design:
-    if (design.scan, design.placed) == (model.scan, model.placed):
+    same = {key: getattr(model, key) for key in ("scan", "placed", "own_measures")}
+    if all(getattr(design, key) == value for key, value in same.items()):
         return design
-    return replace(design, scan=model.scan, placed=model.placed)
+    return replace(design, **same)

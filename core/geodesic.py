@@ -11,7 +11,14 @@ import potpourri3d
 from scipy.spatial import cKDTree
 
 from core.errors import LineError
-from core.mesh import Mesh, Points
+from core.mesh import Flags, Mesh, Points
+from core.proximity import nearest_faces, shares
+from core.sections import arc_length
+
+
+def no_way() -> LineError:
+    """Return what to say where two places do not hang together."""
+    return LineError("There is no way over the skin to that place.", "Click on the same part of the body.")
 
 
 class SkinWays:
@@ -40,8 +47,54 @@ class SkinWays:
         try:
             way = np.asarray(self._solver.find_geodesic_path(first, last), dtype=np.float64)
         except (RuntimeError, ValueError) as problem:
-            raise LineError(
-                "There is no way over the skin to that place.", "Click on the same part of the body."
-            ) from problem
+            raise no_way() from problem
         # The places themselves stand for the vertices beside them, or the way would go there and back.
         return np.concatenate([[start], way[1:-1], [end]])
+
+
+INWARD = 0.02
+"""So far from its border a place is put into a triangle, in parts of it [1]: no triangle becomes a thread."""
+
+
+def shortest_way(mesh: Mesh, start: Points, end: Points) -> Points:
+    """Return the shortest way over the skin between two places on it, each (3,) [mm], shape (k, 3) [mm].
+
+    Only the skin near both is looked at: all places of a way of some length lie within the ellipsoid about
+    its ends that this length spans. Raises LineError where there is no way.
+    """
+    span = 1.5 * float(np.linalg.norm(end - start)) + 60.0
+    to_ends = np.linalg.norm(mesh.vertices - start, axis=1) + np.linalg.norm(mesh.vertices - end, axis=1)
+    while True:
+        whole = bool((to_ends < span).all())
+        try:
+            way = _way_within(mesh, to_ends < span, start, end)
+        except LineError:
+            if whole:
+                raise
+            span = np.inf  # the piece hangs together at a corner alone, or not at all
+            continue
+        length = float(arc_length(way)[-1])
+        if whole or length <= span:
+            return way
+        span = 1.05 * length
+
+
+def _way_within(mesh: Mesh, near: Flags, start: Points, end: Points) -> Points:
+    rows, faces = np.unique(mesh.faces[near[mesh.faces].all(axis=1)], return_inverse=True)
+    if not len(rows):
+        raise no_way()
+    piece = Mesh(mesh.vertices[rows], faces.reshape(-1, 3))
+    for place in (start, end):
+        piece = _with_vertex(piece, place)
+    return SkinWays(piece).way(start, end)
+
+
+def _with_vertex(mesh: Mesh, place: Points) -> Mesh:
+    """Return ``mesh`` with a vertex at a ``place`` of it, shape (3,) [mm], or hardly beside."""
+    face, foot = nearest_faces(mesh, place[None])
+    corners = mesh.faces[face[0]]
+    part = np.maximum(shares(mesh.vertices[corners][None], foot)[0], INWARD)
+    vertex = len(mesh.vertices)
+    parts = [[a, b, vertex] for a, b in zip(corners, np.roll(corners, -1), strict=True)]
+    faces = np.concatenate([np.delete(mesh.faces, face[0], axis=0), parts])
+    return Mesh(np.concatenate([mesh.vertices, [part / part.sum() @ mesh.vertices[corners]]]), faces)

@@ -55,12 +55,8 @@ def girths(body: Body, landmarks: Landmarks) -> Mapping[str, Girth]:
     level down which no longer nicks the breasts, as there the girth hardly changes with the height; "waist"
     and "hip" at their landmarks, and "high_bust" under the armpits, if those were found. Source: ours.
     """
-    found = {
-        "bust": girth_at(body.calm, landmarks.bust_level),
-        "underbust": _girth(stable_level(body.calm, landmarks.underbust_level)),
-    }
-    found |= {name: girth_at(body.calm, z) for name, z in girth_levels(landmarks).items()}
-    sure = _confidences(landmarks)
+    found = {name: _girth(level) for name, level in trunk_sections(body.calm, landmarks).items()}
+    sure = confidences(landmarks)
     return MappingProxyType(
         {
             name: replace(girth, confidence=sure.get(name, 1.0))
@@ -70,7 +66,14 @@ def girths(body: Body, landmarks: Landmarks) -> Mapping[str, Girth]:
     )
 
 
-def _confidences(landmarks: Landmarks) -> dict[str, float]:
+def trunk_sections(mesh: Mesh, landmarks: Landmarks) -> dict[str, Level]:
+    """Return the levels of ``mesh`` at which girths are measured, by name, as ``girths`` says."""
+    bust = trunk_levels(mesh, [landmarks.bust_level])[0]
+    found = {"bust": bust, "underbust": stable_level(mesh, landmarks.underbust_level)}
+    return found | {name: trunk_levels(mesh, [z])[0] for name, z in girth_levels(landmarks).items()}
+
+
+def confidences(landmarks: Landmarks) -> dict[str, float]:
     """Return how sure the heights of the girths are: as the surer bust point, else as the lowest mark."""
     marks = {"bust": BUSTS, "underbust": UNDER, **FURTHER, "high_bust": FURTHER["armpit"]}
     found = {name: [landmarks.points[k] for k in own if k in landmarks.points] for name, own in marks.items()}

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import cKDTree
 from scipy.spatial.distance import cdist
 
 from core.mesh import Flags, Floats, Indices, Mesh, Points
@@ -92,6 +93,29 @@ def nearest_on(corners: Points, points: Points) -> Points:
     within = (np.einsum("ksj,ksj->ks", np.cross(sides, ways), normal[:, None]) > 0.0).all(axis=1)
     height = np.einsum("kj,kj->k", ways[:, 0], normal) / np.maximum((normal**2).sum(axis=1), 1e-300)
     return np.asarray(np.where(within[:, None], points - height[:, None] * normal, nearest))
+
+
+def nearest_faces(mesh: Mesh, points: Points) -> tuple[Indices, Points]:
+    """Return the face of ``mesh`` nearest to each of ``points`` (k, 3) [mm], and the place on it, (k, 3).
+
+    It is the nearest of those twelve whose middles lie nearest: on an even skin of body, of all.
+    """
+    near = cKDTree(centroids(mesh)).query(points, min(12, len(mesh.faces)))[1].reshape(len(points), -1)
+    corners = mesh.vertices[mesh.faces[near]].reshape(-1, 3, 3)
+    places = nearest_on(corners, np.repeat(points, near.shape[1], axis=0)).reshape(*near.shape, 3)
+    best = np.argmin(((places - points[:, None]) ** 2).sum(axis=2), axis=1)
+    rows = np.arange(len(points))
+    return np.asarray(near[rows, best]), np.asarray(places[rows, best])
+
+
+def shares(corners: Points, places: Points) -> Floats:
+    """Return the barycentric coordinates of places (k, 3) on triangles (k, 3, 3) [mm], shape (k, 3) [1]."""
+    a, b, way = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], places - corners[:, 0]
+    aa, bb, ab = (np.einsum("kj,kj->k", p, q) for p, q in ((a, a), (b, b), (a, b)))
+    wa, wb = (np.einsum("kj,kj->k", way, p) for p in (a, b))
+    area = np.maximum(aa * bb - ab**2, 1e-12)
+    u, v = (bb * wa - ab * wb) / area, (aa * wb - ab * wa) / area
+    return np.stack([1.0 - u - v, u, v], axis=1)
 
 
 @dataclass(frozen=True, eq=False)

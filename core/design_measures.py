@@ -1,0 +1,48 @@
+"""Measures of the designer's own, by name: between two landmarks, or round the trunk at a level."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from core.errors import UserError
+from core.landmark import NAMES
+
+KINDS = ("straight", "skin", "girth")
+"""Straight between two landmarks, over the skin between them, or round the trunk on a level plane."""
+
+LONGEST_NAME = 60
+"""Letters of the name of a measure."""
+
+FURTHEST = 3000.0
+"""No level lies so high or so low [mm]."""
+
+
+@dataclass(frozen=True)
+class OwnMeasure:
+    """A measure of the designer's own.
+
+    ``kind`` is one of ``KINDS``. The first two go between the two landmarks in ``marks``; a girth lies
+    ``level`` [mm] above the one landmark in ``marks``, or at the height ``level`` [mm] if there is none.
+    Raises UserError for what cannot be measured.
+    """
+
+    name: str
+    kind: str
+    marks: tuple[str, ...] = ()
+    level: float = 0.0
+
+    def __post_init__(self) -> None:
+        printable = all(letter.isprintable() for letter in self.name)
+        if not self.name.strip() or len(self.name) > LONGEST_NAME or not printable:
+            raise UserError("A measure needs a name of its own.", f"Use up to {LONGEST_NAME} letters.")
+        if self.kind not in KINDS:
+            raise UserError(f"There is no kind of measure '{self.kind}'.", f"Choose {', '.join(KINDS)}.")
+        unknown = [mark for mark in self.marks if mark not in NAMES]
+        if unknown:
+            raise UserError(f"There is no landmark {unknown[0]}.", f"Choose one of {', '.join(NAMES)}.")
+        if self.kind == "girth" and (len(self.marks) > 1 or not abs(self.level) < FURTHEST):
+            raise UserError(
+                f"The girth {self.name} has no level.", "Name one landmark, or a height in mm, or both."
+            )
+        if self.kind != "girth" and (len(set(self.marks)) != 2 or len(self.marks) != 2 or self.level):
+            raise UserError(f"The measure {self.name} has no two ends.", "Name two different landmarks.")

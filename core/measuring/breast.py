@@ -1,0 +1,116 @@
+"""A breast: the skin within its root, the chest behind it, and the volume between the two."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from core.measuring.root import Root, Side
+from core.measuring.wall import Wall, wall_of
+from core.mesh import Faces, Flags, Floats, Indices, Mesh, Points, area_vectors, boundary_loops
+from core.sections import resample
+
+BAND = 4.0
+"""Skin so near to the root counts as lying on it [mm], on coarse skins further."""
+
+
+FACING = 0.3
+"""Skin of the chest looks outward at least so much [cosine]."""
+
+RIM = 8.0
+"""So near to the edge of the piece of skin that is looked at lies its rim [mm]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Breast:
+    """One breast: the ``faces`` within its ``root``, shape (m, 3), and the ``wall`` behind it.
+
+    ``holes`` are border loops of the scan within it, each closed by a fan.
+    """
+
+    root: Root
+    wall: Wall
+    faces: Faces
+    holes: tuple[Indices, ...]
+
+    @property
+    def vertices(self) -> Indices:
+        """The vertices of its skin, shape (k,)."""
+        return np.unique(self.faces)
+
+    def volume(self, places: Points) -> float:
+        """Return the volume between skin and wall [mm^3] with the body's vertices at ``places`` (n, 3) [mm].
+
+        A flow away from the axis that grows by its own volume everywhere and is nil on the wall passes the
+        skin: what passes is the volume (divergence theorem), of overhanging parts too. The exact course of
+        the root hardly matters, as skin and wall meet there.
+        """
+        skin, faces = self._filled(places)
+        flow = self._flow(skin)
+        return float(np.einsum("ij,ij->", flow[faces].mean(axis=1), area_vectors(skin, faces)))
+
+    def _filled(self, places: Points) -> tuple[Points, Faces]:
+        rows = self.vertices
+        at = np.full(len(places), -1)
+        at[rows] = np.arange(len(rows))
+        skin, faces = [places[rows]], [at[self.faces]]
+        for k, loop in enumerate(self.holes):
+            skin.append(places[loop].mean(axis=0, keepdims=True))
+            tip = np.full(len(loop), len(rows) + k)
+            faces.append(np.stack([at[np.roll(loop, -1)], at[loop], tip], axis=1))
+        return np.concatenate(skin), np.concatenate(faces)
+
+    def _flow(self, skin: Points) -> Points:
+        chart = self.root.chart
+        flat = chart.flat(skin)
+        far = np.maximum(flat[:, 2], 1.0)
+        strength = (far**2 - self.wall.out(flat[:, :2]) ** 2) / (2.0 * far)
+        return np.asarray(strength[:, None] * chart.outward(skin))
+
+
+def breast_of(side: Side, root: Root) -> Breast | None:
+    """Return the breast within a root.
+
+    None if the root does not part it from the chest, or the chest round it does not show.
+    """
+    chart, piece, uvw = side.chart, side.piece, side.uvw
+    band = _band(piece, root)
+    edges = piece.edges
+    label = _pieces(len(uvw), edges[~band[edges].any(axis=1)])
+    away = np.where(band, np.inf, ((piece.vertices - side.bust_point) ** 2).sum(axis=1))
+    own = ~band & (label == label[np.argmin(away)])
+    flat = uvw[:, :2]
+    rim = ((flat < flat.min(axis=0) + RIM) | (flat > flat.max(axis=0) - RIM)).any(axis=1)
+    if band.all() or (own & rim).any():
+        return None  # the skin goes on from the breast to the rim: the root is open
+    outside = ~band & ~own
+    facing = np.einsum("ij,ij->i", piece.vertex_normals, chart.outward(piece.vertices)) > FACING
+    wall = wall_of(uvw[outside & facing], chart.flat(root.loop))
+    if wall is None:
+        return None
+    inside = piece.faces[(own | band)[piece.faces].all(axis=1)]
+    holes = [loop for loop in boundary_loops(inside) if own[loop].any()]
+    return Breast(root, wall, side.rows[inside], tuple(side.rows[loop] for loop in holes))
+
+
+def _band(piece: Mesh, root: Root) -> Flags:
+    """Tell which vertices lie on the root, wide enough for no edge to leap over it."""
+    away = np.asarray(cKDTree(resample(root.closed, 1.5)).query(piece.vertices)[0])
+    close = piece.vertices[piece.edges[(away[piece.edges] < 4.0 * BAND).any(axis=1)]]
+    length = np.linalg.norm(close[:, 0] - close[:, 1], axis=1)
+    return np.asarray(away < max(BAND, 0.6 * float(np.percentile(length, 99.0)) if len(length) else BAND))
+
+
+def _pieces(count: int, edges: Indices) -> Indices:
+    graph = sparse.coo_array((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(count, count))
+    return np.asarray(connected_components(graph, directed=False)[1])
+
+
+def foremost(places: Points) -> Points:
+    """Return y and z of the foremost place, shape (2,) [mm]: a mean that favours what lies foremost."""
+    weight: Floats = np.exp(places[:, 1].min() - places[:, 1])
+    return np.asarray(weight @ places[:, 1:] / weight.sum())

@@ -1,0 +1,166 @@
+"""What is measured on the bust: distances, cups, volumes, and how left and right differ."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from core.errors import LineError
+from core.geodesic import shortest_way
+from core.landmark import SIDES, Landmark
+from core.measuring.breast import foremost
+from core.measuring.definitions import Measure, definition_of, missing
+from core.measuring.subject import Subject
+from core.mesh import Points
+from core.sections import arc_length
+
+NO_MARK = "The scan does not show the landmarks that it is taken from."
+NO_WAY = "There is no way over the skin between its two places."
+NO_ROOT = "The ends of the root of the breast were not found."
+OPEN_ROOT = "The skin round the root of the breast does not show far enough."
+HELD_UP = "The chest behind the breast and the top of its root do not show: an estimate."
+HOLED = "It goes over a hole of the scan: an estimate."
+
+
+def cup_measures(subject: Subject) -> Iterator[Measure]:
+    """Yield what is measured between landmarks, of cups and of breasts."""
+    yield _between_bust_points(subject)
+    yield from _heights(subject)
+    for side in SIDES:
+        yield _to_fold(subject, side)
+        yield from _cup(subject, side)
+        yield _volume(subject, side)
+    yield from _sides(subject)
+
+
+def straight(key: str, marks: list[Landmark | None]) -> Measure:
+    """Return the straight distance between two landmarks."""
+    ends = [mark for mark in marks if mark]
+    if len(ends) < 2:
+        return Measure(key, None, "mm", confidence=0.0, note=NO_MARK)
+    line = np.array([mark.position for mark in ends])
+    return Measure(key, _length(line), "mm", (line,), min(mark.confidence for mark in ends))
+
+
+def over_skin(key: str, subject: Subject, marks: list[Landmark | None]) -> Measure:
+    """Return the length of the shortest way over the skin between two landmarks."""
+    ends = [mark for mark in marks if mark]
+    if len(ends) < 2:
+        return Measure(key, None, "mm", confidence=0.0, note=NO_MARK)
+    try:
+        way = shortest_way(subject.mesh, ends[0].position, ends[1].position)
+    except LineError:
+        return Measure(key, None, "mm", confidence=0.0, note=NO_WAY)
+    return Measure(key, _length(way), "mm", (way,), min(mark.confidence for mark in ends))
+
+
+def foremost_places(subject: Subject) -> Points | None:
+    """Return y and z of the foremost place of each breast, shape (2, 2) [mm]; None without both."""
+    if len(subject.breasts) < len(SIDES):
+        return None
+    places = subject.mesh.vertices
+    return np.array([foremost(places[subject.breasts[side].vertices]) for side in SIDES])
+
+
+def _length(curve: Points) -> float:
+    return float(arc_length(curve)[-1])
+
+
+def _busts(subject: Subject) -> list[Landmark | None]:
+    return [subject.mark(f"bust_point_{side}") for side in SIDES]
+
+
+def _between_bust_points(subject: Subject) -> Measure:
+    return straight("bust_point_distance", _busts(subject))
+
+
+def _heights(subject: Subject) -> Iterator[Measure]:
+    """Yield how high and how far out the bust stands; shown by the lines that are measured."""
+    landmarks = subject.landmarks
+    marks = [mark for mark in _busts(subject) if mark]
+    height = landmarks.bust_level - landmarks.underbust_level
+    lines = tuple(
+        np.array([mark.position, [*mark.position[:2], landmarks.underbust_level]]) for mark in marks
+    )
+    sure = min((mark.confidence for mark in marks), default=0.0)
+    yield Measure("bust_height", height, "mm", lines, sure)
+    apex, chest = foremost_places(subject), subject.mark("front_centre_underbust")
+    if apex is None or chest is None:
+        yield missing("bust_protrusion", NO_ROOT if chest else NO_MARK)
+        return
+    y, z = apex.mean(axis=0)
+    start = np.array([chest.position[0], chest.position[1], z])
+    line = np.array([start, [start[0], y, z]])
+    yield Measure("bust_protrusion", float(start[1] - y), "mm", (line,), min(sure, chest.confidence))
+
+
+def _to_fold(subject: Subject, side: str) -> Measure:
+    marks = [subject.mark(f"{name}_{side}") for name in ("bust_point", "fold")]
+    return over_skin(f"bust_point_to_fold_{side}", subject, marks)
+
+
+def _cup(subject: Subject, side: str) -> Iterator[Measure]:
+    """Yield depth and width of a cup and the length of its root."""
+    bust, *ends = [subject.mark(f"{name}_{side}") for name in ("bust_point", "root_inner", "root_outer")]
+    inner, outer = ends
+    if bust is None or inner is None or outer is None:
+        yield from (missing(f"cup_{what}_{side}", NO_ROOT) for what in ("depth", "width"))
+    else:
+        a, b, tip = inner.position, outer.position, bust.position
+        way = (b - a)[:2]
+        along = float((tip - a)[:2] @ way) / max(float(way @ way), 1e-9)
+        foot = np.array([*(a[:2] + along * way), tip[2]])
+        sure, line = min(mark.confidence for mark in (bust, inner, outer)), np.array([a, b])
+        depth = np.array([foot, tip])
+        yield Measure(f"cup_depth_{side}", _length(depth), "mm", (depth, line), sure)
+        yield Measure(
+            f"cup_width_{side}", _length(line), "mm", (line,), min(inner.confidence, outer.confidence)
+        )
+    root = subject.roots.get(side)
+    if root is None:
+        yield missing(f"root_length_{side}", NO_ROOT)
+    else:
+        yield Measure(f"root_length_{side}", _length(root.under), "mm", (root.under,), root.confidence)
+
+
+def _volume(subject: Subject, side: str) -> Measure:
+    key, breast = f"breast_volume_{side}", subject.breasts.get(side)
+    if breast is None:
+        return missing(key, OPEN_ROOT if side in subject.roots else NO_ROOT)
+    root = subject.roots[side]
+    return Measure(
+        key,
+        breast.volume(subject.mesh.vertices) / 1000.0,
+        "ml",
+        (root.closed,),
+        root.confidence,
+        True,
+        subject.spreads[side] / 1000.0,
+        HOLED if breast.holes else HELD_UP,
+    )
+
+
+def _sides(subject: Subject) -> Iterator[Measure]:
+    """Yield by how much the left side exceeds the right one."""
+    left, right = _busts(subject)
+    for axis, sign, key in ((2, 1.0, "asymmetry_height"), (1, -1.0, "asymmetry_forward")):
+        if left is None or right is None:
+            yield missing(key, NO_MARK)
+            continue
+        more = sign * float(left.position[axis] - right.position[axis])
+        line = np.array([left.position, right.position])
+        yield Measure(key, more, "mm", (line,), min(left.confidence, right.confidence))
+    volumes = [_volume(subject, side) for side in SIDES]
+    values = [each.value for each in volumes if each.value is not None]
+    if len(values) < len(SIDES):
+        yield missing("asymmetry_volume", next(each.note for each in volumes if each.value is None))
+        return
+    curves = tuple(curve for each in volumes for curve in each.curves)
+    sure, unsure = min(each.confidence for each in volumes), max(each.plus_minus for each in volumes)
+    unit = definition_of("asymmetry_volume")[0].unit
+    share = abs(values[0] - values[1]) / max(sum(values) / 2.0, 1e-9)
+    # Both tops are taken by the same rule: what is unsure of the volumes is unsure of their difference.
+    yield Measure(
+        "asymmetry_volume", values[0] - values[1], unit, curves, sure, True, share * unsure, HELD_UP
+    )

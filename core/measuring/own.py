@@ -1,0 +1,45 @@
+"""Measures of the designer's own, taken like all others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+
+from core.design_measures import OwnMeasure
+from core.measuring.cups import NO_MARK, over_skin, straight
+from core.measuring.definitions import Measure
+from core.measuring.girths import over_gaps
+from core.measuring.rings import tape_ring
+from core.measuring.subject import Subject
+from core.trunk import trunk_levels
+
+NO_TRUNK = "The scan shows no trunk at that height."
+
+
+def own_key(name: str) -> str:
+    """Return the key of a measure of the designer's own."""
+    return f"own:{name}"
+
+
+def own_measures(subject: Subject, own: Iterable[OwnMeasure]) -> Iterator[Measure]:
+    """Yield the measures of the designer's own."""
+    for each in own:
+        key = own_key(each.name)
+        if each.kind == "girth":
+            yield _girth(key, subject, each)
+        else:
+            marks = [subject.mark(name) for name in each.marks]
+            yield straight(key, marks) if each.kind == "straight" else over_skin(key, subject, marks)
+
+
+def _girth(key: str, subject: Subject, own: OwnMeasure) -> Measure:
+    marks = [subject.mark(name) for name in own.marks]
+    at = marks[0] if marks else None
+    if marks and at is None:
+        return Measure(key, None, "mm", confidence=0.0, note=NO_MARK)
+    level = trunk_levels(subject.mesh, [own.level + (float(at.position[2]) if at else 0.0)])[0]
+    if level.tape == 0.0:
+        return Measure(key, None, "mm", confidence=0.0, note=NO_TRUNK)
+    bridged, note = over_gaps(level)
+    measure = Measure(key, level.tape, "mm", (tape_ring(level),), estimate=bridged, note=note)
+    return replace(measure, confidence=at.confidence) if at else measure

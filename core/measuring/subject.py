@@ -1,0 +1,78 @@
+"""Who is measured: a skin with its landmarks, the trunk's levels and both breasts, at rest or reshaped."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from types import MappingProxyType
+
+from core.landmark import SIDES, Landmark, Landmarks
+from core.measure import trunk_sections
+from core.measuring.breast import Breast, breast_of
+from core.measuring.riding import carried, riders
+from core.measuring.root import Root, chart_of, root_of, side_of
+from core.mesh import Mesh, Points
+from core.trunk import Level, trunk_levels
+
+UNSURE_TOP = 15.0
+"""The top of a root may lie so much lower or higher than it is taken [mm]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Subject:
+    """What measures are taken from. A side whose root does not show has no entry in what is kept by side.
+
+    ``spreads`` [mm^3] are how much the volumes of the breasts change with the top of the root.
+    """
+
+    mesh: Mesh
+    landmarks: Landmarks
+    roots: Mapping[str, Root]
+    breasts: Mapping[str, Breast]
+    spreads: Mapping[str, float]
+
+    @cached_property
+    def levels(self) -> Mapping[str, Level]:
+        """The levels of the trunk at which girths are measured, by name."""
+        return MappingProxyType(trunk_sections(self.mesh, self.landmarks))
+
+    def mark(self, name: str) -> Landmark | None:
+        """Return a landmark, or None if the scan does not show it."""
+        return self.landmarks.points.get(name)
+
+    def moved(self, vertices: Points) -> Subject:
+        """Return the subject reshaped, its vertices at ``vertices``, shape (n, 3) [mm].
+
+        Landmarks and roots ride on the skin; the chest behind the breasts stays where it is.
+        """
+        moves = vertices - self.mesh.vertices
+        roots = {
+            side: replace(root, loop=riders(self.mesh, root.loop).moved(moves))
+            for side, root in self.roots.items()
+        }
+        marks = carried(self.mesh, self.landmarks, moves)
+        return Subject(self.mesh.moved(vertices), marks, roots, self.breasts, self.spreads)
+
+
+def subject_of(mesh: Mesh, landmarks: Landmarks) -> Subject:
+    """Return a skin [mm] and its landmarks ready to be measured."""
+    roots: dict[str, Root] = {}
+    breasts: dict[str, Breast] = {}
+    spreads: dict[str, float] = {}
+    points = trunk_levels(mesh, [landmarks.bust_level])[0].points
+    if len(points):
+        chart = chart_of(landmarks, (float(points[:, 1].min()), float(points[:, 1].max())))
+        for name in SIDES:
+            side = side_of(mesh, landmarks, name, chart)
+            root = root_of(side) if side else None
+            if side is None or root is None:
+                continue
+            roots[name] = root
+            breast = breast_of(side, root)
+            lower = root_of(side, -UNSURE_TOP)
+            less = breast_of(side, lower) if lower else None
+            if breast and less:
+                breasts[name] = breast
+                spreads[name] = abs(breast.volume(mesh.vertices) - less.volume(mesh.vertices))
+    return Subject(mesh, landmarks, roots, breasts, spreads)
