@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from scipy.spatial import cKDTree
@@ -32,11 +34,7 @@ def figure_4(study: Study) -> Figure:
     upper, lower = np.ravel(np.asarray(drawn.subfigures(2, 1, height_ratios=(1.0, 1.15))))
     plots = [*upper.subplots(1, 3), *lower.subplots(1, 3, width_ratios=(1.0, 1.0, 1.5))]
     axes = dict(zip(("rest", "held", "free", "p0", "p1", "change"), plots, strict=True))
-    held, free = (study.solved(BODY, study.ratio_for(BODY, REACHED[0]), c) for c in ("adaptive", "none"))
-    pictures = [_picture(study, stages, None), _picture(study, stages, held), _picture(study, stages, free)]
-    titles = ("before", "after, volume held", "after, volume free")
-    for name, picture, title in zip(("rest", "held", "free"), trimmed(pictures), titles, strict=True):
-        show(axes[name], picture, title)
+    _show_views(study, stages, [axes[name] for name in ("rest", "held", "free")])
     at = stages.landmarks.position("bust_point_left")
     rest = profile(stages.body.mesh, at)
     way = arc_length(rest)
@@ -60,11 +58,7 @@ def figure_4(study: Study) -> Figure:
             said.append(_words(solution, title))
         _frame(plot, at, f"line {100 * (1 - reached):.0f} % shorter")
     axes["p0"].legend(loc="lower left", fontsize=6.5)
-    axes["change"].axvline(0.0, color=LIGHT.control, lw=0.6)
-    axes["change"].set(
-        title="moved outward", xlabel="across the skin [mm]", ylabel="way over the bust point [mm]"
-    )
-    axes["change"].legend(loc="upper left", fontsize=6.5)
+    _name_change(axes["change"])
     caption = (
         f"Side views of the {BODY}, the line reaching {100 * REACHED[0]:.0f} % of its rest length; "
         f"profiles through the left bust point also at {100 * REACHED[1]:.0f} %; with the volume free the "
@@ -72,6 +66,22 @@ def figure_4(study: Study) -> Figure:
     )
     columns = ("state", "reached_percent_with_volume_held", "profile_y_mm", "profile_z_mm")
     return Figure("fig-4-side-view", "Side view before and after", caption, columns, rows, drawn)
+
+
+def _show_views(study: Study, stages: Stages, axes: Sequence[Axes]) -> None:
+    """Show the body from the side: before, and after with the volume held and free."""
+    held, free = (study.solved(BODY, study.ratio_for(BODY, REACHED[0]), c) for c in ("adaptive", "none"))
+    pictures = [_picture(study, stages, each) for each in (None, held, free)]
+    titles = ("before", "after, volume held", "after, volume free")
+    for plot, picture, title in zip(axes, trimmed(pictures), titles, strict=True):
+        show(plot, picture, title)
+
+
+def _name_change(plot: Axes) -> None:
+    """Say what the plot of the change across the skin is of."""
+    plot.axvline(0.0, color=LIGHT.control, lw=0.6)
+    plot.set(title="moved outward", xlabel="across the skin [mm]", ylabel="way over the bust point [mm]")
+    plot.legend(loc="upper left", fontsize=6.5)
 
 
 def profile(body: Mesh, at: Floats) -> Points:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from app.printing.bodies import AZIMUTH, ELEVATION
 from app.printing.scene import body_picture, view_of
@@ -13,6 +14,16 @@ from core.studies.search import routes
 
 RATIOS = (0.97, 0.6)
 
+COLUMNS = (
+    "curve",
+    "body",
+    "control",
+    "set_percent",
+    "turn",
+    "bust_point_change_mm",
+    "volume_error_percent",
+)
+
 
 def figure_10(study: Study) -> Figure:
     """Draw Figs. 6 and 7 again with slings from the upper edge round each breast."""
@@ -21,13 +32,7 @@ def figure_10(study: Study) -> Figure:
     rows: list[tuple[object, ...]] = []
     said = []
     for column, (letter, body) in enumerate(BODIES.items()):
-        stages = study.stages(body)
-        paths = routes(stages.control)["slings"]
-        points = {name: stages.control.mesh.vertices[list(path)] for name, path in paths.items()}
-        view = view_of(stages.control.mesh, AZIMUTH, ELEVATION, margin=1.5)
-        picture = body_picture(stages.body.mesh, study.occlusion(body), view, paths=points)
-        show(axes[0, column], trimmed([picture])[0], f"({letter}) {body} with slings")
-        own = tuple(OwnLine(name, path) for name, path in sorted(paths.items()))
+        own = _show_slings(study, body, axes[0, column], f"({letter}) {body} with slings")
         for ratio in RATIOS:
             ends, first = {}, 0.0
             for digit, control in CONTROLS.items():
@@ -50,6 +55,17 @@ def figure_10(study: Study) -> Figure:
                 f"{body} at {100 * ratio:.0f} %: bust points {ends['1']:+.2f} and {ends['2']:+.2f} mm, first "
                 f"error {first:.2f} % ({words})"
             )
+    _name_axes(axes)
+    caption = (
+        "Slings from the upper edge of the control mesh round each breast, glued, in place of the line. "
+        "Conventional and adaptive force at the end, and largest error of the first ten turns, adaptive: "
+        f"{'; '.join(said)}."
+    )
+    return Figure("fig-10-slings", "Slings in place of the line", caption, COLUMNS, rows, drawn)
+
+
+def _name_axes(axes: np.ndarray) -> None:
+    """Say what the plots (4, 2) are of; those beside each other have one height."""
     for line, ratio in zip(axes[1:3], RATIOS, strict=True):
         line[0].set_ylabel(f"bust point, change in\nheight [mm], {100 * ratio:.0f} %")
     axes[3, 0].set_ylabel(f"volume error [%], {100 * RATIOS[0]:.0f} %")
@@ -59,18 +75,14 @@ def figure_10(study: Study) -> Figure:
     for line in axes[1:]:
         line[1].sharey(line[0])
         line[0].autoscale(axis="y")
-    caption = (
-        "Slings from the upper edge of the control mesh round each breast, glued, in place of the line. "
-        "Conventional and adaptive force at the end, and largest error of the first ten turns, adaptive: "
-        f"{'; '.join(said)}."
-    )
-    columns = (
-        "curve",
-        "body",
-        "control",
-        "set_percent",
-        "turn",
-        "bust_point_change_mm",
-        "volume_error_percent",
-    )
-    return Figure("fig-10-slings", "Slings in place of the line", caption, columns, rows, drawn)
+
+
+def _show_slings(study: Study, body: str, plot: Axes, title: str) -> tuple[OwnLine, ...]:
+    """Show a body with its slings, and return them."""
+    stages = study.stages(body)
+    paths = routes(stages.control)["slings"]
+    points = {name: stages.control.mesh.vertices[list(path)] for name, path in paths.items()}
+    view = view_of(stages.control.mesh, AZIMUTH, ELEVATION, margin=1.5)
+    picture = body_picture(stages.body.mesh, study.occlusion(body), view, paths=points)
+    show(plot, trimmed([picture])[0], title)
+    return tuple(OwnLine(name, path) for name, path in sorted(paths.items()))

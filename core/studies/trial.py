@@ -18,7 +18,7 @@ from core.pipeline import GAIN_SHARE
 from core.solver import Record, Targets, iterate
 from core.solving.gain import gain_limit
 from core.solving.newton import Balance
-from core.verdict import SETTLED_STEP, judge
+from core.verdict import SETTLED_STEP, Verdict, judge
 
 TURNS = 300
 """Turns of every run that does not diverge before."""
@@ -103,13 +103,7 @@ def _trial(
     at = next(index for index, line in enumerate(model.lines) if line.name == subject.line)
     gain = GAINS.get(control) or GAIN_SHARE * limit
     targets = Targets(ratios, control.partition(" ")[0], gain)
-    if control == "exact":
-        records: list[Record] = []
-        moved, verdict = exact.state.moved, judge_balance(model, exact)
-        rest_at = exact.steps if exact.found else None
-    else:
-        records, moved, rest_at = _run(model, targets)
-        verdict = judge(records)
+    records, moved, rest_at, verdict = _outcome(model, targets, exact)
     errors = np.array([abs(record.error) for record in records] or [abs(verdict.error)])
     late = np.array([record.error for record in records[-RIPPLE_TURNS:]] or [0.0])
     shape = shape_of(model).condition(model.tensegric.expand(exact.state.moved))
@@ -136,6 +130,20 @@ def _trial(
         shape.inverted,
         shape.overstrained,
     )
+
+
+def _outcome(
+    model: ConstrainedModel, targets: Targets, exact: Balance
+) -> tuple[list[Record], Points, int | None, Verdict]:
+    """Return the records of a control, where it ends, when nothing moves any more, and what is said of it.
+
+    The exact answer has no records: its steps are Newton's.
+    """
+    if targets.control == "exact":
+        rest_at = exact.steps if exact.found else None
+        return [], exact.state.moved, rest_at, judge_balance(model, exact)
+    records, moved, rest_at = _run(model, targets)
+    return records, moved, rest_at, judge(records)
 
 
 def _run(model: ConstrainedModel, targets: Targets) -> tuple[list[Record], Points, int | None]:
