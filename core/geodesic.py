@@ -11,7 +11,7 @@ import potpourri3d
 from scipy.spatial import cKDTree
 
 from core.errors import LineError
-from core.mesh import Flags, Mesh, Points
+from core.mesh import Faces, Flags, Mesh, Points
 from core.proximity import nearest_faces, shares
 from core.sections import arc_length
 
@@ -28,7 +28,8 @@ class SkinWays:
     """
 
     def __init__(self, mesh: Mesh) -> None:
-        self._mesh, self._tree = mesh, cKDTree(mesh.vertices)
+        mesh = unpinched(mesh)
+        self._tree = cKDTree(mesh.vertices)
         try:
             self._solver = potpourri3d.EdgeFlipGeodesicSolver(mesh.vertices, mesh.faces.astype(np.int64))
         except (RuntimeError, ValueError) as problem:
@@ -50,6 +51,40 @@ class SkinWays:
             raise no_way() from problem
         # The places themselves stand for the vertices beside them, or the way would go there and back.
         return np.concatenate([[start], way[1:-1], [end]])
+
+
+def unpinched(mesh: Mesh) -> Mesh:
+    """Return ``mesh`` with each vertex at which holes meet doubled: one for each piece of skin there.
+
+    The library walks round each vertex, and refuses a skin where it cannot.
+    """
+    half = np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]], mesh.faces[:, [2, 0]]])
+    count = len(mesh.vertices)
+    keys, turned = half[:, 0] * count + half[:, 1], half[:, 1] * count + half[:, 0]
+    ends = np.bincount(half[~np.isin(keys, turned), 0], minlength=count)
+    vertices, faces = list(mesh.vertices), mesh.faces.copy()
+    for pinched in np.flatnonzero(ends > 1).tolist():
+        for fan in _fans(faces, pinched)[1:]:
+            faces[fan] = np.where(faces[fan] == pinched, len(vertices), faces[fan])
+            vertices.append(mesh.vertices[pinched])
+    return Mesh(np.array(vertices), faces) if len(vertices) > count else mesh
+
+
+def _fans(faces: Faces, vertex: int) -> list[list[int]]:
+    """Return the faces round a vertex in groups that hang together by edges of it."""
+    left = {
+        int(face): set(faces[face].tolist()) - {vertex} for face in np.flatnonzero((faces == vertex).any(1))
+    }
+    fans = []
+    while left:
+        face, border = left.popitem()
+        fan = [face]
+        while met := [each for each, ends in left.items() if ends & border]:
+            for each in met:
+                border |= left.pop(each)
+            fan += met
+        fans.append(fan)
+    return fans
 
 
 INWARD = 0.02

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from core.errors import LineError
 from core.geodesic import shortest_way
@@ -12,7 +13,7 @@ from core.landmark import SIDES, Landmark
 from core.measuring.breast import foremost
 from core.measuring.definitions import Measure, definition_of, missing
 from core.measuring.subject import Subject
-from core.mesh import Points
+from core.mesh import Mesh, Points
 from core.sections import arc_length
 
 NO_MARK = "The scan does not show the landmarks that it is taken from."
@@ -20,7 +21,7 @@ NO_WAY = "There is no way over the skin between its two places."
 NO_ROOT = "The ends of the root of the breast were not found."
 OPEN_ROOT = "The skin round the root of the breast does not show far enough."
 HELD_UP = "The chest behind the breast and the top of its root do not show: an estimate."
-HOLED = "It goes over a hole of the scan: an estimate."
+HOLED = "A hole of the scan lies on its way: an estimate."
 
 
 def cup_measures(subject: Subject) -> Iterator[Measure]:
@@ -52,7 +53,17 @@ def over_skin(key: str, subject: Subject, marks: list[Landmark | None]) -> Measu
         way = shortest_way(subject.mesh, ends[0].position, ends[1].position)
     except LineError:
         return Measure(key, None, "mm", confidence=0.0, note=NO_WAY)
-    return Measure(key, _length(way), "mm", (way,), min(mark.confidence for mark in ends))
+    round_hole = _along_border(subject.mesh, way)
+    sure = min(mark.confidence for mark in ends)
+    return Measure(key, _length(way), "mm", (way,), sure, round_hole, note=HOLED * round_hole)
+
+
+def _along_border(mesh: Mesh, way: Points) -> bool:
+    """Tell whether a way had to go round a hole: then it passes vertices of a border."""
+    if not mesh.boundary_loops:
+        return False
+    border = mesh.vertices[np.concatenate(mesh.boundary_loops)]
+    return bool((cKDTree(border).query(way[1:-1])[0] < 1e-6).any())
 
 
 def foremost_places(subject: Subject) -> Points | None:
