@@ -15,7 +15,7 @@ from types import TracebackType
 
 import platformdirs
 import PySide6
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QLibraryInfo, Qt, QTranslator
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QApplication
 
@@ -44,10 +44,22 @@ def application(language: str | None = None, dark: bool | None = None) -> QAppli
         existing.setOrganizationName("Busk")
         existing.setApplicationName("Busk")
         existing.setApplicationVersion(__version__)
-    use_language(language or wish("language"))
+    use_words(existing, language or wish("language"))
     load_fonts()
     apply_theme(existing, chosen_dark(wish("theme")) if dark is None else dark)
     return existing
+
+
+def use_words(app: QApplication, language: str) -> None:
+    """Set the language of all words that are made from now on, those of Qt's own dialogs among them."""
+    use_language(language)
+    for former in app.findChildren(QTranslator):
+        app.removeTranslator(former)
+        former.deleteLater()
+    words = QTranslator(app)
+    # English is what Qt speaks by itself; of a language that it lacks, a part is left in English.
+    if words.load(f"qtbase_{language}", QLibraryInfo.path(QLibraryInfo.LibraryPath.TranslationsPath)):
+        app.installTranslator(words)
 
 
 def log_folder() -> Path:

@@ -57,6 +57,7 @@ def _connect_session(window: MainWindow) -> None:
     session.frame_ready.connect(desk.show_frame)
     session.design_changed.connect(desk.show_design)
     session.failed.connect(desk.show_failure)
+    session.not_saved.connect(desk.show_not_saved)
     session.asked.connect(scan_desk.show_stuck)
     session.saved.connect(desk.show_saved)
     session.undo_stack.cleanChanged.connect(desk.show_title)

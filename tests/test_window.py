@@ -139,7 +139,7 @@ def test_an_edit_that_cannot_be_carried_out_is_taken_back() -> None:
         yield settled(window)
         assert window.session.design == design
         assert window.session.undo_stack.count() == 0
-        window.session.failed.emit(ProjectError("Not written."))
+        window.session.not_saved.emit(ProjectError("Not written."))
         drag(window, "mid-bust", -10)
         yield settled(window)
         assert window.notices.notice().sentence == "Not written.", "the refusal alone is of the past"

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 import trimesh
 from PySide6.QtGui import QImage
-from PySide6.QtWidgets import QApplication, QMessageBox
 from window_tools import Script, drag, points, run_main, settled, undrawn
 
 import app.desks.desk
@@ -119,6 +118,50 @@ def test_a_bad_scan_leaves_everything_as_it_was(tmp_path: Path) -> None:
     run_main([], script)
 
 
+def test_the_file_that_was_refused_last_is_the_one_that_is_told(tmp_path: Path, project: Path) -> None:
+    notes, cut = tmp_path / "notes.ply", tmp_path / "cut.busk"
+    notes.write_text("to buy: thread")
+    cut.write_bytes(project.read_bytes()[:900])
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        for path in (notes, cut, notes):
+            window.desk.open_file(str(path))
+            yield (
+                lambda path=path: (
+                    window.notices.notice() is not None and (path.name in window.notices.notice().sentence)
+                )
+            )
+            yield settled(window)
+            assert window.notices.more.isHidden(), "what was refused before was asked for before"
+
+    run_main([], script)
+
+
+def test_a_save_that_fails_elsewhere_leaves_what_is_saved_here_saved(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, project: Path
+) -> None:
+    monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(tmp_path / "nowhere" / "a.busk"))
+    told: list[object] = []
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.session.not_saved.connect(told.append)
+        window.actions_.save_as.trigger()
+        yield lambda: len(told) == 1
+        assert not window.session.unsaved, "all of it is in the file that was opened"
+        assert "*" not in window.windowTitle()
+        drag(window, "mid-bust", -20)
+        yield settled(window)
+        window.actions_.save_as.trigger()
+        yield lambda: len(told) == 2
+        assert window.session.unsaved
+
+    run_main([str(project)], script)
+
+
 @pytest.mark.parametrize("last", ["discard", "save"])
 def test_closing_asks_about_changes(last: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path, answers = tmp_path / "kept.busk", ["stay", last]
@@ -139,15 +182,6 @@ def test_closing_asks_about_changes(last: str, tmp_path: Path, monkeypatch: pyte
     assert not answers
     if last == "save":
         assert open_project(path).design.ratio("mid-bust") < 0.95
-
-
-def test_the_question_offers_three_ways(qapp: QApplication, monkeypatch: pytest.MonkeyPatch) -> None:
-    given = []
-    monkeypatch.setattr(
-        QMessageBox, "exec", lambda box: given.append(box.text()) or QMessageBox.StandardButton.Cancel.value
-    )
-    assert app.desks.desk.ask_about_changes(None, "Customer 0412") == "stay"
-    assert "Customer 0412" in given[0]
 
 
 def test_a_project_that_cannot_be_opened_at_start_is_told(tmp_path: Path) -> None:

@@ -41,7 +41,7 @@ class Session(Editing):
     Verbs (open, preview, commit, save ...) are called by the window; what follows is told by signals.
     ``working`` tells the work in hand and the share done; ``asked`` hands out the StuckError of a scan
     that was opened and cannot go on before somebody says how it stands or places its landmarks; ``saving``
-    says that a project is being written, or that this has failed.
+    says that a project is being written, or no longer, and ``not_saved`` why this has failed.
     """
 
     opened = Signal(object)
@@ -50,6 +50,7 @@ class Session(Editing):
     working = Signal(str, float)
     saving = Signal(bool)
     saved = Signal(str)
+    not_saved = Signal(object)
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -115,13 +116,17 @@ class Session(Editing):
         return self.path is not None and stamp_of(self.path) not in (None, self.stamp)
 
     def save(self, path: str, picture: bytes | None) -> bool:
-        """Begin to save the project; returns whether it begins. ``saved`` or ``failed`` follows."""
+        """Begin to save the project; returns whether it begins. ``saved`` or ``not_saved`` follows."""
         if self.document is None or self.frame is None:
             return False
         target, document, scan = Path(path).absolute(), self.document, self.frame.stages.scan
-        self._saving.run(partial(_write, target, document, scan, picture), partial(self._saved, target))
+        # Only then it is known whether the save before this one has left anything unsaved.
+        self._saving.wait()
+        stack = self.undo_stack
+        told = partial(self._saved, target, stack.isClean())
+        self._saving.run(partial(_write, target, document, scan, picture), told)
         # Edits that follow are not in the file.
-        self.undo_stack.setClean()
+        stack.setClean()
         self.saving.emit(True)
         return True
 
@@ -136,11 +141,13 @@ class Session(Editing):
         self.path = self.stamp = None
         self.undo_stack.resetClean()
 
-    def _saved(self, path: Path, fault: Exception | None) -> None:
+    def _saved(self, path: Path, clean: bool, fault: Exception | None) -> None:
         if fault is not None:
-            self.undo_stack.resetClean()
+            # What was all in another file before is there still.
+            if not clean:
+                self.undo_stack.resetClean()
             self.saving.emit(False)
-            self.failed.emit(fault)
+            self.not_saved.emit(fault)
             return
         self.path, self.stamp = path, stamp_of(path)
         self.saved.emit(str(path))

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, QTimer
 
 from app.keeping.dialogs import ask_about_changes, ask_open, ask_save
+from app.keeping.last_folders import remember_folder
 from app.keeping.loss_dialogs import ask_overwrite
 from app.keeping.project_picture import project_picture
 from app.keeping.recent import remember_file
@@ -97,12 +98,12 @@ class Desk(QObject):
     def show_failure(self, error: Exception, about: str = "") -> None:
         """Say what went wrong; what is on the screen stays.
 
-        A file that is not the project names what it is ``about``: it is told until ``show_written`` of that.
+        A file that is not written names what it is ``about``: it is told until ``show_written`` of that.
         """
         self._fell_back_to, notices = self._session.design, self._window.notices
         if isinstance(error, UserError):
             # What was refused before was asked for before: the last refusal is the one that counts.
-            about = about or FILES if isinstance(error, ProjectError) else REFUSED
+            about = about or REFUSED
             notices.withdraw(about)
             message = titled(error.message, self._session.design)
             notices.show_notice("bad", message, error.hint, lasting=True, about=about)
@@ -118,6 +119,10 @@ class Desk(QObject):
         """Say that a file has been written, and no longer that it cannot be."""
         self._window.notices.withdraw(about)
         self._window.notices.show_notice("ok", sentence)
+
+    def show_not_saved(self, error: Exception) -> None:
+        """Say why the project could not be saved, until it can."""
+        self.show_failure(error, FILES)
 
     def show_saving(self, at_work: bool) -> None:
         """Say that the project is being saved, or no longer."""
@@ -172,6 +177,7 @@ class Desk(QObject):
     def open_file(self, path: str) -> None:
         """Open a project or a scan."""
         if path and self.may_leave():
+            remember_folder("opened", path)
             self._session.open(path)
 
     def open_sample(self, name: str) -> None:
@@ -195,7 +201,8 @@ class Desk(QObject):
         """Ask for a place and save the project there; returns whether it is being saved."""
         self._window.landmark_desk.put_down()
         kinds = f"{tr('Projects')} (*.busk)"
-        path = ask_save(self._window, tr("Save as"), f"{self._session.name}.busk", kinds, ".busk")
+        name = str(self._session.path or f"{self._session.name}.busk")
+        path = ask_save(self._window, tr("Save as"), name, kinds, ".busk")
         return bool(path) and self._session.save(path, self._preview())
 
     def export(self) -> None:

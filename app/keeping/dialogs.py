@@ -5,8 +5,10 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
+from PySide6.QtWidgets import QFileDialog, QWidget
 
+from app.dress.ask import ask
+from app.keeping.last_folders import free_name, last_folder, remember_folder
 from app.wording.scan_formats import PATTERNS
 from app.wording.words import tr
 
@@ -17,37 +19,33 @@ def ask_open(parent: QWidget) -> str:
     """Return the file that the user wants to open, or an empty text."""
     both, projects, scans = tr("Projects and scans"), tr("Projects"), tr("Scans")
     kinds = f"{both} (*.busk {PATTERNS});;{projects} (*.busk);;{scans} ({PATTERNS})"
-    path, _ = QFileDialog.getOpenFileName(parent, tr("Open"), "", kinds)
+    path, _ = QFileDialog.getOpenFileName(parent, tr("Open"), str(last_folder("opened")), kinds)
     return path
 
 
 def ask_save(parent: QWidget, title: str, name: str, kinds: str, ending: str) -> str:
-    """Return where to save, or an empty text.
+    """Return where to save, or an empty text; a ``name`` with its folder is offered as it is.
 
     A name without one of the endings in ``kinds`` gets that of the chosen kind, else ``ending``.
     """
-    path, kind = QFileDialog.getSaveFileName(parent, title, name, kinds)
-    if not path or Path(path).suffix.lower() in _ENDING.findall(kinds):
-        return path
-    whole = Path(path + next(iter(_ENDING.findall(kind)), ending))
-    # The dialog has only asked about the name as it was typed.
-    return str(whole) if not whole.exists() or _may_replace(parent, title, whole.name) else ""
+    what = "projects" if ending == ".busk" else "written"
+    offered = name if Path(name).is_absolute() else str(free_name(last_folder(what), name))
+    path, kind = QFileDialog.getSaveFileName(parent, title, offered, kinds)
+    if path and Path(path).suffix.lower() not in _ENDING.findall(kinds):
+        whole = Path(path + next(iter(_ENDING.findall(kind)), ending))
+        # The dialog has only asked about the name as it was typed.
+        path = str(whole) if not whole.exists() or _may_replace(parent, whole.name) else ""
+    if path:
+        remember_folder(what, path)
+    return path
 
 
-def _may_replace(parent: QWidget, title: str, name: str) -> bool:
+def _may_replace(parent: QWidget, name: str) -> bool:
     question = tr("{name} is there already. Replace it?").format(name=name)
-    return QMessageBox.question(parent, title, question) == QMessageBox.StandardButton.Yes
+    return ask(parent, question, "", [("replace", tr("Replace"))]) == "replace"
 
 
-def ask_about_changes(parent: QWidget, name: str) -> str:
+def ask_about_changes(parent: QWidget | None, name: str) -> str:
     """Return what to do with unsaved changes: "save", "discard" or "stay"."""
-    box = QMessageBox(parent)
-    box.setIcon(QMessageBox.Icon.Question)
-    box.setWindowTitle("Busk")
-    box.setText(tr("Save the changes to {name}?").format(name=name))
-    box.setInformativeText(tr("Otherwise they are lost."))
-    buttons = QMessageBox.StandardButton
-    box.setStandardButtons(buttons.Save | buttons.Discard | buttons.Cancel)
-    box.setDefaultButton(buttons.Save)
-    answer = box.exec()
-    return {buttons.Save.value: "save", buttons.Discard.value: "discard"}.get(answer, "stay")
+    question, said = tr("Save the changes to {name}?").format(name=name), tr("Otherwise they are lost.")
+    return ask(parent, question, said, [("save", tr("Save")), ("discard", tr("Don't save"))]) or "stay"

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from functools import partial
+from itertools import chain, count
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
-from PySide6.QtWidgets import QInputDialog
 
+from app.dress.ask import ask_name
 from app.presenting.lines import row_title
 from app.wording.words import say, tr
 from core.design import Design
@@ -69,11 +70,15 @@ class PresetDesk(QObject):
 
     def ask(self) -> None:
         """Ask for a name, and keep the present lines as a preset."""
-        title, given = QInputDialog.getText(
-            self._window, tr("Save lines as preset"), tr("Name of the preset"), text=self._window.session.name
+        # Not the name of the project: a set of lines is for more than one customer.
+        taken, name = {preset.title for preset in own_presets()[0]}, tr("My lines")
+        names = chain([name], (f"{name} {number}" for number in count(2)))
+        offered = next(each for each in names if each not in taken)
+        title = ask_name(
+            self._window, tr("Save lines as preset"), tr("Name of the preset"), offered, LONGEST_TITLE
         )
-        if given and title.strip():
-            self.save(title.strip()[:LONGEST_TITLE])
+        if title:
+            self.save(title)
 
     def save(self, title: str) -> None:
         """Keep the present lines as a preset."""

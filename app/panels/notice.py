@@ -44,7 +44,10 @@ class Notice:
 
 
 class NoticeBar(QWidget):
-    """One notice at a time, the others wait; it takes no room while there is none."""
+    """One notice at a time, the others wait; it takes no room while there is none.
+
+    What goes wrong now, or goes away by itself, is said at once: what stands there waits, if it lasts.
+    """
 
     closed = Signal()
 
@@ -76,7 +79,12 @@ class NoticeBar(QWidget):
         notice = Notice(tone, sentence, hint, tuple(actions), lasting, details, about)
         if any(each.sentence == sentence for each in (self._shown, *self._waiting) if each):
             return
-        self._waiting.append(notice)
+        if self._shown is None or (lasting and tone != "bad"):
+            self._waiting.append(notice)
+        else:
+            self._waiting.extendleft([self._shown] if self._shown.lasting else [])
+            self._waiting.appendleft(notice)
+            self._shown = None
         if self._shown is None:
             self._next()
         else:
@@ -121,13 +129,15 @@ class NoticeBar(QWidget):
         column.addLayout(row)
         row.setSpacing(8)
         self._icon = IconLabel("info", "info", 19)
-        self._words, self._more = label("", "body"), label("", "caption")
+        self._words, self.more = label("", "body"), button("", "quiet")
+        self.more.setToolTip(tr("Show the next of them; this one waits"))
+        self.more.clicked.connect(self._turn_over)
         self._words.setTextFormat(Qt.TextFormat.RichText)
         self._words.setWordWrap(True)
         row.addWidget(self._icon)
         row.addSpacing(2)
         row.addWidget(self._words, 1)
-        row.addWidget(self._more)
+        row.addWidget(self.more)
         self._buttons: list[QPushButton] = []
         self._row = row
         self.unfold = button(tr("Details"), "quiet")
@@ -182,5 +192,11 @@ class NoticeBar(QWidget):
         act()
 
     def _show_waiting(self) -> None:
-        self._more.setText(tr("{count} more").format(count=len(self._waiting)) if self._waiting else "")
-        self._more.setVisible(bool(self._waiting))
+        self.more.setText(tr("{count} more").format(count=len(self._waiting)))
+        self.more.setVisible(bool(self._waiting))
+
+    def _turn_over(self) -> None:
+        """Show the next notice, and let the one that stands there wait behind all others."""
+        if self._shown is not None:
+            self._waiting.append(self._shown)
+        self._next()
