@@ -1,13 +1,9 @@
-"""What belongs to any desktop program, through the real main(): keys, layout, wishes, faults, safe mode."""
+"""What belongs to any desktop program, through the real main(): keys, layout, wishes, faults."""
 
 from __future__ import annotations
 
-import subprocess
-import sys
 import threading
 from collections import Counter
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -15,26 +11,19 @@ from PySide6.QtCore import QByteArray, QPoint, QSettings, Qt, QTimer
 from PySide6.QtGui import QDesktopServices, QGuiApplication
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
-from pytestqt.qtbot import QtBot
 from window_tools import Script, drag, run_main, settled, undrawn
 
-import app.helping.safe_mode
 from app.application import log_folder
-from app.asking.session import Session
 from app.dress.divider import STEP
 from app.dress.sheet import Sheet
-from app.helping.safe_mode import SafeMode
 from app.main_window import MainWindow
 from app.panels.about import AboutSheet, DiagnosticsSheet
 from app.panels.commands import CommandSheet
 from app.panels.fault import FaultSheet
 from app.panels.preferences import PreferencesSheet
-from app.showing.canvas import PaintedCanvas
-from app.showing.graphics import begin_graphics, graphics_work, spare_graphics
 from app.wording.tokens import DARK
 from core.backups import backups_folder
 from core.recovery import recovery_folder
-from core.starts import failed_starts, starts_folder
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -240,81 +229,3 @@ def test_a_fault_is_told_once_and_the_work_goes_on(monkeypatch: pytest.MonkeyPat
         assert design.ratio("mid-bust") < 0.95
 
     run_main([], script)
-
-
-def test_the_safe_mode_draws_without_the_graphics_driver_and_says_so() -> None:
-    def asked(window: MainWindow) -> Script:
-        yield settled(window)
-        assert window.view.findChildren(PaintedCanvas)
-        notice = window.notices.notice()
-        assert notice is not None
-        assert notice.sentence.startswith("Safe mode")
-        image = window.view.viewport.picture()
-        colours = {image.pixelColor(x, image.height() // 2).name() for x in range(0, image.width(), 7)}
-        assert len(colours) > 20
-
-    def failed(window: MainWindow) -> Script:
-        yield settled(window)
-        notice = window.notices.notice()
-        assert notice is not None
-        assert "twice" in notice.sentence
-        notice.actions[0][1]()
-        assert not failed_starts()
-
-    run_main(["--safe-mode"], asked)
-    for _ in range(2):
-        crash_at_the_start()
-    run_main([], failed)
-
-
-_START = "import sys; from core.starts import Start; start = Start(); print(1, flush=True); sys.stdin.read()"
-
-
-@contextmanager
-def another_start() -> Iterator[None]:
-    """Another process is about to draw its first picture; at the end it is killed."""
-    with subprocess.Popen([sys.executable, "-c", _START], stdin=-1, stdout=-1) as other:
-        assert other.stdout is not None
-        assert other.stdout.readline()
-        yield
-        other.kill()
-
-
-def crash_at_the_start() -> None:
-    with another_start():
-        pass
-
-
-def begun() -> int:
-    return len(list(starts_folder().glob("*/begun")))
-
-
-def test_windows_that_are_opened_together_are_no_crashes(qapp: QApplication) -> None:
-    with another_start(), another_start():
-        assert begin_graphics(False) == "", "two others draw their first picture just now"
-        assert begun() == 3
-        spare_graphics()
-    assert begin_graphics(False) == "failed", "the two were killed"
-    graphics_work()
-    assert begin_graphics(False) == ""
-    graphics_work()
-    assert begun() == 0
-
-
-def test_only_an_end_while_the_driver_is_at_work_counts_as_its_fault(
-    qtbot: QtBot, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(app.helping.safe_mode, "_DRAWN_FOR", 1)
-    window = QWidget()
-    qtbot.addWidget(window)
-    window.session = Session(window)
-    crash_at_the_start()
-    assert begin_graphics(False) == ""
-    start = SafeMode(window, "")
-    assert begun() == 2
-    qtbot.waitUntil(lambda: begun() == 1)  # the start page waits: if it is killed now that is no fault
-    window.session.opened.emit(None)
-    assert begun() == 2, "it is about to be drawn"
-    qtbot.waitUntil(lambda: begun() == 0)
-    assert not start._clock.isActive()
-    window.session.close()
