@@ -69,46 +69,57 @@ _LENGTH = re.compile(r"^\s*=?\s*([+-]?)\s*(\d+(?:[.,]\d+)?)\s*(%|mm|cm|in)?\s*$"
 _MM = {"mm": 1.0, "cm": 10.0, "in": 25.4}
 
 
-def typed_ratio(text: str, rest_mm: float, whole_mm: float, unit: str = "%") -> float | None:
+def typed_ratio(text: str, rest_mm: float, unit: str = "%") -> float | None:
     """Return what a designer writes for a length as ratio of the rest length [1], or None if it is no length.
 
     ``97%`` of the front part's rest length, ``-6%`` or ``-20mm`` (also cm, in) shorter or longer, ``400mm``
     absolute; ``unit`` is that of a bare number. An absolute length is that of the front part, ``rest_mm`` at
-    rest, or of the whole band, ``whole_mm``, if only that reading makes sense: the two never lie near each
-    other.
+    rest: the one that is shown wherever it can be typed.
     """
+    typed = _typed(text, unit)
+    if typed is None:
+        return None
+    sign, number, unit = typed
+    share = number / 100.0 if unit == "%" else number * _MM[unit] / rest_mm
+    return {"": share, "+": 1.0 + share, "-": 1.0 - share}[sign]
+
+
+def _typed(text: str, unit: str) -> tuple[str, float, str] | None:
+    """Return sign, number and unit of a typed length, or None if it is none."""
     # A Japanese keyboard writes full-width digits and signs: the normal form has them plain.
     plain = unicodedata.normalize("NFKC", text).replace("\N{MINUS SIGN}", "-").lower()
     match = _LENGTH.match(plain)
     if match is None:
         return None
-    sign, number, unit = match.group(1), float(match.group(2).replace(",", ".")), match.group(3) or unit
-    if not sign and unit != "%":
-        return _absolute_ratio(number * _MM[unit], rest_mm, whole_mm)
-    share = number / 100.0 if unit == "%" else number * _MM[unit] / rest_mm
-    return {"": share, "+": 1.0 + share, "-": 1.0 - share}[sign]
+    return match.group(1), float(match.group(2).replace(",", ".")), match.group(3) or unit
 
 
-def _absolute_ratio(mm: float, rest_mm: float, whole_mm: float) -> float:
-    front = mm / rest_mm
-    whole = (mm - (whole_mm - rest_mm)) / rest_mm
-    low, high = RATIO_LIMITS
-    return whole if not low <= front <= high and low <= whole <= high else front
+def length_ratio(text: str, name: str, rest_mm: float, whole_mm: float, unit: str = "%") -> float:
+    """Read the length of line ``name`` as ``typed_ratio`` does, within RATIO_LIMITS.
 
-
-def length_ratio(text: str, line: Line) -> float:
-    """Read a length as ``typed_ratio`` does; raises LineError if it is none or lies outside RATIO_LIMITS."""
-    ratio = typed_ratio(text, line.rest_length, line.whole_length)
-    if ratio is None:
+    Raises LineError if it is none, or out of range: what can only be the length of the whole band,
+    ``whole_mm`` at rest, is not taken for that of the front part without a word.
+    """
+    typed, ratio = _typed(text, unit), typed_ratio(text, rest_mm, unit)
+    if typed is None or ratio is None:
         raise LineError(
-            f"'{text}' is not a length for {line.name}.",
+            f"'{text}' is not a length for {name}.",
             "Write 97% of the rest length, -20mm shorter, or 400mm absolute.",
         )
     low, high = RATIO_LIMITS
-    if not low <= ratio <= high:
+    if low <= ratio <= high:
+        return ratio
+    short, long, back = low * rest_mm, high * rest_mm, whole_mm - rest_mm
+    rest = ratio * rest_mm - back
+    absolute = not typed[0] and typed[2] != "%"
+    if absolute and back > 0.0 and short <= rest <= long:
         raise LineError(
-            f"{text} asks {line.name} for {100 * ratio:.1f} % of its rest length.",
-            f"Stay between {100 * low:.0f} and {100 * high:.0f} %: "
-            f"{low * line.rest_length:.0f} to {high * line.rest_length:.0f} mm of the front part.",
+            f"The front part of {name} goes from {short:.0f} to {long:.0f} mm, "
+            f"its whole band from {short + back:.0f} to {long + back:.0f} mm.",
+            f"Lengths are those of the front part: for that whole band, write {rest:.1f}mm.",
         )
-    return ratio
+    raise LineError(
+        f"{text.strip()} asks {name} for {100 * ratio:.1f} % of its rest length.",
+        f"Stay between {100 * low:.0f} and {100 * high:.0f} %: "
+        f"{short:.0f} to {long:.0f} mm of the front part.",
+    )

@@ -63,9 +63,6 @@ def test_the_line_of_a_torso_runs_from_right_to_left():
         ("15in", 15 * 25.4 / 400),
         ("380 MM", 0.95),
         ("  380mm  ", 0.95),
-        ("780mm", 0.95),  # only sensible as the whole band: 400 mm of back remain
-        ("78cm", 0.95),
-        ("600mm", 0.5),  # too long for the front, the shortest whole band
         ("520mm", 1.3),
         ("50%", 0.5),
         ("-50%", 0.5),
@@ -73,7 +70,7 @@ def test_the_line_of_a_torso_runs_from_right_to_left():
     ],
 )
 def test_lengths_that_are_understood(text, ratio):
-    assert length_ratio(text, BAND) == pytest.approx(ratio, abs=1e-12)
+    assert read(text) == pytest.approx(ratio, abs=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -97,7 +94,7 @@ def test_lengths_that_are_understood(text, ratio):
 )
 def test_nonsense_is_refused_with_an_example(text):
     with pytest.raises(LineError) as refused:
-        length_ratio(text, BAND)
+        read(text)
     assert "is not a length for mid-bust" in refused.value.message
     assert "97%" in refused.value.hint
 
@@ -107,7 +104,7 @@ def test_nonsense_is_refused_with_an_example(text):
 )
 def test_lengths_out_of_range_name_the_range(text):
     with pytest.raises(LineError) as refused:
-        length_ratio(text, BAND)
+        read(text)
     assert "between 50 and 130 %: 200 to 520 mm" in refused.value.hint
 
 
@@ -119,18 +116,36 @@ def test_every_way_of_writing_a_length_means_the_same(ratio):
         f"{100 * ratio - 100:+.9f}%",
         f"{400 * ratio - 400:+.9f}mm",
         f"{400 * ratio:.9f}mm",
-        f"{40 * ratio + 40:.9f}cm",
+        f"{40 * ratio:.9f}cm",
     )
     low, high = RATIO_LIMITS
     if low + 1e-9 < ratio < high - 1e-9:
-        assert [length_ratio(text, BAND) for text in texts] == pytest.approx([ratio] * 5, abs=1e-9)
+        assert [read(text) for text in texts] == pytest.approx([ratio] * 5, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("text", "instead"), [("780mm", "380.0mm"), ("78cm", "380.0mm"), ("600mm", "200.0mm")]
+)
+def test_what_can_only_be_the_whole_band_is_refused_and_told_as_front_part(text, instead):
+    with pytest.raises(LineError) as refused:
+        read(text)
+    assert refused.value.message == (
+        "The front part of mid-bust goes from 200 to 520 mm, its whole band from 600 to 920 mm."
+    )
+    assert refused.value.hint.endswith(f"write {instead}.")
+    assert read(instead) == pytest.approx(0.95 if instead == "380.0mm" else 0.5)
 
 
 def test_where_both_readings_make_sense_it_is_the_front_part():
-    short_back = line_on("strap", (0, 1, 2), POINTS, free=np.array([1]), back_length=40.0)
-    assert length_ratio("42cm", short_back) == pytest.approx(1.05)
+    assert length_ratio("42cm", "strap", 400.0, 440.0) == pytest.approx(1.05)
 
 
 def test_without_a_back_an_absolute_length_is_that_of_the_line():
-    open_line = line_on("strap", (0, 1, 2), POINTS, free=np.array([1]))
-    assert length_ratio("38cm", open_line) == pytest.approx(0.95)
+    assert length_ratio("38cm", "strap", 400.0, 400.0) == pytest.approx(0.95)
+    with pytest.raises(LineError, match="Stay between"):
+        length_ratio("60cm", "strap", 400.0, 400.0)
+
+
+def read(text: str) -> float:
+    """Read the length of the mid-bust line as it is typed."""
+    return length_ratio(text, BAND.name, BAND.rest_length, BAND.whole_length)

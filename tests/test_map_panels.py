@@ -8,9 +8,9 @@ from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from app.panels.figure_field import read_figure
 from app.panels.legend import BAR, Legend
 from app.panels.profile import STEPS, ProfilePanel
+from app.panels.typed_field import read_figure
 from app.presenting.maps import MAPS, apex_words, automatic_range, map_kinds, ramp_of
 from app.seeing.stage import rgb
 from app.showing.profile_plot import Drawn, ProfilePlot, grid_step

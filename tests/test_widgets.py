@@ -17,7 +17,6 @@ from app.dress.theme import apply_theme
 from app.panels.length_slider import LengthSlider
 from app.panels.line_row import LineView
 from app.panels.lines import LinesPanel
-from app.panels.number_field import parse_length
 from app.wording.words import use_language
 
 WAIST = LineView("waist", "Waist", "#7A1F2E", 1.0, 400.0, 396.0, True, True, 700.0)
@@ -121,32 +120,6 @@ def test_the_slider_keeps_its_range(slider: LengthSlider) -> None:
     said = heard(slider)
     QTest.keyClick(slider, Qt.Key.Key_Left)
     assert (said, slider.ratio()) == ([], 0.8)
-
-
-@pytest.mark.parametrize(
-    ("text", "unit", "ratio"),
-    [
-        ("94", "%", 0.94),
-        (" 94 % ", "mm", 0.94),
-        ("-6%", "%", 0.94),
-        ("−6", "%", 0.94),
-        ("+2%", "%", 1.02),
-        ("-20mm", "%", 0.95),
-        ("380", "mm", 0.95),
-        ("38,0cm", "%", 0.95),
-        ("15in", "%", 0.9525),
-        ("９４％", "%", 0.94),
-        ("680mm", "mm", 0.95),  # only as the whole band, 300 of which lie behind
-    ],
-)
-def test_lengths_as_they_are_typed(text: str, unit: str, ratio: float) -> None:
-    assert parse_length(text, 400.0, 700.0, unit) == pytest.approx(ratio)
-
-
-@pytest.mark.parametrize("text", ["", "tight", "94 mmm", "--6", "49.9", "130.1", "-60%", "1 200 mm", "94%%"])
-def test_what_is_no_length_is_refused(text: str) -> None:
-    with pytest.raises(ValueError, match="no length"):
-        parse_length(text, 400.0, 700.0)
 
 
 @pytest.fixture

@@ -89,14 +89,14 @@ class LinesWalk(WindowWalk):
             return
         name, row = chosen
         percent = round(self.chance.choice((93.0, 97.0, 100.0, self.chance.uniform(80.0, 110.0))), 1)
-        rest, whole = row.view.rest_mm, row.view.whole_mm
+        rest = row.view.rest_mm
         in_mm = f"{percent / 100.0 * rest:.1f}mm"
         text = self.chance.choice((f"{percent}", f"{percent}%", f"-{abs(100 - percent):.1f}%", in_mm, "wide"))
         field = self.chance.choice((row.percent, row.millimetres))
         before = field.text()
         self.say(text)
         unit = "%" if field is row.percent else "mm"
-        ratio = typed_ratio(text, rest, whole, unit)
+        ratio = typed_ratio(text, rest, unit)
         type_in(field, text)
         if ratio is None or not 0.5 <= ratio <= 1.3:
             QTest.keyClick(field, Qt.Key.Key_Escape)

@@ -48,7 +48,8 @@ def dressed(design: Design, lines: Sequence[Line], requests: Sequence[str]) -> D
         if line is None or not equals:
             names = ", ".join(line.name for line in lines)
             raise LineError(f"'{request}' names no line.", f"Write NAME=LENGTH; the lines are: {names}.")
-        design = design.with_line(line.name, length_ratio(text, line))
+        ratio = length_ratio(text, line.name, line.rest_length, line.whole_length)
+        design = design.with_line(line.name, ratio)
     return design
 
 

@@ -3,23 +3,11 @@
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
 
-import re
-import unicodedata
-
 from PySide6.QtCore import QSize, Qt, Signal
 
 from app.dress.theme import font
-from app.panels.typed_field import TypedField
-from app.wording.words import number
-
-_FIGURE = re.compile(r"^\s*([+-]?\s*\d+(?:[.,]\d*)?)\s*[^\d\s]*\s*$")
-
-
-def read_figure(text: str) -> float | None:
-    """Return the figure that was typed, with or without a unit, or None if it is none."""
-    plain = unicodedata.normalize("NFKC", text).replace("\N{MINUS SIGN}", "-")
-    match = _FIGURE.match(plain)
-    return float(match.group(1).replace(",", ".").replace(" ", "")) if match else None
+from app.panels.typed_field import TypedField, read_figure
+from app.wording.words import number, tr
 
 
 class FigureField(TypedField):
@@ -64,7 +52,7 @@ class FigureField(TypedField):
     def _read(self, text: str) -> float:
         value = read_figure(text)
         if value is None:
-            raise ValueError(f"no figure: {text}")
+            raise ValueError(tr("“{text}” is no number.").format(text=text))
         return value
 
     def _take(self, value: float) -> None:

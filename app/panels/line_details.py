@@ -14,7 +14,6 @@ from app.panels.line_view import LineView, SideView
 from app.wording.words import number, tr
 
 _OFF = 5e-6  # a set length nearer to the rest length than this means that the line is not worn
-_GAP_SEEN, _GAP_LARGE = 0.005, 0.02  # shares of the set length above which a gap is amber, red
 
 
 class LineDetails(QWidget):
@@ -62,8 +61,9 @@ class LineDetails(QWidget):
             for each in figures:
                 each.setVisible(row < len(sides) and (each is not figures[0] or len(sides) > 1))
         unit = "mm" if len(sides) == 1 else ""  # two sides leave no room for it in each figure
+        tone = view.feasible.tone(ratio) if worn and view.feasible is not None else ""
         for side, figures in zip(sides, self._figures, strict=False):
-            _show_side(side, ratio, worn, unit, figures)
+            _show_side(side, ratio, tone, unit, figures)
         front, own = (
             tr("{percent} % of the front part, side to side"),
             tr("{percent} % of its length at rest"),
@@ -80,15 +80,16 @@ class LineDetails(QWidget):
         self._limits.setVisible(limits is not None)
         if limits is not None:
             self._limit.setText(limits.sentence())
-            short = [ratio for ratio in (limits.amber, limits.impossible) if ratio is not None]
-            beyond = bool(short) and view.ratio < max(short)
-            self._sign.show_icon("warning" if beyond else "info", "warn" if beyond else "text_caption")
+            tone = limits.tone(view.ratio)
+            self._sign.show_icon("warning" if tone else "info", tone or "text_caption")
         self._stiffness.show_stiffness(view.stiffness, view.usual_stiffness)
         self._tools["link"].setVisible(bool(view.partner))
         self._tools["link"].show_icon("unlink" if view.sides else "link")
         tip = tr("Set left and right apart (L)") if view.sides else tr("Link with the other side (L)")
         set_tip(self._tools["link"], tip)
-        self._tools["link"].setAccessibleName(tip)
+        self._stiffness.name_line(view.title)
+        for tool in self._tools.values():
+            tool.setAccessibleName(f"{view.title}: {tool.toolTip()}")
         for name in ("path", "remove"):
             self._tools[name].setVisible(view.own)
         for name in ("path", "remove", "reset"):
@@ -166,17 +167,15 @@ def _tools() -> Sequence[tuple[str, str, str]]:
     )
 
 
-def _show_side(side: SideView, ratio: float, worn: bool, unit: str, figures: list[QLabel]) -> None:
-    """Write what is set and reached of a line, and the gap between them."""
+def _show_side(side: SideView, ratio: float, tone: str, unit: str, figures: list[QLabel]) -> None:
+    """Write what is set and reached of a line, and the gap between them in the tone of the groove there."""
     set_mm = ratio * side.rest_mm
-    reached, gap, tone = "–", "–", ""
+    reached, gap = "–", "–"
     if side.reached_mm is not None:
         off = side.reached_mm - set_mm
         share = abs(off) / set_mm
         reached = _figure(number(side.reached_mm), unit)
         gap = _figure(number(off, signed=True), f"mm&nbsp; {number(share * 100)} %")
-        if worn and share > _GAP_SEEN:
-            tone = "bad" if share > _GAP_LARGE else "warn"
     said = (side.title, _figure(number(set_mm), unit), reached, gap)
     for each, text in zip(figures, said, strict=True):
         each.setText(text)

@@ -19,7 +19,7 @@ from PySide6.QtWidgets import QLineEdit, QMenu, QSizePolicy, QWidget
 
 from app.dress.parts import ElidedLabel
 from app.dress.theme import font, tokens_of
-from app.panels.typed_field import TypedField
+from app.panels.typed_field import TypedField, read_figure
 from app.wording.tokens import LINE_COLORS
 from app.wording.words import number, tr
 from core.design_lines import LONGEST_TITLE
@@ -82,10 +82,11 @@ class SideMark(QWidget):
 class LineTitle(ElidedLabel):
     """The name of a line, where there is no room for it its beginning; ``renamed`` when another was typed.
 
-    A double click, or ``begin``, opens it for typing.
+    A double click, or ``begin``, opens it for typing; ``left`` when that is over.
     """
 
     renamed = Signal(str)
+    left = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -129,10 +130,10 @@ class LineTitle(ElidedLabel):
             self.renamed.emit(title)
 
     def _leave(self) -> None:
+        was_there = self._editor.hasFocus()
         self._editor.hide()
-        row = self.parentWidget()
-        if row is not None:
-            row.setFocus(Qt.FocusReason.OtherFocusReason)
+        if was_there:
+            self.left.emit()
 
 
 class _Editor(QLineEdit):
@@ -173,7 +174,11 @@ class StiffnessField(TypedField):
             " leave it empty to have it as the model."
         )
         self.setToolTip(tip.format(low=low, high=number(high, 0)))
-        self.setAccessibleName(tr("Stiffness"))
+        self.name_line("")
+
+    def name_line(self, title: str) -> None:
+        """Tell ears whose stiffness this is."""
+        self.setAccessibleName(tr("{line}: stiffness").format(line=title or tr("Line")))
 
     def show_stiffness(self, own: float | None, usual: float) -> None:
         """Show a line's own stiffness [1], or faintly the usual one."""
@@ -186,9 +191,10 @@ class StiffnessField(TypedField):
 
     def _read(self, text: str) -> float | None:
         plain, (low, high) = text.strip().replace(",", "."), RANGES["line_stiffness"]
-        stiffness = float(plain) if plain else None
+        stiffness = (read_figure(plain) or 0.0) if plain else None
         if stiffness is not None and not low <= stiffness <= high:
-            raise ValueError(f"no stiffness: {text}")
+            said = tr("A stiffness goes from {low} to {high}; left empty it is that of the model.")
+            raise ValueError(said.format(low=low, high=number(high, 0)))
         return stiffness
 
     def _take(self, value: float | None) -> None:

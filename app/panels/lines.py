@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QKeyEvent
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QApplication, QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
 from app.dress.parts import EmptyState, ToolButton
 from app.panels.line_row import LineRow, LineView
@@ -57,6 +57,7 @@ class LinesPanel(QWidget):
         self.rows: dict[str, LineRow] = {}
         self._selected: str | None = None
         self._of: dict[str, str] = {}
+        self._bereft = False
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
@@ -79,6 +80,11 @@ class LinesPanel(QWidget):
         self._of = {name: view.name for view in lines for name in view.names}
         for view in lines:
             self.rows[view.name].show_view(view)
+        if self._bereft and self.rows:
+            # What had the keyboard is gone: it goes on in the line that is selected now.
+            row = self.rows.get(self._selected or "") or next(iter(self.rows.values()))
+            row.take_focus(Qt.FocusReason.OtherFocusReason)
+        self._bereft = False
         self._empty.setVisible(not lines)
         for tool in (self.add, self.draw):
             tool.setEnabled(bool(lines))
@@ -98,7 +104,9 @@ class LinesPanel(QWidget):
         row = self.rows.get(self._selected or "")
         if step is not None and self.rows:
             self._step(step)
-        elif event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and row is not None and row.view.settable:
+        elif (
+            event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and row is not None and row.slider.hasFocus()
+        ):
             row.percent.setFocus(Qt.FocusReason.ShortcutFocusReason)
         else:
             super().keyPressEvent(event)
@@ -162,6 +170,8 @@ class LinesPanel(QWidget):
             if name not in names:
                 if row.slider.isSliderDown():
                     self.drag_cancelled.emit(name)
+                has = QApplication.focusWidget()
+                self._bereft = self._bereft or (has is not None and (has is row or row.isAncestorOf(has)))
                 row.deleteLater()
         former, self.rows = self.rows, {}
         for place, view in enumerate(lines):

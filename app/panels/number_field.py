@@ -8,23 +8,12 @@ from PySide6.QtGui import QFocusEvent
 
 from app.dress.theme import font
 from app.panels.typed_field import TypedField
-from app.wording.words import number, tr
-from core.lines import RATIO_LIMITS, typed_ratio
+from app.wording.words import number, say, tr
+from core.errors import LineError
+from core.lines import length_ratio
 
 _FOCUS = Qt.FocusReason
 _BY_KEY = (_FOCUS.TabFocusReason, _FOCUS.BacktabFocusReason, _FOCUS.ShortcutFocusReason)
-
-
-def parse_length(text: str, rest_mm: float, whole_mm: float, unit: str = "%") -> float:
-    """Return what was typed as a share of the rest length of the front part [1].
-
-    It may be shorter or longer than the slider goes. Raises ValueError for anything that cannot be set; see
-    ``core.lines.typed_ratio`` for what is understood.
-    """
-    ratio = typed_ratio(text, rest_mm, whole_mm, unit)
-    if ratio is None or not RATIO_LIMITS[0] <= ratio <= RATIO_LIMITS[1]:
-        raise ValueError(f"no length: {text}")
-    return ratio
 
 
 class NumberField(TypedField):
@@ -39,16 +28,24 @@ class NumberField(TypedField):
     def __init__(self, unit: str) -> None:
         super().__init__(unit)
         self._ratio = self._rest_mm = self._whole_mm = 1.0
+        self._line = ""
         self.setFont(font("name" if unit == "%" else "body", tabular=True))
         self.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         self.setProperty("kind", "number")
         self.setTextMargins(0, 0, self._unit_width(), 0)
         self.setFixedSize(self.sizeHint())
-        self.setToolTip(tr("Type 94, −6%, −20mm, 692mm or 69.2cm; from 50 to 130 % of the length at rest."))
-        self.setAccessibleName(tr("Length in percent") if unit == "%" else tr("Length in millimetres"))
+        said = tr("Type 94, −6%, −20mm, 440mm or 44cm: of the front part, 50 to 130 % of its length at rest.")
+        self.setToolTip(said)
+        self.name_line("")
 
     def sizeHint(self) -> QSize:
         return QSize(self.fontMetrics().horizontalAdvance("100.0") + self._unit_width() + 15, 24)
+
+    def name_line(self, title: str) -> None:
+        """Tell ears, and in a refusal, whose length this is."""
+        self._line = title
+        named = tr("{line}: length in percent") if self._unit == "%" else tr("{line}: length in millimetres")
+        self.setAccessibleName(named.format(line=title or tr("Line")))
 
     def show_length(self, ratio: float, rest_mm: float, whole_mm: float) -> None:
         """Show a set length, as a share of ``rest_mm`` [1], unless something is being typed."""
@@ -70,7 +67,10 @@ class NumberField(TypedField):
         return number(value).replace(",", "")
 
     def _read(self, text: str) -> float:
-        return parse_length(text, self._rest_mm, self._whole_mm, self._unit)
+        try:
+            return length_ratio(text, self._line, self._rest_mm, self._whole_mm, self._unit)
+        except LineError as refused:
+            raise ValueError(f"{say(refused.message)} {say(refused.hint)}") from None
 
     def _take(self, value: float) -> None:
         self._ratio = value

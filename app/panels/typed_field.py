@@ -3,14 +3,19 @@
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
 
+import re
+import unicodedata
 from typing import Any
 
-from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QFocusEvent, QKeyEvent, QPainter, QPaintEvent
-from PySide6.QtWidgets import QLineEdit
+from PySide6.QtCore import QPoint, QRectF, Qt, Signal
+from PySide6.QtGui import QColor, QFocusEvent, QHideEvent, QKeyEvent, QPainter, QPaintEvent, QPen
+from PySide6.QtWidgets import QLabel, QLineEdit, QWidget
 
+from app.dress.spoken import announce
 from app.dress.theme import font, set_tag, tokens_of
 from app.wording.words import tr
+
+_FIGURE = re.compile(r"^\s*([+-]?\s*\d+(?:[.,]\d*)?)\s*[^\d\s]*\s*$")
 
 _RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 
@@ -20,20 +25,35 @@ def keys_in_words() -> list[tuple[str, str]]:
     return [("Enter", tr("Take what is typed")), ("Esc", tr("Leave it as it was"))]
 
 
+def read_figure(text: str) -> float | None:
+    """Return the figure that was typed, with or without a unit, or None if it is none."""
+    plain = unicodedata.normalize("NFKC", text).replace("\N{MINUS SIGN}", "-")
+    match = _FIGURE.match(plain)
+    return float(match.group(1).replace(",", ".").replace(" ", "")) if match else None
+
+
 class TypedField(QLineEdit):
-    """The part of a field that is alike for every kind of value; ``left`` at Enter, once taken, or Esc."""
+    """The part of a field that is alike for every kind of value; ``left`` at Enter, once taken, or Esc.
+
+    What cannot be is ringed in red, and a card under the field says why until something else is typed.
+    """
 
     left = Signal()
 
     def __init__(self, unit: str = "") -> None:
         super().__init__()
         self._unit = unit
-        self.textEdited.connect(lambda _: set_tag(self, "wrong", False))
+        self._refusal: Refusal | None = None
+        self.textEdited.connect(lambda _: self._refuse(""))
 
     def focusOutEvent(self, event: QFocusEvent) -> None:
         super().focusOutEvent(event)
         self._enter()
         self._show()
+
+    def hideEvent(self, event: QHideEvent) -> None:
+        super().hideEvent(event)
+        self._refuse("")
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
@@ -58,7 +78,7 @@ class TypedField(QLineEdit):
         raise NotImplementedError
 
     def _read(self, text: str) -> Any:
-        """Return the value that was typed. Raises ValueError if it is none that can be."""
+        """Return the value that was typed. Raises ValueError, in words to be shown, if it cannot be."""
         raise NotImplementedError
 
     def _take(self, value: Any) -> None:
@@ -74,17 +94,66 @@ class TypedField(QLineEdit):
         if self._words() != self.text():
             self.setText(self._words())
         self.setModified(False)
-        set_tag(self, "wrong", False)
+        self._refuse("")
+
+    def _refuse(self, why: str) -> None:
+        """Say why what is typed cannot be; no words take the refusal back."""
+        set_tag(self, "wrong", bool(why))
+        self.setAccessibleDescription(why)
+        if self._refusal is None and why:
+            self._refusal = Refusal(self)
+        if self._refusal is not None:
+            self._refusal.say(why)
 
     def _enter(self) -> None:
         if not self.isModified():
             return
         try:
             value = self._read(self.text())
-        except ValueError:
-            set_tag(self, "wrong", True)
+        except ValueError as why:
+            self._refuse(str(why))
             self.selectAll()
             return
         self.setModified(False)
         self._take(value)
         self._show()
+
+
+class Refusal(QLabel):
+    """A card that lies under a field, over whatever is there, and says why it is ringed in red."""
+
+    def __init__(self, field: QWidget) -> None:
+        super().__init__(field.window())
+        self._field = field
+        self.setFont(font("secondary"))
+        self.setWordWrap(True)
+        self.setTextFormat(Qt.TextFormat.PlainText)
+        self.setContentsMargins(10, 7, 10, 8)
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        field.destroyed.connect(self.deleteLater)
+
+    def say(self, why: str) -> None:
+        """Show these words, or go if there are none."""
+        self.setText(why)
+        self.setVisible(bool(why))
+        if not why:
+            return
+        field, window = self._field, self.parentWidget()
+        assert window is not None
+        wide = min(self.fontMetrics().horizontalAdvance(why) + 24, 290)
+        self.resize(wide, self.heightForWidth(wide))
+        corner = field.mapTo(window, QPoint(field.width() - wide, field.height() + 4))
+        below = corner.y() + self.height() < window.height()
+        top = corner.y() if below else corner.y() - field.height() - 8 - self.height()
+        self.move(max(corner.x(), 4), top)
+        self.raise_()
+        announce(field, why)
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        tokens, painter = tokens_of(self), QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(QPen(QColor(tokens.bad), 1))
+        painter.setBrush(QColor(tokens.raised))
+        painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 7, 7)
+        painter.end()
+        super().paintEvent(event)

@@ -1,0 +1,84 @@
+"""Fields that are typed into: what is understood, and what is said of what is not."""
+
+from __future__ import annotations
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QWidget
+from pytestqt.qtbot import QtBot
+
+from app.panels.line_parts import StiffnessField
+from app.panels.number_field import NumberField
+from app.panels.typed_field import Refusal
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "ratio"),
+    [
+        ("94", "%", 0.94),
+        (" 94 % ", "mm", 0.94),
+        ("-6%", "%", 0.94),
+        ("−6", "%", 0.94),
+        ("+2%", "%", 1.02),
+        ("-20mm", "%", 0.95),
+        ("380", "mm", 0.95),
+        ("38,0cm", "%", 0.95),
+        ("15in", "%", 0.9525),
+        ("９４％", "%", 0.94),
+    ],
+)
+def test_lengths_as_they_are_typed(text: str, unit: str, ratio: float) -> None:
+    assert number_field(unit)._read(text) == pytest.approx(ratio)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "680mm", "tight", "94 mmm", "--6", "49.9", "130.1", "-60%", "1 200 mm", "94%%"]
+)
+def test_what_is_no_length_is_refused(text: str) -> None:
+    with pytest.raises(ValueError, match=r"Write 97%|Stay between|that whole band, write 380.0mm"):
+        number_field("%")._read(text)
+
+
+def number_field(unit: str) -> NumberField:
+    """Return the field of a line that is 400 mm long, of a band of 700 mm."""
+    field = NumberField(unit)
+    field.name_line("Waist")
+    field.show_length(1.0, 400.0, 700.0)
+    return field
+
+
+def test_a_refusal_says_under_the_field_what_can_be_typed_and_goes_with_the_next_letter(qtbot: QtBot) -> None:
+    window = QWidget()
+    qtbot.addWidget(window)
+    window.resize(400, 300)
+    field = number_field("%")
+    field.setParent(window)
+    field.move(300, 20)
+    window.show()
+    field.setFocus()
+    field.selectAll()
+    QTest.keyClicks(field, "680mm")
+    QTest.keyClick(field, Qt.Key.Key_Return)
+    (card,) = window.findChildren(Refusal)
+    assert card.isVisible()
+    assert card.text().startswith("The front part of Waist goes from 200 to 520 mm, its whole band from 500")
+    assert field.accessibleDescription() == card.text()
+    assert window.rect().contains(card.geometry())
+    assert card.y() >= field.geometry().bottom()
+    QTest.keyClicks(field, "3")
+    assert not card.isVisible()
+    assert field.accessibleDescription() == ""
+
+
+@pytest.mark.parametrize("text", ["soft", "0.001", "1e9"])
+def test_a_stiffness_that_cannot_be_names_its_range(qapp: object, text: str) -> None:
+    with pytest.raises(ValueError, match="A stiffness goes from"):
+        StiffnessField()._read(text)
+
+
+def test_fields_of_several_lines_are_told_apart_by_ear(qapp: object) -> None:
+    field, stiffness = number_field("mm"), StiffnessField()
+    stiffness.name_line("Waist")
+    assert field.accessibleName() == "Waist: length in millimetres"
+    assert stiffness.accessibleName() == "Waist: stiffness"
