@@ -17,6 +17,7 @@ from threadpoolctl import threadpool_limits
 from app.commands.cli_parser import command_options, window_options
 from app.commands.settings import dressed, settings_of
 from core.design import Design, ScanSource, cannot_hold
+from core.design_measures import own_measure
 from core.errors import UserError
 from core.own_lines import own_line
 from core.placing import placed_mark
@@ -153,6 +154,21 @@ def detect(options: argparse.Namespace) -> int:
     return SETTLED
 
 
+def measure(options: argparse.Namespace) -> int:
+    """Measure a scan, or a project before and after, and print or write what comes of it."""
+    from app.commands.measured import measured_text, run_measure
+
+    design = design_of(options.input, options)
+    for own in map(own_measure, options.own or []):
+        design = design.with_own_measure(own)
+    found = run_measure(design, solved=is_project(options.input))
+    text = measured_text(found, "csv" if options.csv else "json" if options.json else "", options.out)
+    if text:
+        print(text, flush=True)
+    _warn(found.warnings)
+    return SETTLED if found.settled else NOT_SETTLED
+
+
 def picture(options: argparse.Namespace) -> int:
     """Render a scan or project to a PNG file with no display."""
     from app.commands.picture import draw_picture, draw_window
@@ -216,6 +232,7 @@ COMMANDS: dict[str, Callable[[argparse.Namespace], int]] = {
     "solve": solve,
     "limits": limits,
     "detect": detect,
+    "measure": measure,
     "picture": picture,
     "demo": demo,
     "figures": figures,

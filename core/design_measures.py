@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 from core.errors import UserError
@@ -46,3 +47,26 @@ class OwnMeasure:
             )
         if self.kind != "girth" and (len(set(self.marks)) != 2 or len(self.marks) != 2 or self.level):
             raise UserError(f"The measure {self.name} has no two ends.", "Name two different landmarks.")
+
+
+HELP = (
+    "NAME=KIND:PLACES: a measure of your own, may be repeated. 'Gore=straight:bust_point_left,front_centre' "
+    "is straight between two landmarks, 'Arc=skin:...' the shortest way over the skin, "
+    "'Ribs=girth:waist_front+60' a tape 60 mm above a landmark, 'Chest=girth:1250' one at that height in mm"
+)
+"""What a user has to know to write a measure."""
+
+
+def own_measure(text: str) -> OwnMeasure:
+    """Read ``NAME=KIND:PLACES``, see ``HELP``. Raises UserError."""
+    told = re.fullmatch(r"([^=]+)=\s*(\w+)\s*:(.*)", text.replace("\N{MINUS SIGN}", "-"))
+    if told is None:
+        raise UserError(f"'{text}' is no measure.", "Write NAME=KIND:PLACES, see 'busk measure --help'.")
+    name, kind, places = (part.strip() for part in told.groups())
+    if kind != "girth":
+        return OwnMeasure(name, kind, tuple(place.strip() for place in places.split(",")))
+    level = re.fullmatch(r"([a-z_]*)\s*([+-]?\s*\d+(?:\.\d+)?)?", places)
+    if level is None or not places:
+        raise UserError(f"The girth {name} has no level.", "Name one landmark, or a height in mm, or both.")
+    marks = (level[1],) if level[1] else ()
+    return OwnMeasure(name, kind, marks, float((level[2] or "0").replace(" ", "")))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -12,9 +13,9 @@ from core.body import Body
 from core.design_measures import OwnMeasure
 from core.landmark import Landmarks
 from core.measuring.cups import NO_ROOT, cup_measures, foremost_places
-from core.measuring.definitions import KEYS, Measure, missing
+from core.measuring.definitions import KEYS, Measure, definition_of, missing
 from core.measuring.girths import girth_measures
-from core.measuring.own import own_measures
+from core.measuring.own import OWN, own_measures
 from core.measuring.subject import Subject, subject_of
 from core.mesh import Mesh, Points
 from core.pipeline import Stages
@@ -39,7 +40,8 @@ def before_after(stages: Stages, control_points: Points) -> tuple[Measures, Meas
     """
     rest = subject_of(stages.body.calm, stages.landmarks)
     moves = deform(stages.binding, control_points) - stages.body.mesh.vertices
-    after = rest.moved(rest.mesh.vertices + calm_moves(stages.body, moves))
+    left, right = stages.body_change(control_points).tolist()
+    after = rest.moved(rest.mesh.vertices + calm_moves(stages.body, moves), (left, right))
     own = stages.design.own_measures
     return _measured(rest, own), _measured(after, own, rest)
 
@@ -53,6 +55,48 @@ def calm_moves(body: Body, moves: Points) -> Points:
         return moves
     nearest = cKDTree(body.mesh.vertices).query(body.calm.vertices)[1]
     return np.asarray(moves[nearest])
+
+
+def measure_rows(before: Measures, after: Measures | None = None) -> list[dict[str, Any]]:
+    """Return a table of what was measured as plain values, one row a measure, in order.
+
+    Each has key, title, side, unit, before, after, difference (None where one is missing), plus_minus,
+    confidence, estimate, note, iso and definition. Lengths and the like are not rounded.
+    """
+    rows = []
+    for key in after or before:
+        first, last = before.get(key), after.get(key) if after else None
+        told = last or first
+        assert told is not None
+        values = [each.value if each else None for each in (first, last)]
+        both = [value for value in values if value is not None]
+        title, side, iso, text = _words(key)
+        rows.append(
+            {
+                "key": key,
+                "title": title,
+                "side": side,
+                "unit": told.unit,
+                "before": values[0],
+                "after": values[1],
+                "difference": both[1] - both[0] if len(both) > 1 else None,
+                "plus_minus": told.plus_minus,
+                "confidence": told.confidence,
+                "estimate": told.estimate or bool(first and first.estimate),
+                "note": told.note,
+                "iso": iso,
+                "definition": text,
+            }
+        )
+    return rows
+
+
+def _words(key: str) -> tuple[str, str, str, str]:
+    """Return title, side, name in the standard and definition of a measure."""
+    if key.startswith(OWN):
+        return key.removeprefix(OWN), "", "", ""
+    told, side = definition_of(key)
+    return told.title, side, told.iso, told.text
 
 
 def _measured(subject: Subject, own: Iterable[OwnMeasure], rest: Subject | None = None) -> Measures:

@@ -10,6 +10,7 @@ from typing import NoReturn
 from app.commands.settings import help_text
 from app.wording.scan_formats import KINDS, PACKED
 from core import __version__
+from core.design_measures import HELP as MEASURE_HELP
 from core.errors import UserError
 from core.own_lines import HELP as LINE_HELP
 from core.placing import HELP as LANDMARK_HELP
@@ -20,6 +21,7 @@ COMMANDS = {
     "solve": "solve a design and write body, control mesh, turns and report",
     "limits": "tell how short each line can be made",
     "detect": "find the landmarks of a scan",
+    "measure": "measure a scan, or a project before and after",
     "picture": "render a scan or project to a PNG file",
     "demo": "do the sample session off-screen and write what comes out",
     "figures": "make the figures of the paper again, with their tables and a page",
@@ -29,7 +31,7 @@ COMMANDS = {
 }
 """Every command with what it does, in a few words."""
 
-_OF_A_SCAN = ("solve", "limits", "detect", "picture")
+_OF_A_SCAN = ("solve", "limits", "detect", "measure", "picture")
 
 _AXIS = "like {axis}, or a direction x,y,z of the file for a body that stands askew"
 
@@ -99,8 +101,12 @@ def _parser(command: str) -> argparse.ArgumentParser:
         )
     if command == "accuracy":
         parser.add_argument("folder", metavar="DIR", help="scans with a truth.json beside them")
-    if command in ("limits", "detect", "accuracy"):
+    if command in ("limits", "detect", "measure", "accuracy"):
         parser.add_argument("--json", action="store_true", help="print JSON")
+    if command == "measure":
+        parser.add_argument("--csv", action="store_true", help="print a table of comma-separated values")
+        parser.add_argument("--own", action="append", metavar="NAME=KIND:PLACES", help=MEASURE_HELP)
+        parser.add_argument("--out", metavar="FILE", help="write it to a file, by its ending .json or .csv")
     if command == "picture":
         parser.add_argument(
             "--view", default="three-quarter", help="front, left, right, back, three-quarter, top, side"

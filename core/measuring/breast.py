@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from core.measuring.chart import Chart
 from core.measuring.root import Root, Side
 from core.measuring.wall import Wall, wall_of
 from core.mesh import Faces, Flags, Floats, Indices, Mesh, Points, area_vectors, boundary_loops
@@ -27,49 +30,19 @@ RIM = 8.0
 
 @dataclass(frozen=True, eq=False)
 class Breast:
-    """One breast: the ``faces`` within its ``root``, shape (m, 3), and the ``wall`` behind it.
+    """One breast of a body at rest: its skin is ``faces`` of the body, shape (m, 3).
 
-    ``holes`` are border loops of the scan within it, each closed by a fan.
+    ``volume`` is that between skin and chest [mm^3]; ``holed`` tells that the scan has a hole there.
     """
 
-    root: Root
-    wall: Wall
     faces: Faces
-    holes: tuple[Indices, ...]
+    volume: float
+    holed: bool
 
-    @property
+    @cached_property
     def vertices(self) -> Indices:
         """The vertices of its skin, shape (k,)."""
         return np.unique(self.faces)
-
-    def volume(self, places: Points) -> float:
-        """Return the volume between skin and wall [mm^3] with the body's vertices at ``places`` (n, 3) [mm].
-
-        A flow away from the axis that grows by its own volume everywhere and is nil on the wall passes the
-        skin: what passes is the volume (divergence theorem), of overhanging parts too. The exact course of
-        the root hardly matters, as skin and wall meet there.
-        """
-        skin, faces = self._filled(places)
-        flow = self._flow(skin)
-        return float(np.einsum("ij,ij->", flow[faces].mean(axis=1), area_vectors(skin, faces)))
-
-    def _filled(self, places: Points) -> tuple[Points, Faces]:
-        rows = self.vertices
-        at = np.full(len(places), -1)
-        at[rows] = np.arange(len(rows))
-        skin, faces = [places[rows]], [at[self.faces]]
-        for k, loop in enumerate(self.holes):
-            skin.append(places[loop].mean(axis=0, keepdims=True))
-            tip = np.full(len(loop), len(rows) + k)
-            faces.append(np.stack([at[np.roll(loop, -1)], at[loop], tip], axis=1))
-        return np.concatenate(skin), np.concatenate(faces)
-
-    def _flow(self, skin: Points) -> Points:
-        chart = self.root.chart
-        flat = chart.flat(skin)
-        far = np.maximum(flat[:, 2], 1.0)
-        strength = (far**2 - self.wall.out(flat[:, :2]) ** 2) / (2.0 * far)
-        return np.asarray(strength[:, None] * chart.outward(skin))
 
 
 def breast_of(side: Side, root: Root) -> Breast | None:
@@ -94,7 +67,33 @@ def breast_of(side: Side, root: Root) -> Breast | None:
         return None
     inside = piece.faces[(own | band)[piece.faces].all(axis=1)]
     holes = [loop for loop in boundary_loops(inside) if own[loop].any()]
-    return Breast(root, wall, side.rows[inside], tuple(side.rows[loop] for loop in holes))
+    volume = _volume(chart, wall, *_filled(piece.vertices, inside, holes))
+    return Breast(side.rows[inside], volume, bool(holes))
+
+
+def _filled(places: Points, faces: Faces, holes: Sequence[Indices]) -> tuple[Points, Faces]:
+    """Return places and faces with a fan over each hole, whose border loops are given in face order."""
+    for loop in holes:
+        tip = np.full(len(loop), len(places))
+        places = np.concatenate([places, places[loop].mean(axis=0, keepdims=True)])
+        faces = np.concatenate([faces, np.stack([np.roll(loop, -1), loop, tip], axis=1)])
+    return places, faces
+
+
+def _volume(chart: Chart, wall: Wall, places: Points, faces: Faces) -> float:
+    """Return the volume between the skin ``faces`` and the wall [mm^3].
+
+    A flow away from the axis that grows by its own volume everywhere and is nil on the wall passes the skin:
+    what passes is the volume (divergence theorem), of overhanging parts too. The exact course of the root
+    hardly matters, as skin and wall meet there. Source: ours.
+    """
+    rows, faces = np.unique(faces, return_inverse=True)
+    skin, faces = places[rows], faces.reshape(-1, 3)
+    flat = chart.flat(skin)
+    far = np.maximum(flat[:, 2], 1.0)
+    strength = (far**2 - wall.out(flat[:, :2]) ** 2) / (2.0 * far)
+    flow = strength[:, None] * chart.outward(skin)
+    return float(np.einsum("ij,ij->", flow[faces].mean(axis=1), area_vectors(skin, faces)))
 
 
 def _band(piece: Mesh, root: Root) -> Flags:

@@ -63,7 +63,7 @@ def _along_border(mesh: Mesh, way: Points) -> bool:
     if not mesh.boundary_loops:
         return False
     border = mesh.vertices[np.concatenate(mesh.boundary_loops)]
-    return bool((cKDTree(border).query(way[1:-1])[0] < 1e-6).any())
+    return bool((np.asarray(cKDTree(border).query(way[1:-1])[0]) < 1e-6).any())
 
 
 def foremost_places(subject: Subject) -> Points | None:
@@ -142,13 +142,13 @@ def _volume(subject: Subject, side: str) -> Measure:
     root = subject.roots[side]
     return Measure(
         key,
-        breast.volume(subject.mesh.vertices) / 1000.0,
+        subject.volume(side) / 1000.0,
         "ml",
         (root.closed,),
         root.confidence,
         True,
         subject.spreads[side] / 1000.0,
-        HOLED if breast.holes else HELD_UP,
+        HOLED if breast.holed else HELD_UP,
     )
 
 

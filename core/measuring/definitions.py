@@ -194,13 +194,14 @@ _TABLE = (
         "ml",
         "",
         "Ours, an estimate: between the skin within the root and a smooth chest that goes on from the skin "
-        "round it. No skin shows the top of the root: it is taken half as high over its ends as it is wide.",
+        "round it. No skin shows the top of the root: it is taken half as high over its ends as it is wide. "
+        "Reshaped, what the skin of that side has gained is added.",
         AREAS,
         True,
     ),
     Definition(
         "asymmetry_height",
-        "Bust points, height",
+        "Left bust point higher",
         "mm",
         "",
         "Ours: how much higher the left bust point lies than the right one.",
@@ -208,7 +209,7 @@ _TABLE = (
     ),
     Definition(
         "asymmetry_forward",
-        "Bust points, forward",
+        "Left bust point further out",
         "mm",
         "",
         "Ours: how much further forward the left bust point lies than the right one.",
@@ -216,7 +217,7 @@ _TABLE = (
     ),
     Definition(
         "asymmetry_volume",
-        "Breast volumes",
+        "Left breast larger",
         "ml",
         "",
         "Ours, an estimate: how much larger the left breast is than the right one.",

@@ -13,18 +13,16 @@ from core.measuring.rings import tape_ring
 from core.measuring.subject import Subject
 from core.trunk import trunk_levels
 
+OWN = "own:"
+"""The keys of the designer's own measures are this and their name."""
+
 NO_TRUNK = "The scan shows no trunk at that height."
-
-
-def own_key(name: str) -> str:
-    """Return the key of a measure of the designer's own."""
-    return f"own:{name}"
 
 
 def own_measures(subject: Subject, own: Iterable[OwnMeasure]) -> Iterator[Measure]:
     """Yield the measures of the designer's own."""
     for each in own:
-        key = own_key(each.name)
+        key = f"{OWN}{each.name}"
         if each.kind == "girth":
             yield _girth(key, subject, each)
         else:

@@ -23,7 +23,8 @@ UNSURE_TOP = 15.0
 class Subject:
     """What measures are taken from. A side whose root does not show has no entry in what is kept by side.
 
-    ``spreads`` [mm^3] are how much the volumes of the breasts change with the top of the root.
+    ``spreads`` [mm^3] are how much the volumes of the breasts change with the top of the root, ``gains``
+    [mm^3] what the skin of the two sides has gained since rest.
     """
 
     mesh: Mesh
@@ -31,6 +32,7 @@ class Subject:
     roots: Mapping[str, Root]
     breasts: Mapping[str, Breast]
     spreads: Mapping[str, float]
+    gains: tuple[float, float] = (0.0, 0.0)
 
     @cached_property
     def levels(self) -> Mapping[str, Level]:
@@ -41,10 +43,16 @@ class Subject:
         """Return a landmark, or None if the scan does not show it."""
         return self.landmarks.points.get(name)
 
-    def moved(self, vertices: Points) -> Subject:
+    def volume(self, side: str) -> float:
+        """Return the volume of the breast of a side [mm^3]; what it gained since rest is with it."""
+        gain = self.gains[SIDES.index(side)]
+        return self.breasts[side].volume + gain
+
+    def moved(self, vertices: Points, gains: tuple[float, float]) -> Subject:
         """Return the subject reshaped, its vertices at ``vertices``, shape (n, 3) [mm].
 
-        Landmarks and roots ride on the skin; the chest behind the breasts stays where it is.
+        Landmarks and roots ride on the skin, which has gained ``gains`` [mm^3] left and right: what is pushed
+        over the root is still of the breast, so both belong to it.
         """
         moves = vertices - self.mesh.vertices
         roots = {
@@ -52,7 +60,7 @@ class Subject:
             for side, root in self.roots.items()
         }
         marks = carried(self.mesh, self.landmarks, moves)
-        return Subject(self.mesh.moved(vertices), marks, roots, self.breasts, self.spreads)
+        return Subject(self.mesh.moved(vertices), marks, roots, self.breasts, self.spreads, gains)
 
 
 def subject_of(mesh: Mesh, landmarks: Landmarks) -> Subject:
@@ -74,5 +82,5 @@ def subject_of(mesh: Mesh, landmarks: Landmarks) -> Subject:
             less = breast_of(side, lower) if lower else None
             if breast and less:
                 breasts[name] = breast
-                spreads[name] = abs(breast.volume(mesh.vertices) - less.volume(mesh.vertices))
+                spreads[name] = abs(breast.volume - less.volume)
     return Subject(mesh, landmarks, roots, breasts, spreads)

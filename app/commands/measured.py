@@ -1,0 +1,105 @@
+"""What a body measures, as the command line prints and writes it."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from core import __version__
+from core.design import Design
+from core.doubts import doubts
+from core.errors import UserError
+from core.measures import before_after, measure_rows, measures
+from core.pipeline import build, find, read_body
+from core.project import whole_file
+from core.report import shape_warnings
+from core.solution import run
+
+COLUMNS = (
+    *("key", "title", "side", "unit", "before", "after", "difference", "plus_minus"),
+    *("confidence", "estimate", "note", "iso", "definition"),
+)
+
+
+@dataclass(frozen=True)
+class Measured:
+    """The rows of ``core.measures.measure_rows``, whether there is an after, and what to look at."""
+
+    rows: list[dict[str, Any]]
+    solved: bool
+    settled: bool
+    warnings: list[str]
+
+
+def run_measure(design: Design, *, solved: bool) -> Measured:
+    """Measure the scan of a design, and what becomes of it if it is to be ``solved``."""
+    if not solved:
+        _, body = read_body(design.scan)
+        landmarks = find(body, design.placed)
+        rows = measure_rows(measures(body.calm, landmarks, design.own_measures))
+        return Measured(rows, False, True, doubts(body, landmarks))
+    solution = run(build(design))
+    stages = solution.stages
+    rows = measure_rows(*before_after(stages, solution.control_points))
+    settled = solution.verdict.motion == "settled" and solution.verdict.state != "folded"
+    warnings = [*doubts(stages.body, stages.landmarks), *shape_warnings(solution)]
+    return Measured(rows, True, settled, warnings)
+
+
+def measured_text(found: Measured, kind: str, out: str | None) -> str:
+    """Return what to print; with a file ``out`` it is written there, as its ending says if ``kind`` is empty.
+
+    Raises UserError if it cannot be written.
+    """
+    if out is None:
+        return _FORMS[kind](found)
+    if not out.strip():
+        raise UserError("The place to write to has no name.", "Name a file: --out measures.csv.")
+    form = _FORMS[kind or {".json": "json", ".csv": "csv"}.get(Path(out).suffix.lower(), "")]
+    with whole_file(Path(out).absolute()) as partial:
+        partial.write_text(form(found) + "\n", encoding="utf-8")
+    return f"written to {out}"
+
+
+def _plain(found: Measured) -> str:
+    heading = f"{'':34}{'before':>9}" + (f"{'after':>9}{'change':>8}" if found.solved else "")
+    return "\n".join([heading, *(_line(row, found.solved) for row in found.rows)])
+
+
+def _line(row: dict[str, Any], solved: bool) -> str:
+    title = f"{row['title']}, {row['side']}" if row["side"] else row["title"]
+    values = [row["before"], *([row["after"], row["difference"]] if solved else [])]
+    if all(value is None for value in values):
+        return f"{title:34}{'-':>9}  {row['note']}"
+    told = [f"{'-' if value is None else format(value, '.1f'):>9}" for value in values[:2]]
+    told += [f"{'' if value is None else format(value, '+z.1f'):>8}" for value in values[2:]]
+    unsure = f" ± {row['plus_minus']:.0f}" if row["plus_minus"] >= 0.5 else ""
+    note = f"{unsure}  {row['note']}" if row["estimate"] else ""
+    return f"{title:34}{''.join(told)} {row['unit']}{note}"
+
+
+def _as_json(found: Measured) -> str:
+    table = {row["key"]: {key: value for key, value in row.items() if key != "key"} for row in found.rows}
+    whole = {"measures": table, "warnings": found.warnings, "versions": {"busk": __version__}}
+    return json.dumps(whole, indent=1, ensure_ascii=False)
+
+
+def _as_csv(found: Measured) -> str:
+    text = io.StringIO()
+    writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows({key: _cell(value) for key, value in row.items()} for row in found.rows)
+    return text.getvalue().rstrip("\n")
+
+
+def _cell(value: Any) -> Any:
+    if isinstance(value, bool):
+        return str(value).lower()
+    return f"{value:.6g}" if isinstance(value, float) else value
+
+
+_FORMS = {"": _plain, "json": _as_json, "csv": _as_csv}
