@@ -16,12 +16,14 @@ from app.desks.landmark_desk import LandmarkDesk
 from app.desks.plot_desk import PlotDesk
 from app.desks.scan_desk import ScanDesk
 from app.desks.start_desk import StartDesk
+from app.desks.verdict_desk import VerdictDesk
 from app.helping.help_desk import HelpDesk
 from app.helping.preferences_desk import PreferencesDesk
 from app.helping.rescue import Rescue
 from app.helping.safe_mode import SafeMode
 from app.keeping.history_desk import HistoryDesk
 from app.keeping.keeping_desk import KeepingDesk
+from app.keeping.measures_desk import MeasuresDesk
 from app.keeping.recovery_desk import RecoveryDesk
 from app.keeping.variant_desk import VariantDesk
 from app.keeping.variant_figures import VariantFigures
@@ -80,10 +82,11 @@ class MainWindow(QMainWindow):
         self.pages = self.layout_.pages
         self.job_desk, self.limits_desk = JobDesk(self), LimitsDesk(self)
         self.landmark_desk, self.scan_desk = LandmarkDesk(self), ScanDesk(self)
-        self.desk = Desk(self)
+        self.desk, self.verdict_desk = Desk(self), VerdictDesk(self)
         self.keeping_desk, self.recovery_desk = KeepingDesk(self), RecoveryDesk(self)
         self.history_desk, self.variant_desk = HistoryDesk(self, self.history), VariantDesk(self)
         self.variant_figures = VariantFigures(self, self.variants)
+        self.measures_desk = MeasuresDesk(self, self.result)
         self.map_desk, self.section_desk = MapDesk(self), SectionDesk(self)
         self.start_desk, self.plot_desk = StartDesk(self), PlotDesk(self)
         self.lines_desk, self.line_maker = LinesDesk(self), LineMaker(self)

@@ -49,9 +49,9 @@ class BodyWatch:
         """Return the marks for control points, shape (n, 3) [mm]."""
         places = self._rest + self._operator @ self._binding.change(control_points)
         apex = np.mean([_apex(places[self._left]), _apex(places[self._right])], axis=0)
-        heights = places[:2, 2] + self._offset[:, 1]
-        out = self._back - places[:2, 1] - self._offset[:, 0]
-        return Marks(*heights.tolist(), float(apex[1]), self._back - float(apex[0]), *out.tolist())
+        (left_y, left_z), (right_y, right_z) = (places[:2, 1:] + self._offset).tolist()
+        apex_out, outs = self._back - float(apex[0]), (self._back - left_y, self._back - right_y)
+        return Marks(left_z, right_z, float(apex[1]), apex_out, *outs)
 
 
 def _sides(rest: Points, control: ControlMesh) -> tuple[Flags, Flags]:

@@ -65,6 +65,7 @@ class Said:
     numbers: list[tuple[str, str]]
     pace: str
     hint: str = ""
+    effort: str = ""
     settling: bool = False
 
 
@@ -207,9 +208,9 @@ class Mock(QWidget):
     def _fill_strip(self, vibrating: bool) -> None:
         numbers = [
             (tr("Volume error"), "1.6 ± 1.8 %" if vibrating else "−0.02 % · −1.1 ml"),
-            (tr("Lift of the bust points"), "+14.4 mm"),
+            (tr("Bust point"), "14.4 mm up, 2.1 mm forward"),
         ]
-        self.strip.set_verdict(Said("vibrating" if vibrating else "settled", numbers, "120 turns · 0.9 s"))
+        self.strip.set_verdict(Said("vibrating" if vibrating else "settled", numbers, "0.9 s"))
         main = "conventional" if vibrating else "adaptive"
         self.strip.set_control(main)
         self.strip.set_run(invented_tracks(), main, Exact(0.0, 0.0, 24.3, 24.3))

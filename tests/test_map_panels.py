@@ -11,7 +11,8 @@ from PySide6.QtWidgets import QApplication
 from app.panels.legend import BAR, Legend
 from app.panels.profile import STEPS, ProfilePanel
 from app.panels.typed_field import read_figure
-from app.presenting.maps import MAPS, apex_words, automatic_range, map_kinds, ramp_of
+from app.presenting.bust import BustMove, BustStep
+from app.presenting.maps import MAPS, automatic_range, map_kinds, ramp_of, section_words, sides_words
 from app.seeing.stage import rgb
 from app.showing.profile_plot import Drawn, ProfilePlot, grid_step
 
@@ -84,12 +85,22 @@ def test_ranges_are_round_and_colours_start_at_the_material() -> None:
         assert ramp_of(name, low, high, "#8F949B")(np.zeros(1))[0] == pytest.approx(rgb("#8F949B"))
 
 
-def test_apexes_are_told_in_words() -> None:
+def test_a_section_tells_how_far_the_bust_points_went() -> None:
+    move = BustMove(BustStep(4.0, -1.5), BustStep(-3.0, 2.5))
+    assert section_words("x", "left", move) == "Bust point left 4.0 mm up, 1.5 mm back"
+    assert section_words("x", "right", move) == "Bust point right 3.0 mm down, 2.5 mm forward"
+    both = "Bust point 0.5 mm up, 0.5 mm forward (left 4.0 mm up, right 3.0 mm down)"
+    assert section_words("z", "left", move) == both
+    alike = BustMove(BustStep(4.0, -1.5), BustStep(4.4, -1.1))
+    assert section_words("y", "left", alike) == "Bust point 4.2 mm up, 1.3 mm back"
+
+
+def test_sides_are_compared_in_words() -> None:
     pair = (np.array([200.0, 300.0]), np.array([198.5, 304.0]))
-    assert apex_words("x", [pair], False) == "Apex: +4.0 mm up, −1.5 mm forward"
+    assert sides_words("x", [pair]).endswith("the other side: 4.0 mm up, 1.5 mm back")
     level = [(np.array([80.0, -200.0]), np.array([80.0, -203.0])), (np.array([-80.0, -200.0]),) * 2]
-    assert apex_words("z", level, False) == "Forward: left +3.0 mm, right 0.0 mm"
-    assert apex_words("y", [], False) == ""
+    assert sides_words("z", level) == "Foremost place left, against right: 3.0 mm forward"
+    assert sides_words("y", []) == ""
 
 
 def test_both_axes_of_the_plot_are_alike_and_the_wheel_keeps_the_place(qapp: QApplication) -> None:

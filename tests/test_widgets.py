@@ -15,6 +15,7 @@ from pytestqt.qtbot import QtBot
 
 from app.dress.theme import apply_theme
 from app.panels.length_slider import LengthSlider
+from app.panels.length_groove import Feasible
 from app.panels.line_row import LineView
 from app.panels.lines import LinesPanel
 from app.wording.words import use_language
@@ -190,10 +191,9 @@ def test_the_numbers_of_a_dragged_line_stay_with_the_hand(lines: LinesPanel) -> 
 
 
 @pytest.mark.parametrize(("ratio", "tone"), [(1.0, ""), (0.984, "warn"), (0.96, "bad"), (0.992, "")])
-def test_a_gap_is_toned_by_its_size_unless_the_line_is_off(
-    lines: LinesPanel, ratio: float, tone: str
-) -> None:
-    lines.set_lines([LineView("waist", "Waist", "#7A1F2E", ratio, 400.0, 398.0, True, True, 700.0), RIBS])
+def test_a_gap_has_the_tone_of_the_groove_at_its_length(lines: LinesPanel, ratio: float, tone: str) -> None:
+    view = LineView("waist", "Waist", "#7A1F2E", ratio, 400.0, 398.0, True, True, 700.0)
+    lines.set_lines([replace(view, feasible=Feasible(strained=0.99, impossible=0.97)), RIBS])
     lines.select("waist")
     shown = [each for each in lines.rows["waist"].findChildren(QLabel) if each.isVisible()]
     gap = next(each for each in shown if each.text().startswith(("+", "−")))

@@ -152,8 +152,11 @@ def test_the_section_plane_cuts_before_and_after(answered: Path) -> None:
         before, after = (
             np.concatenate([c.places for c in section.curves[role]]) for role in ("before", "after")
         )
-        lift = frame.marks.apex_z - frame.stages.rest_marks.apex_z
-        assert float(panel.readout.text().split()[1].replace("−", "-")) == pytest.approx(lift, abs=2.0)
+        lift = frame.marks.nipple_left_z - frame.stages.rest_marks.nipple_left_z
+        assert panel.readout.text().startswith(f"Bust point left {lift:.1f} mm up, ")
+        ((at_rest, lifted),) = panel.plot._drawn.marks
+        assert lifted[1] - at_rest[1] == pytest.approx(lift)
+        assert np.linalg.norm(after - lifted, axis=1).min() < 0.5, "it lies on the curve"
         at = int(np.abs(after[:, 1] - bust[2] + 25.0).argmin())
         panel.plot.pointed.emit(after[at])
         gap = float(panel.plot.gap.split()[0].replace("−", "-"))

@@ -15,7 +15,7 @@ from window_tools import Script, drag, run_main, settled
 
 import app.desks.plot_desk
 from app.main_window import MainWindow
-from app.presenting.frame import measure_views
+from app.presenting.measures import measure_views
 from app.presenting.run import PLOTTED_TURNS, tracks
 from core.live import Frame
 
@@ -83,20 +83,20 @@ def what_is_plotted_is_what_was_made(window: MainWindow) -> None:
         for place in (0, len(rows) // 2, -1):
             row, marks = rows[place], rows[place].marks
             assert marks is not None
-            bust = 0.5 * (marks.nipple_left_z + marks.nipple_right_z)
+            left, right = marks.nipple_left_z - rest.nipple_left_z, marks.nipple_right_z - rest.nipple_right_z
             said = (row.turn, 100.0 * row.error, row.error_ml, marks.apex_z - rest.apex_z)
             drawn = (track.turns, track.error_percent, track.error_ml, track.apex_mm)
             assert tuple(each[place] for each in drawn) == said
-            assert track.bust_mm[place] == bust - 0.5 * (rest.nipple_left_z + rest.nipple_right_z)
+            assert track.bust_mm[place] == 0.5 * (left + right)
 
 
 def measures_are_worked_out_only_where_they_are_seen(window: MainWindow) -> None:
-    frame, table = window.session.frame, window.result._table
+    frame, table = window.session.frame, window.result
     assert frame is not None
     assert not window.result.isVisible()
-    assert list(table._rows) != measure_views(frame), "nobody has seen them yet"
+    assert list(table.rows) != measure_views(frame), "nobody has seen them yet"
     window.desk.go_to("result")
-    assert list(table._rows) == measure_views(frame)
+    assert list(table.rows) == measure_views(frame)
     window.desk.go_to("lines")
 
 

@@ -11,8 +11,8 @@ from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled, undrawn
 
+import app.keeping.tables
 import app.keeping.variant_desk
-import app.keeping.variant_figures
 from app.main_window import MainWindow
 from app.viewing import flip_key
 from core.errors import LineError
@@ -77,10 +77,10 @@ def test_the_figures_of_all_variants_stand_beside_each_other(
         assert percent.apart(1) == -3.0
         rest = next(line.rest_length for line in first.stages.model.lines if line.name == "mid-bust")
         assert length.values == pytest.approx((0.95 * rest, 0.92 * rest))
-        lift = next(row for row in panel.view.rows if row.label == "Lift of bust points").figures[0]
+        lift = next(row for row in panel.view.rows if row.label == "Bust point, up").figures[0]
         assert lift.values[1] == pytest.approx(lift_of(window.session.frame))
         assert lift.values[0] == pytest.approx(lift_of(first), abs=0.2), "solved anew, from rest"
-        monkeypatch.setattr(app.keeping.variant_figures, "ask_save", lambda *_: str(path))
+        monkeypatch.setattr(app.keeping.tables, "ask_save", lambda *_: str(path))
         desk.export()
         table = list(csv.reader(path.read_text("utf-8-sig").splitlines()))
         assert table[0] == ["Figure", "Unit", "A", "B", "B - A"]

@@ -16,14 +16,10 @@ from app.keeping.loss_dialogs import ask_overwrite
 from app.keeping.project_picture import project_picture
 from app.keeping.recent import remember_file
 from app.panels.notice import FILES, REFUSED
-from app.presenting.frame import (
-    facts,
-    kept_volume,
-    measure_views,
-    strip_verdict,
-)
+from app.presenting.frame import facts
 from app.presenting.lines import titled
 from app.presenting.run import PLOT_INTERVAL, exact_answer, tracks
+from app.presenting.verdict import kept_volume, state_of, strip_verdict
 from app.wording.samples import sample_design
 from app.wording.words import tr
 from core.design import Design
@@ -249,7 +245,7 @@ class Desk(QObject):
 
     def _preview(self) -> bytes:
         """Return a small picture of the view, for the project file."""
-        state = self._frame.verdict.state if self._frame is not None else ""
+        state = state_of(self._frame) if self._frame is not None else ""
         return project_picture(self._window.view.viewport.picture(labels=False), state)
 
     def plot_now(self) -> None:
@@ -267,13 +263,5 @@ class Desk(QObject):
         strip = self._window.strip
         strip.set_verdict(strip_verdict(frame))
         strip.set_run(tracks(frame), main, exact_answer(frame))
-        self.show_measures()
-        state = frame.verdict.state
-        bad, reached = state in ("folded", "overstrained"), "done" if state == "settled" else "available"
-        self._window.rail.set_state("lines", "look" if bad else reached, int(bad))
-        self._window.rail.set_state("result", reached)
-
-    def show_measures(self) -> None:
-        """Bring the table of measures up to date, if it is seen; unseen it would cost each frame the same."""
-        if self._plotted is not None and self._window.result.isVisible():
-            self._window.result.set_rows(measure_views(self._plotted))
+        self._window.measures_desk.show_frame(frame)
+        self._window.verdict_desk.show_frame(frame)

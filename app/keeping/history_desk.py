@@ -1,4 +1,4 @@
-"""The history: every edit by name, and the settled results that are kept as long as the document is open."""
+"""The history: every edit by name, and the results that are kept as long as the document is open."""
 
 from __future__ import annotations
 
@@ -12,8 +12,9 @@ from PySide6.QtGui import QImage
 
 from app.panels.history import HistoryPanel
 from app.panels.picture_list import PictureRow
-from app.presenting.frame import kept_volume
-from app.showing.verdict_chip import state_title
+from app.presenting.bust import bust_move, bust_sentence
+from app.presenting.verdict import is_result, kept_volume, state_of
+from app.showing.verdict_chip import TONES, state_title
 from app.wording.words import number, tr
 from core.design import Design
 from core.document import Document
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from app.main_window import MainWindow
 
 MOST = 30
-"""Settled results that are kept, the oldest go first."""
+"""Results that are kept, the oldest go first."""
 
 _CALM = 400
 """Milliseconds that a result has stood when its picture is taken: nobody is waiting for the window then."""
@@ -74,12 +75,12 @@ class HistoryDesk(QObject):
         self.show_edits()
 
     def note(self) -> None:
-        """Hear of a frame: a result that has settled after an edit is kept once the window is calm."""
+        """Hear of a frame: what came of an edit is kept once the window is calm."""
         if self._window.is_settled() and self._session.undo_stack.index() > 0 and not self._is_kept():
             self._clock.start()
 
     def show_snapshots(self) -> None:
-        """Show the settled results, the newest first."""
+        """Show the results, the newest first."""
         document = self._session.document
         if document is None:
             self._panel.set_snapshots([])
@@ -92,7 +93,7 @@ class HistoryDesk(QObject):
         )
 
     def restore(self, place: int) -> None:
-        """Go back to a settled result, in the variant that it is of, as one edit."""
+        """Go back to a result, in the variant that it is of, as one edit."""
         snapshot, document = self._snapshots[len(self._snapshots) - 1 - place], self._session.document
         if document is not None:
             said = tr("Back to: {edit}").format(edit=_title(snapshot, document))
@@ -119,7 +120,11 @@ class HistoryDesk(QObject):
         ):
             return
         row = PictureRow(
-            stack.text(stack.index() - 1), time.strftime("%H:%M:%S"), _figures(frame), self._picture()
+            stack.text(stack.index() - 1),
+            time.strftime("%H:%M:%S"),
+            _figures(frame),
+            self._picture(),
+            mark=TONES[state_of(frame)],
         )
         self._snapshots.append(_Snapshot(document.shown, frame.stages.design, row))
         self.show_snapshots()
@@ -138,12 +143,10 @@ def _title(snapshot: _Snapshot, document: Document) -> str:
 
 
 def _figures(frame: Frame) -> tuple[str, ...]:
-    """Return lift and volume error of a frame in words, and how its run stands."""
-    lift = frame.marks.apex_z - frame.stages.rest_marks.apex_z
-    error, _ = kept_volume(frame)
-    return (
-        tr("Lift of apex {lift} mm").format(lift=number(lift, 1, signed=True)),
-        tr("Volume {percent} %, {state}").format(
-            percent=number(error, 2, signed=True), state=state_title(frame.verdict.state)
-        ),
-    )
+    """Return where the bust points of a frame are and its volume error in words, and how its run stands."""
+    state = state_title(state_of(frame))
+    if not is_result(frame):
+        return state, tr("No result to sew for")
+    percent = number(kept_volume(frame)[0], 2, signed=True)
+    said = tr("{state}, volume {percent} %").format(percent=percent, state=state)
+    return said, bust_sentence(bust_move(frame))

@@ -17,6 +17,7 @@ from app.asking.writing import Writing
 from app.dress.wishes import wish
 from app.keeping.project_picture import project_picture
 from app.keeping.recent import day_of
+from app.presenting.verdict import state_of
 from app.wording.words import tr
 from core.document import Document
 from core.errors import UserError
@@ -150,7 +151,7 @@ class KeepingDesk(QObject):
             return None
         if QGuiApplication.mouseButtons() != Qt.MouseButton.NoButton:
             return None
-        return project_picture(view.viewport.picture(labels=False), frame.verdict.state)
+        return project_picture(view.viewport.picture(labels=False), state_of(frame))
 
     def _hold_project(self) -> None:
         since = self._lock.take(self._session.path)

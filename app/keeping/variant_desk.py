@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Qt, Signal
 from PySide6.QtWidgets import QMenu
 
-from app.dress.parts import Segment
-from app.wording.words import number, tr
+from app.dress.parts import Segment, ToolButton
+from app.presenting.variants import variant_titles
+from app.wording.words import tr
 from core.design import Design
 from core.document import VARIANTS
 from core.frame import Frame
@@ -43,8 +44,11 @@ class VariantDesk(QObject):
         self.segment.chosen.connect(self.choose)
         for name in VARIANTS:
             self._set_up(name)
-        window.top.place(self.segment)
         self._fill_menu()
+        window.top.place(self.segment)
+        self._button = ToolButton("columns", action=self.beside)
+        window.top.place(self._button)
+        window.view.compared.connect(self._show_way)
         self.show_variants()
 
     def choose(self, name: str) -> None:
@@ -58,6 +62,7 @@ class VariantDesk(QObject):
         there = document.variants if document is not None else {}
         shown = document.shown if document is not None else ""
         self.segment.setEnabled(document is not None)
+        self._button.setVisible(len(there) > 1)
         self.segment.set_choice(shown)
         for name in VARIANTS:
             button = self.segment.button(name)
@@ -97,7 +102,18 @@ class VariantDesk(QObject):
             (name, None) if name == document.shown else (name, self._solved[design])
             for name, design in document.designs
         ]
-        self._window.view.show_variants([(_title(name, each), each) for name, each in shown])
+        titles = variant_titles(self.frames())
+        self._window.view.show_variants(
+            [(title, each) for title, (_, each) in zip(titles, shown, strict=True)]
+        )
+
+    def flip_side_by_side(self) -> None:
+        """Show all variants side by side, or the one that is worked on alone again."""
+        if self._window.view.beside.way == "variants":
+            self._window.view.compare_by("after")
+        else:
+            self.show_side_by_side()
+        self._show_way()
 
     def frames(self) -> list[tuple[str, Design, Frame | None]]:
         """Return all variants, each with its frame if it is solved; that of the shown one may be at work."""
@@ -128,6 +144,12 @@ class VariantDesk(QObject):
         if self._window.view.beside.way == "variants":
             self._window.view.compare_by("after")
         self.show_variants()
+
+    def _show_way(self) -> None:
+        """Light what puts variants side by side as long as they are."""
+        beside = self._window.view.beside.way == "variants"
+        self.beside.setChecked(beside)
+        self._window.variants.set_beside(beside)
 
     def _others(self) -> dict[str, Design]:
         document = self._session.document
@@ -177,7 +199,7 @@ class VariantDesk(QObject):
         remove = menu.addAction(tr("Remove variant {name}").format(name=name))
         remove.setEnabled(name in there and len(there) > 1)
         remove.triggered.connect(lambda: self._session.remove_variant(name))
-        menu.addAction(tr("Variants side by side")).triggered.connect(self.show_side_by_side)
+        menu.addAction(self.beside)
         return menu
 
     def _fill_menu(self) -> None:
@@ -189,24 +211,11 @@ class VariantDesk(QObject):
         actions.rule("variants")
         actions.add("variants", tr("Remove this variant"), do=self._remove_shown, of_document=True)
         said = tr("Show the bodies of all variants through linked cameras")
-        actions.add(
-            "variants",
-            tr("Variants side by side"),
-            "Shift+V",
-            said,
-            do=self.show_side_by_side,
-            of_document=True,
+        title, flip = tr("Variants side by side"), self.flip_side_by_side
+        self.beside = actions.add(
+            "variants", title, "Shift+V", said, do=flip, checkable=True, of_document=True
         )
 
     def _remove_shown(self) -> None:
         if self._session.document is not None:
             self._session.remove_variant(self._session.document.shown)
-
-
-def _title(name: str, frame: Frame | None) -> str:
-    """Return what stands over a body: the variant's name, and its lift once that stands still."""
-    text = tr("Variant {name}").format(name=name)
-    if frame is None:
-        return text
-    lift = frame.marks.apex_z - frame.stages.rest_marks.apex_z
-    return f"{text}   " + tr("Lift of apex {lift} mm").format(lift=number(lift, 1, signed=True))

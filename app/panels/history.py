@@ -24,15 +24,15 @@ class HistoryPanel(QWidget):
         super().__init__()
         self.edits, self.snapshots = PaintedList(_EditRow(self)), PaintedList(PictureRowPainter(self))
         self.edits.setAccessibleName(tr("History"))
-        self.snapshots.setAccessibleName(tr("Settled results"))
-        self._hint = sentence(tr("Each result that settles after an edit is kept here until Busk closes."))
+        self.snapshots.setAccessibleName(tr("Results"))
+        self._hint = sentence(tr("What comes of each edit is kept here until Busk closes."))
         self._hint.setContentsMargins(4, 2, 4, 8)
         self._parts = QSplitter(Qt.Orientation.Vertical)
         self._parts.setHandleWidth(1)
         self._parts.setChildrenCollapsible(False)
         for title, *inside in (
             (tr("History"), self.edits),
-            (tr("Settled results"), self._hint, self.snapshots),
+            (tr("Results"), self._hint, self.snapshots),
         ):
             self._parts.addWidget(_part(title, inside))
         column = QVBoxLayout(self)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -20,6 +21,8 @@ SHORTEST, LONGEST = 0.80, 1.12
 RESISTANCE = 24.0
 """How much further a hand must pull to get a line into the red [px]."""
 
+_BESIDE = 0.02  # room beside a typed length that widens the groove [1]
+_AT_REST = 0.9995  # amber that begins there is not this line's doing [1]
 _GAP = 1.5  # between two zones [px]
 _QUIET, _STALE = 0.42, 0.2  # strength of the zones of a line that is not in hand, and of those not up to date
 
@@ -48,7 +51,9 @@ class Feasible:
     def sentence(self) -> str:
         """Return the limits in words."""
         parts = []
-        if self.amber is not None:
+        if self.amber is not None and self.amber >= _AT_REST:
+            parts.append(tr("Strained by the other lines already"))
+        elif self.amber is not None:
             parts.append(tr("Strained below {percent} %").format(percent=number(100.0 * self.amber)))
         if self.impossible is not None:
             parts.append(self.reason())
@@ -56,6 +61,12 @@ class Feasible:
             "No limit down to half its length."
         )
         return words[:1].upper() + words[1:]
+
+    def tone(self, ratio: float) -> str:
+        """Return how a set length [1] stands: "bad" in the red, "warn" in the amber, else nothing."""
+        if self.impossible is not None and ratio < self.impossible:
+            return "bad"
+        return "warn" if self.amber is not None and ratio < self.amber else ""
 
     def reason(self) -> str:
         """Return what is wrong in the red."""
@@ -68,10 +79,19 @@ class Feasible:
         return words.get(self.why, tr("folds below {percent} %")).format(percent=percent)
 
 
+def ends_for(ratio: float) -> tuple[float, float]:
+    """Return the range of a groove: the usual one, widened for a typed length that lies outside it [1]."""
+    short, long = math.floor(20.0 * (ratio - _BESIDE)) / 20.0, math.ceil(20.0 * (ratio + _BESIDE)) / 20.0
+    return (
+        SHORTEST if ratio >= SHORTEST else max(short, 0.0),
+        LONGEST if ratio <= LONGEST else long,
+    )
+
+
 def wall_of(feasible: Feasible | None, ratio: float) -> float | None:
     """Return the ratio at which a pull that begins at ``ratio`` meets the red, if it does [1]."""
     red = feasible.impossible if feasible is not None else None
-    return red if red is not None and SHORTEST < red <= ratio else None
+    return red if red is not None and ends_for(ratio)[0] < red <= ratio else None
 
 
 def resisted(ratio: float, wall: float | None, more: float) -> float:

@@ -25,6 +25,7 @@ from app.panels.length_groove import (
     RESISTANCE,
     SHORTEST,
     Feasible,
+    ends_for,
     paint_groove,
     resisted,
     wall_of,
@@ -41,7 +42,7 @@ _SMALLEST_WEDGE = 0.0005  # a reached length nearer to the set one shows no wedg
 class LengthSlider(QAbstractSlider):
     """A slider from 80 to 112 % with a wedge under the groove at the reached length.
 
-    The groove shows how short the line may become; a hand meets resistance where that ends.
+    It is wider where a length beyond these was typed. The groove shows how short the line may become; a hand meets resistance where that ends.
 
     ``previewed`` (share of the rest length) while the handle is dragged; ``committed`` once on release or at
     a key; ``cancelled`` when Esc ends a drag and the old value is back.
@@ -62,7 +63,7 @@ class LengthSlider(QAbstractSlider):
         self._wall: float | None = None
         self._previewed = False
         self.setOrientation(Qt.Orientation.Horizontal)
-        self.setRange(round(SHORTEST * STEPS_TO_ONE), round(LONGEST * STEPS_TO_ONE))
+        self._ends = SHORTEST, LONGEST
         self.setSingleStep(STEPS_TO_ONE // 1000)
         self.setPageStep(STEPS_TO_ONE // 100)
         self.set_ratio(1.0)
@@ -82,8 +83,11 @@ class LengthSlider(QAbstractSlider):
 
     def set_ratio(self, ratio: float) -> None:
         """Show a set length; nothing is emitted, and a handle in the user's hand stays where it is."""
-        if not self.isSliderDown():
-            self.setValue(round(ratio * STEPS_TO_ONE))
+        if self.isSliderDown():
+            return
+        self._ends = ends_for(ratio)
+        self.setRange(*(round(end * STEPS_TO_ONE) for end in self._ends))
+        self.setValue(round(ratio * STEPS_TO_ONE))
 
     def set_reached(self, ratio: float | None) -> None:
         """Show the reached length as a share of the rest length [1], or none."""
@@ -165,11 +169,12 @@ class LengthSlider(QAbstractSlider):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setPen(Qt.PenStyle.NoPen)
         strong = self._strong or self.underMouse() or self.isSliderDown()
-        paint_groove(painter, tokens_of(self), self._x_of, (SHORTEST, LONGEST), self._feasible, strong)
+        paint_groove(painter, tokens_of(self), self._x_of, self._ends, self._feasible, strong)
         if self._feasible is None:
             self._paint_way(painter)
         if self._reached is not None and abs(self._reached - self.ratio()) > _SMALLEST_WEDGE:
-            self._paint_wedge(painter, self._x_of(min(max(self._reached, SHORTEST), LONGEST)))
+            short, long = self._ends
+            self._paint_wedge(painter, self._x_of(min(max(self._reached, short), long)))
         self._paint_handle(painter, QPointF(self._x_of(self.ratio()), GROOVE_Y))
 
     def _drag_to(self, x: float) -> None:
@@ -201,12 +206,12 @@ class LengthSlider(QAbstractSlider):
             self.committed.emit(self.ratio())
 
     def _x_of(self, ratio: float) -> float:
-        share = (ratio - SHORTEST) / (LONGEST - SHORTEST)
+        share = (ratio - self._ends[0]) / (self._ends[1] - self._ends[0])
         return _END_ROOM + share * (self.width() - 2 * _END_ROOM)
 
     def _ratio_at(self, x: float) -> float:
         share = (x - _END_ROOM) / max(self.width() - 2 * _END_ROOM, 1.0)
-        return SHORTEST + share * (LONGEST - SHORTEST)
+        return self._ends[0] + share * (self._ends[1] - self._ends[0])
 
     def _is_red(self, x: float) -> bool:
         red = self._feasible.impossible if self._feasible is not None else None

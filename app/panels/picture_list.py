@@ -18,6 +18,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.dress.icons import paint_icon
 from app.dress.theme import font, tokens_of
 from app.wording.words import tr
 
@@ -31,7 +32,7 @@ _LEFT = Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft
 class PictureRow:
     """What a row shows: title, time and a few words, and a picture if there is one.
 
-    ``present`` says that it is what the window shows now.
+    ``present`` says that it is what the window shows now; ``mark`` is a tone and an icon before the words.
     """
 
     title: str
@@ -39,6 +40,7 @@ class PictureRow:
     words: tuple[str, ...]
     picture: QImage | None = None
     present: bool = False
+    mark: tuple[str, str] | None = None
 
 
 class PaintedList(QListWidget):
@@ -149,7 +151,14 @@ class PictureRowPainter(RowPainter):
         )
         for line, (text, role, token) in enumerate(lines):
             room = width - (time + 8 if line == 0 else 0)
-            self.write(painter, QRectF(left, area.top() + 7 + 19 * line, room, 19), text, role, token)
+            place = QRectF(left, area.top() + 7 + 19 * line, room, 19)
+            if line == 1 and view.mark is not None:
+                tone, drawing = view.mark
+                token = "text_quiet" if tone == "plain" else tone
+                spot = QRectF(left, place.center().y() - 7, 14, 14)
+                paint_icon(painter, drawing, getattr(tokens, token), spot)
+                place.setLeft(left + 19)
+            self.write(painter, place, text, role, token)
 
 
 def _middle_of(picture: QImage, place: QRectF) -> QRectF:

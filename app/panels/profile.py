@@ -1,4 +1,4 @@
-"""The section plane's panel: curves before and after, where the plane is, and how far apexes moved."""
+"""The section plane's panel: curves before and after, where the plane is, and how far bust points moved."""
 
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations

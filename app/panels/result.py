@@ -9,37 +9,53 @@ from dataclasses import dataclass
 
 from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QShowEvent
-from PySide6.QtWidgets import QFrame, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
-from app.dress.parts import EmptyState, sentence
-from app.dress.theme import font, tokens_of
+from app.dress.parts import EmptyState, button, sentence
+from app.dress.theme import font, set_tag, tokens_of
 from app.wording.words import number, tr
 
 
 @dataclass(frozen=True)
 class MeasureView:
-    """One measure before and after, in ``unit``; ``after`` is None before a run."""
+    """One measure before and after, in ``unit``; ``after`` is None before a run.
+
+    ``reference`` says from where it is counted.
+    """
 
     label: str
     unit: str
     before: float
     after: float | None
+    reference: str = ""
+
+    @property
+    def change(self) -> float | None:
+        """By how much it grew, if that is known."""
+        return None if self.after is None else self.after - self.before
 
 
 class ResultPanel(QWidget):
-    """The table of measures; ``opened`` when it comes to be seen, and what it shows has to be new."""
+    """The table of measures; ``opened`` when it comes to be seen, and what it shows has to be new.
+
+    ``copy_asked`` and ``table_asked`` are for the measures as text, on the clipboard or in a file.
+    """
 
     opened = Signal()
+    copy_asked = Signal()
+    table_asked = Signal()
 
     def __init__(self) -> None:
         super().__init__()
         column = QVBoxLayout(self)
-        column.setContentsMargins(14, 8, 14, 0)
+        column.setContentsMargins(14, 8, 14, 12)
         column.setSpacing(4)
         self._empty = EmptyState(
             "result", tr("Nothing solved yet"), tr("Set a line shorter and see it here.")
         )
-        self._table = _Table()
+        self._table, self._doubt = _Table(), sentence("", "secondary")
+        self._doubt.setContentsMargins(4, 2, 4, 4)
+        set_tag(self._doubt, "tone", "warn")
         self._note = sentence(tr("The bars show the change: blue less, orange more."), "caption")
         self._note.setContentsMargins(4, 8, 4, 8)
         inside = QWidget()
@@ -54,16 +70,47 @@ class ResultPanel(QWidget):
         self._area.setWidgetResizable(True)
         self._area.setFrameShape(QFrame.Shape.NoFrame)
         self._area.setWidget(inside)
-        column.addWidget(self._empty)
+        for each in (self._empty, self._doubt):
+            column.addWidget(each)
         column.addWidget(self._area, 1)
+        column.addWidget(self._make_buttons())
         column.addStretch(0)
         self.set_rows([])
 
-    def set_rows(self, rows: Sequence[MeasureView]) -> None:
-        """Show these measures, or that there is none."""
+    def set_rows(self, rows: Sequence[MeasureView], doubt: str = "") -> None:
+        """Show these measures, or that there is none; ``doubt`` says why they are no result."""
+        for part in (self._area, self._buttons):
+            part.setVisible(bool(rows))
         self._empty.setVisible(not rows)
-        self._area.setVisible(bool(rows))
+        self._doubt.setText(doubt)
+        self._doubt.setVisible(bool(doubt))
         self._table.set_rows(rows)
+
+    @property
+    def rows(self) -> tuple[MeasureView, ...]:
+        """The measures that are shown."""
+        return self._table.rows
+
+    @property
+    def doubt(self) -> str:
+        """Why the measures are no result, or nothing."""
+        return self._doubt.text()
+
+    def _make_buttons(self) -> QWidget:
+        self._buttons = QWidget()
+        row = QHBoxLayout(self._buttons)
+        row.setContentsMargins(0, 4, 0, 0)
+        row.setSpacing(6)
+        for text, tip, signal in (
+            (tr("Copy"), tr("Copy the table, to paste into a spreadsheet or a letter"), self.copy_asked),
+            (tr("CSV…"), tr("Write the table to a file (CSV)"), self.table_asked),
+        ):
+            press = button(text)
+            press.setToolTip(tip)
+            press.clicked.connect(signal)
+            row.addWidget(press)
+        row.addStretch(1)
+        return self._buttons
 
     def showEvent(self, event: QShowEvent) -> None:
         """Ask for the measures of now."""
@@ -73,21 +120,21 @@ class ResultPanel(QWidget):
 class _Table(QWidget):
     """The measures, painted: a name, under it before, after, change and a bar about a middle line."""
 
-    HEAD, ROW, BAR = 26, 52, 44
+    HEAD, ROW, MORE, BAR = 26, 52, 15, 44
 
     def __init__(self) -> None:
         super().__init__()
-        self._rows: tuple[MeasureView, ...] = ()
+        self.rows: tuple[MeasureView, ...] = ()
 
     def sizeHint(self) -> QSize:
-        return QSize(280, self.HEAD + self.ROW * len(self._rows) + 1)
+        return QSize(280, self.HEAD + sum(map(self._height, self.rows)) + 1)
 
     def minimumSizeHint(self) -> QSize:
         return self.sizeHint()
 
     def set_rows(self, rows: Sequence[MeasureView]) -> None:
         """Show these measures."""
-        self._rows = tuple(rows)
+        self.rows = tuple(rows)
         self.setAccessibleName("; ".join(_spoken(each) for each in rows))
         self.updateGeometry()
         self.update()
@@ -100,33 +147,40 @@ class _Table(QWidget):
         titles = (tr("Before"), tr("After"), tr("Change"))
         for cell, title in zip(self._cells(0, self.HEAD), titles, strict=False):
             painter.drawText(cell, _RIGHT, title)
-        for place, row in enumerate(self._rows):
-            self._paint_row(painter, row, self.HEAD + place * self.ROW)
+        top = self.HEAD
+        for row in self.rows:
+            self._paint_row(painter, row, top)
+            top += self._height(row)
 
     def _paint_row(self, painter: QPainter, row: MeasureView, top: float) -> None:
         tokens = tokens_of(self)
         painter.fillRect(QRectF(4, top, self.width() - 8, 1), QColor(tokens.line))
-        before, after, change, bar = self._cells(top + 24, 24)
+        before, after, change, bar = self._cells(top + self._height(row) - 28, 24)
         painter.setFont(font("body"))
         painter.setPen(QColor(tokens.text))
         painter.drawText(QRectF(4, top + 4, self.width() - 8, 22), _LEFT, row.label)
+        painter.setFont(font("caption"))
+        painter.setPen(QColor(tokens.text_caption))
+        painter.drawText(QRectF(4, top + 23, self.width() - 8, 18), _LEFT, row.reference)
         painter.setFont(font("body", tabular=True))
         painter.setPen(QColor(tokens.text_caption))
         painter.drawText(before, _RIGHT, _written(row.before, row.unit))
-        if row.after is None:
+        if row.after is None or row.change is None:
             return
-        changed = row.after - row.before
         painter.setPen(QColor(tokens.text_quiet))
-        painter.drawText(change, _RIGHT, number(changed, _digits(row.unit), signed=True))
+        painter.drawText(change, _RIGHT, _written(row.change, row.unit, signed=True))
         painter.setFont(font("name", tabular=True))
         painter.setPen(QColor(tokens.text))
         painter.drawText(after, _RIGHT, _written(row.after, row.unit))
-        self._paint_bar(painter, bar, changed / _full_bar(row.unit))
+        self._paint_bar(painter, bar, row.change / _full_bar(row.unit))
+
+    def _height(self, row: MeasureView) -> int:
+        return self.ROW + (self.MORE if row.reference else 0)
 
     def _cells(self, top: float, height: float) -> tuple[QRectF, QRectF, QRectF, QRectF]:
         """Return the cells before, after, change and bar of a line of the table."""
         room = self.width() - 8 - self.BAR - 14
-        edges = [4.0, 4 + 0.36 * room, 4 + 0.74 * room, 4.0 + room]
+        edges = [4.0, 4 + 0.32 * room, 4 + 0.66 * room, 4.0 + room]
         before, after, change = (
             QRectF(left, top, right - left, height) for left, right in itertools.pairwise(edges)
         )
@@ -150,8 +204,8 @@ def _digits(unit: str) -> int:
     return 0 if unit == "ml" else 1
 
 
-def _written(value: float, unit: str) -> str:
-    return f"{number(value, _digits(unit))} {unit}"
+def _written(value: float, unit: str, signed: bool = False) -> str:
+    return f"{number(value, _digits(unit), signed)} {unit}"
 
 
 def _full_bar(unit: str) -> float:
@@ -161,4 +215,4 @@ def _full_bar(unit: str) -> float:
 
 def _spoken(row: MeasureView) -> str:
     after = "" if row.after is None else f" → {_written(row.after, row.unit)}"
-    return f"{row.label}: {_written(row.before, row.unit)}{after}"
+    return f"{row.label}: {_written(row.before, row.unit)}{after} {row.reference}".rstrip()

@@ -9,8 +9,9 @@ import numpy as np
 
 from app.panels.legend import MapKind
 from app.seeing.paint import Ramp
+from app.presenting.bust import BustMove, BustStep, bust_sentence, forward_words, step_words
 from app.wording.tokens import MAP_AMOUNT, MAP_LESS, MAP_MORE
-from app.wording.words import number, tr
+from app.wording.words import tr
 from core.mesh import Floats
 
 MAPS = ("displacement", "strain", "sides", "pull")
@@ -96,23 +97,22 @@ def rounded_up(value: float) -> float:
     return next(unit * power for unit in _ROUND if unit * power >= value * (1.0 - 1e-9))
 
 
-def apex_words(axis: str, pairs: Sequence[tuple[Floats, Floats]], sides: bool) -> str:
-    """Return how far the apexes of a section are apart, in words; each pair is (former, present) [mm]."""
-    steps = [present - former for former, present in pairs]
+def section_words(axis: str, side: str, move: BustMove) -> str:
+    """Return how far the bust points went, in words; a plane across x has that of its ``side`` alone."""
+    if axis != "x":
+        return bust_sentence(move)
+    if side == "left":
+        return tr("Bust point left {way}").format(way=step_words(move.left))
+    return tr("Bust point right {way}").format(way=step_words(move.right))
+
+
+def sides_words(axis: str, pairs: Sequence[tuple[Floats, Floats]]) -> str:
+    """Return how far the foremost places of two sides are apart, in words; each pair is (other, this) [mm]."""
+    steps = [this - other for other, this in pairs]
     if axis == "x" and len(steps) == 1:
-        text = (
-            tr("Apexes differ: {up} mm up, {out} mm forward")
-            if sides
-            else tr("Apex: {up} mm up, {out} mm forward")
-        )
-        return text.format(up=_signed(steps[0][1]), out=_signed(steps[0][0]))
-    if axis == "z" and len(steps) == 2 and not sides:
-        text = tr("Forward: left {left} mm, right {right} mm")
-        return text.format(left=_signed(-steps[0][1]), right=_signed(-steps[1][1]))
+        way = step_words(BustStep(float(steps[0][1]), float(steps[0][0])))
+        return tr("Foremost place, against the other side: {way}").format(way=way)
     if axis == "z" and len(steps) == 2:
-        return tr("Left {out} mm further forward than right").format(out=_signed(-steps[0][1]))
+        way = forward_words(-float(steps[0][1]))
+        return tr("Foremost place left, against right: {way}").format(way=way)
     return ""
-
-
-def _signed(value: float) -> str:
-    return number(float(value), 1, signed=True)

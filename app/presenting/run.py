@@ -7,6 +7,7 @@ from operator import attrgetter
 
 import numpy as np
 
+from app.presenting.bust import move_between, ups
 from app.presenting.lines import line_title
 from app.showing.tracks import Exact, Track
 from app.wording.words import tr
@@ -33,8 +34,7 @@ def tracks(frame: Frame) -> dict[str, Track]:
         watched = [row for row in records[-PLOTTED_TURNS:] if row.marks is not None]
         figures = np.array(list(map(_FOLLOWED, watched)), dtype=np.float64).reshape(-1, 6)
         turns, error, error_ml, left, right, apex = figures.T
-        bust = 0.5 * (left + right) - _bust_height(rest)
-        result[control] = Track(turns, 100.0 * error, error_ml, bust, apex - rest.apex_z)
+        result[control] = Track(turns, 100.0 * error, error_ml, ups(rest, left, right), apex - rest.apex_z)
     return result
 
 
@@ -52,7 +52,7 @@ def table_of(frame: Frame) -> tuple[list[str], list[Sequence[object]]]:
         tr("volume error [%]"),
         tr("volume error [ml]"),
         tr("bust point height [mm]"),
-        tr("apex height [mm]"),
+        tr("foremost place height [mm]"),
         tr("largest move [mm]"),
         *(tr("{line} [mm]").format(line=name) for name in names),
     ]
@@ -71,8 +71,4 @@ def _figures(row: Record, marks: Marks, rest: Marks) -> tuple[float, float, floa
 
 def _heights(marks: Marks, rest: Marks) -> tuple[float, float]:
     """Return how far the bust points, on an average, and the apex lie above where they are at rest [mm]."""
-    return _bust_height(marks) - _bust_height(rest), marks.apex_z - rest.apex_z
-
-
-def _bust_height(marks: Marks) -> float:
-    return 0.5 * (marks.nipple_left_z + marks.nipple_right_z)
+    return move_between(rest, marks).mean.up, marks.apex_z - rest.apex_z

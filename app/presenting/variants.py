@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from app.panels.variants import Figure, FigureRow, VariantsView
-from app.presenting.frame import kept_volume
+from app.presenting.bust import bust_move, bust_sentence
 from app.presenting.lines import line_colours, line_title, row_title
+from app.presenting.verdict import is_result, kept_volume, state_of
 from app.showing.verdict_chip import state_title
 from app.wording.words import tr
 from core.design import Design
@@ -15,10 +16,12 @@ from core.live import Frame
 Variants = Sequence[tuple[str, Design, Frame | None]]
 """Variants by name, with the frame of those that are solved."""
 
+_TOLD = 2  # lengths that differ which have room over a body
+
 
 def variants_view(variants: Variants, shown: str) -> VariantsView:
     """Return the table of variants, of which one is ``shown``."""
-    states = tuple(frame.verdict.state if frame else "" for _, _, frame in variants)
+    states = tuple(state_of(frame) if frame else "" for _, _, frame in variants)
     names = tuple(name for name, _, _ in variants)
     return VariantsView(names, names.index(shown), states, (*_lengths(variants), *_results(variants)))
 
@@ -38,6 +41,26 @@ def as_table(view: VariantsView) -> list[list[str]]:
             written = ["" if each is None else f"{each:.{figure.digits}f}" for each in cells]
             rows.append([row.label, figure.unit, *written])
     return rows
+
+
+def variant_titles(variants: Variants) -> list[str]:
+    """Return what stands over the bodies of variants: name and verdict, bust point, lengths that differ."""
+    differing = [row for row in _lengths(variants) if len(set(row.figures[0].values)) > 1]
+    return [
+        "\n".join(
+            (
+                _head(name, frame),
+                *([bust_sentence(bust_move(frame))] if frame is not None and is_result(frame) else []),
+                *(f"{row.label} {row.figures[0].written(place)}" for row in differing[:_TOLD]),
+            )
+        )
+        for place, (name, _, frame) in enumerate(variants)
+    ]
+
+
+def _head(name: str, frame: Frame | None) -> str:
+    title = tr("Variant {name}").format(name=name)
+    return title if frame is None else f"{title}   {state_title(state_of(frame))}"
 
 
 def _lengths(variants: Variants) -> list[FigureRow]:
@@ -78,30 +101,24 @@ def _ratio(design: Design, name: str, rest: dict[str, float]) -> float | None:
 
 
 def _results(variants: Variants) -> list[FigureRow]:
+    """Return the rows of what came of it; a run that vibrates or a shape that is no body has none."""
+    frames = [frame if frame is not None and is_result(frame) else None for _, _, frame in variants]
+
     def row(label: str, *told: tuple[str, int, Callable[[Frame], float]]) -> FigureRow:
         return FigureRow(
             label,
             tuple(
-                Figure(unit, digits, True, tuple(None if f is None else read(f) for _, _, f in variants))
+                Figure(unit, digits, True, tuple(None if f is None else read(f) for f in frames))
                 for unit, digits, read in told
             ),
         )
 
     return [
-        row(tr("Lift of bust points"), ("mm", 1, _lift)),
-        row(tr("Apex protrusion, change"), ("mm", 1, _forward)),
+        row(tr("Bust point, up"), ("mm", 1, lambda frame: bust_move(frame).mean.up)),
+        row(tr("Bust point, forward"), ("mm", 1, lambda frame: bust_move(frame).mean.forward)),
         row(
             tr("Volume error"),
             ("%", 2, lambda frame: kept_volume(frame)[0]),
             ("ml", 1, lambda frame: kept_volume(frame)[1]),
         ),
     ]
-
-
-def _lift(frame: Frame) -> float:
-    now, rest = frame.marks, frame.stages.rest_marks
-    return 0.5 * (now.nipple_left_z + now.nipple_right_z - rest.nipple_left_z - rest.nipple_right_z)
-
-
-def _forward(frame: Frame) -> float:
-    return frame.marks.apex_protrusion - frame.stages.rest_marks.apex_protrusion

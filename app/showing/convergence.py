@@ -30,7 +30,7 @@ _LEGEND_FROM = 1100  # narrower, the legend has no room beside the titles
 class VerdictView(Protocol):
     """What the strip says of a run: a state of the chip, up to three (label, value) pairs, what to do.
 
-    Then what it took, and whether the run is still on its way.
+    Then the time it took, by which effort, and whether the run is still on its way.
     """
 
     @property
@@ -41,6 +41,8 @@ class VerdictView(Protocol):
     def hint(self) -> str: ...
     @property
     def pace(self) -> str: ...
+    @property
+    def effort(self) -> str: ...
     @property
     def settling(self) -> bool: ...
 
@@ -145,6 +147,7 @@ class Strip(QWidget):
         self.chip.set_state(verdict.state)
         self._small_chip.set_state(verdict.state)
         self._turns.setText(verdict.pace)
+        self._turns.setToolTip(f"<p>{verdict.effort}</p>")
         pairs = verdict.numbers[: len(self._pairs)]
         for place, (name, value) in enumerate(self._pairs):
             pair = pairs[place] if place < len(pairs) else ("", "")
@@ -243,7 +246,7 @@ class Strip(QWidget):
         column.addSpacing(2)
         column.addWidget(self._hint)
         column.addStretch(1)
-        titles = (tr("Adaptive"), tr("Conventional"), tr("None"), tr("Exact"))
+        titles = (tr("Adaptive"), tr("Conventional"), tr("Off"), tr("Exact"))
         self._segment = Segment(tuple(zip(CONTROLS, titles, strict=True)), small=True)
         for control, tip in zip(CONTROLS, _control_tips(), strict=True):
             self._segment.button(control).setToolTip(f"<p>{tip}</p>")  # a paragraph wraps
@@ -275,8 +278,8 @@ class Strip(QWidget):
 
 def _control_tips() -> tuple[str, str, str, str]:
     return (
-        tr("Adaptive force: it learns from each turn how strong it must be to keep the volume"),
-        tr("Conventional force: in proportion to the volume error; it may vibrate"),
-        tr("No force: the volume is not kept"),
-        tr("Exact answer: the balance with the volume kept, solved at once"),
+        tr("Keeps the volume with an adaptive force: it learns in each turn how strong it must be"),
+        tr("Keeps the volume with a force in proportion to the volume error; it may vibrate"),
+        tr("Does not keep the volume"),
+        tr("Keeps the volume exactly: the balance is solved at once"),
     )

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from PySide6.QtCore import QRect, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFontMetricsF, QImage, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtGui import QColor, QFont, QFontMetricsF, QImage, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.dress.theme import font, tokens_of
@@ -44,6 +44,13 @@ class Panes(QWidget):
     def show_wipe(self, left: tuple[str, Viewport], title: str) -> None:
         """Show another viewport left of a line that can be dragged, and the main one right of it."""
         self._take((left[1], self.main), (left[0], title), wiped=True)
+
+    def set_titles(self, titles: Sequence[str]) -> None:
+        """Write other titles over the panes that are shown."""
+        if [title.text for title in self.titles] != list(titles):
+            for title, text in zip(self.titles, titles, strict=True):
+                title.write(text)
+            self._lay_out()
 
     @property
     def is_wiped(self) -> bool:
@@ -134,8 +141,8 @@ class Panes(QWidget):
         All stand at one height: where one would be hidden, under what hides it.
         """
         for place, title in enumerate(self.titles):
-            title.resize(title.sizeHint())
             left, end = edges[place], edges[place + 1]
+            title.fit(end - left - 2 * GAP)
             last = place == len(self.titles) - 1
             title.move(left + GAP if last else end - GAP - title.width(), GAP)
             title.setHidden(end - left < title.width() + 2 * GAP)
@@ -148,17 +155,34 @@ class Panes(QWidget):
 
 
 class PaneTitle(QWidget):
-    """What a pane shows, in a small pill; the pointer goes through it."""
+    """What a pane shows, in a small pill; the pointer goes through it.
+
+    The first line of a longer text is its heading, which stays alone where the others have no room.
+    """
+
+    LINE, EDGE = 18, 22
 
     def __init__(self, text: str, parent: QWidget) -> None:
         super().__init__(parent)
-        self.text = text
+        self._room = 10_000
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
-        self.setAccessibleName(text)
+        self.write(text)
+
+    def write(self, text: str) -> None:
+        """Say something else."""
+        self.text = text
+        self.setAccessibleName(text.replace("\n", ", "))
+        self.update()
+
+    def fit(self, room: int) -> None:
+        """Take as much of a width as is needed [px]."""
+        self._room = room
+        self.resize(self.sizeHint())
 
     def sizeHint(self) -> QSize:
-        """Return room for the text."""
-        return QSize(round(QFontMetricsF(font("title")).horizontalAdvance(self.text)) + 22, 26)
+        """Return room for what is written."""
+        lines = self._lines()
+        return QSize(self._width(lines), 26 + self.LINE * (len(lines) - 1))
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Draw the pill."""
@@ -170,6 +194,20 @@ class PaneTitle(QWidget):
         painter.setBrush(fill)
         painter.setPen(QColor(tokens.line))
         painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 13.0, 13.0)
-        painter.setFont(font("title"))
-        painter.setPen(QColor(tokens.text))
-        painter.drawText(self.rect(), Qt.AlignmentFlag.AlignCenter, self.text)
+        for place, text in enumerate(self._lines()):
+            painter.setFont(_face(place))
+            painter.setPen(QColor(tokens.text if place == 0 else tokens.text_quiet))
+            line = QRectF(0, 4 + self.LINE * place, self.width(), self.LINE)
+            painter.drawText(line, Qt.AlignmentFlag.AlignCenter, text)
+
+    def _lines(self) -> list[str]:
+        lines = self.text.split("\n")
+        return lines if self._width(lines) <= self._room else lines[:1]
+
+    def _width(self, lines: Sequence[str]) -> int:
+        wide = (QFontMetricsF(_face(place)).horizontalAdvance(text) for place, text in enumerate(lines))
+        return round(max(wide)) + self.EDGE
+
+
+def _face(line: int) -> QFont:
+    return font("title" if line == 0 else "caption", tabular=line > 0)

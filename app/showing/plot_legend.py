@@ -24,7 +24,7 @@ def run_title(control: str) -> str:
         "adaptive": tr("Adaptive"),
         "conventional": tr("Conventional"),
         "accumulating": tr("Accumulating"),
-        "none": tr("None"),
+        "none": tr("Volume free"),
     }[control]
 
 

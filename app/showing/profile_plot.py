@@ -1,4 +1,4 @@
-"""Curves of a section in millimetres: both axes alike, a grid, apexes, and how far the curves are apart."""
+"""Curves of a section in millimetres, both axes alike, with marked places; how far the curves are apart."""
 
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
@@ -34,14 +34,14 @@ _FINEST = 22.0  # grid lines are never nearer to each other [px]
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """What is drawn: curves of (k, 2) places [mm] by role, and pairs of apexes (former, present), each (2,).
+    """What is drawn: curves of (k, 2) places [mm] by role, and pairs of marks (former, present), each (2,).
 
     Roles: "before" is dashed, "after" strong, "other" the mirrored side. ``home``, shape (2, 2) [mm], is the
     box that is seen first.
     """
 
     curves: dict[str, Sequence[Floats]] = field(default_factory=dict)
-    apexes: Sequence[tuple[Floats, Floats]] = ()
+    marks: Sequence[tuple[Floats, Floats]] = ()
     home: Floats = field(default_factory=lambda: np.array([[-100.0, -100.0], [100.0, 100.0]]))
 
 
@@ -120,7 +120,7 @@ class ProfilePlot(QWidget):
                 painter.drawPath(self._path(places))
         painter.setPen(QPen(QColor(tokens.floating), 1.5))
         old = tokens.warn_mark if "other" in self._drawn.curves else tokens.ghost_curve
-        for former, present in self._drawn.apexes:
+        for former, present in self._drawn.marks:
             for place, colour in ((former, old), (present, tokens.accent)):
                 painter.setBrush(QColor(colour))
                 painter.drawEllipse(self._spot(place), 4.0, 4.0)

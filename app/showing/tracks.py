@@ -45,7 +45,7 @@ def height_quantities() -> tuple[Quantity, ...]:
     """Return which height can be plotted: it is counted from that of the body at rest."""
     return (
         Quantity("bust_mm", tr("Bust point height"), "mm", 2.0),
-        Quantity("apex_mm", tr("Apex height"), "mm", 2.0),
+        Quantity("apex_mm", tr("Foremost place, height"), "mm", 2.0),
     )
 
 

@@ -13,6 +13,7 @@ from app.wording.words import tr
 
 TONES = {
     "settled": ("ok", "check-circle"),
+    "strained": ("warn", "overstrained"),
     "settling": ("info", "arc"),
     "vibrating": ("warn", "wave"),
     "diverging": ("bad", "arrow-up-right"),
@@ -33,6 +34,7 @@ def state_title(state: str) -> str:
     """Return the word for a state of ``TONES``."""
     return {
         "settled": tr("Settled"),
+        "strained": tr("Settled, strained"),
         "settling": tr("Settling"),
         "vibrating": tr("Vibrating"),
         "diverging": tr("Diverging"),

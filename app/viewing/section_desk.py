@@ -11,8 +11,10 @@ from PySide6.QtCore import QObject, QTimer
 from app.keeping.dialogs import ask_save
 from app.panels.profile import ProfilePanel
 from app.presenting.body_now import BodyNow
-from app.presenting.maps import apex_words
+from app.presenting.bust import bust_move
+from app.presenting.maps import section_words, sides_words
 from app.presenting.run import PLOT_INTERVAL
+from app.presenting.verdict import is_result
 from app.showing.plane_handle import PlaneHandle
 from app.showing.profile_plot import Drawn
 from app.showing.viewport import Viewport
@@ -27,6 +29,7 @@ if TYPE_CHECKING:
     from app.main_window import MainWindow
 
 _AROUND = 12.0  # what is seen beside the part that can move [mm]
+_NEAR_BUST_POINT = 10.0  # a plane that far from it still shows it [mm]
 _NEAR = 25.0  # how near to a curve the pointer reads it [px]
 
 
@@ -225,13 +228,38 @@ class SectionDesk(QObject):
         self.panel.show_plane(plane.axis, plane.at, low[plane.number], high[plane.number])
         sides = "other" in self.curves
         roles = ("after", "other") if sides else ("before", "after")
-        pairs = self._apexes(*reversed(roles) if sides else roles)
+        pairs = self._apexes("other", "after") if sides else self._bust_points()
         drawn = Drawn(
             {role: [curve.places for curve in self.curves[role]] for role in roles}, pairs, self._home()
         )
-        self.panel.show_curves(drawn, apex_words(plane.axis, pairs, sides), again=self._again)
+        words = sides_words(plane.axis, pairs) if sides else self._words()
+        self.panel.show_curves(drawn, words, again=self._again)
         self._again = False
         self._point(self._place)
+
+    @property
+    def _side(self) -> str:
+        assert self._now is not None
+        assert self._slicer is not None
+        return "left" if self._slicer.plane.at > self._now.stages.moving.middle else "right"
+
+    def _words(self) -> str:
+        assert self._now is not None
+        frame = self._now.frame
+        return section_words(self.axis, self._side, bust_move(frame)) if is_result(frame) else ""
+
+    def _bust_points(self) -> list[tuple[Floats, Floats]]:
+        """Return a bust point before and after, each (2,) [mm], if the plane stands upright through it."""
+        assert self._now is not None
+        assert self._slicer is not None
+        plane, stages, side = self._slicer.plane, self._now.stages, self._side
+        mark = stages.landmarks.points.get(f"bust_point_{side}")
+        if plane.axis != "x" or mark is None or abs(mark.position[0] - plane.at) > _NEAR_BUST_POINT:
+            return []
+        move = bust_move(self._now.frame)
+        step = move.left if side == "left" else move.right
+        former = plane.flat(mark.position)
+        return [(former, former + np.array([step.forward, step.up]))]
 
     def _home(self) -> Floats:
         """Return the box of what can move, in the plane, (2, 2) [mm]."""

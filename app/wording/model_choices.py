@@ -175,8 +175,7 @@ def _normals() -> Choice:
 
 def control_words(control: str) -> str:
     """Return the name of an edit that chooses a volume control."""
-    choice = _control()
-    return f"{choice.title}: {choice.words(control)}"
+    return tr("Volume control: {control}").format(control=_control().words(control))
 
 
 def _control() -> Choice:

@@ -1,0 +1,46 @@
+"""Tables of figures that leave the window: copied, or written to a file."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtGui import QGuiApplication
+
+from app.keeping.dialogs import ask_save
+from app.wording.words import tr
+from core.errors import UserError
+from core.project import whole_file
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+
+Table = Sequence[Sequence[str]]
+"""Cells row by row, a heading first."""
+
+
+def copy_table(window: MainWindow, table: Table) -> None:
+    """Put a table on the clipboard, its cells apart by tabs as spreadsheets take them."""
+    QGuiApplication.clipboard().setText("".join("\t".join(row) + "\n" for row in table))
+    window.notices.show_notice("ok", tr("The table is copied."))
+
+
+def save_table(window: MainWindow, table: Table, title: str, ending: str) -> None:
+    """Ask for a place under a ``title``, and write a table there; its name ends as told."""
+    path = ask_save(window, title, f"{window.session.name}-{ending}.csv", "CSV (*.csv)", ".csv")
+    if not path:
+        return
+    about = f"table of {ending}"
+    try:
+        # With the mark that tells spreadsheets that letters beyond English follow.
+        with (
+            whole_file(Path(path).absolute()) as partial,
+            open(partial, "w", newline="", encoding="utf-8-sig") as file,
+        ):
+            csv.writer(file).writerows(table)
+    except UserError as error:
+        window.desk.show_failure(error, about)
+    else:
+        window.desk.show_written(about, tr("{name} written.").format(name=Path(path).name))

@@ -1,0 +1,91 @@
+"""How far the bust points went from where they are on the body before: the one answer of the whole window."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.wording.words import number, tr
+from core.frame import Frame
+from core.mesh import Floats
+from core.solver import Marks
+
+APART = 1.0
+"""From so much on the moves of left and right are told apart [mm]."""
+
+
+@dataclass(frozen=True)
+class BustStep:
+    """How far a bust point went up and forward [mm]; down and back where it is negative."""
+
+    up: float
+    forward: float
+
+
+@dataclass(frozen=True)
+class BustMove:
+    """The moves of both bust points, against the body before."""
+
+    left: BustStep
+    right: BustStep
+
+    @property
+    def mean(self) -> BustStep:
+        """The mean of both: what is told, and what the plot ends at."""
+        return BustStep(0.5 * (self.left.up + self.right.up), 0.5 * (self.left.forward + self.right.forward))
+
+    @property
+    def differs(self) -> bool:
+        """Whether left and right are so far apart that the mean alone would hide it."""
+        up, forward = self.left.up - self.right.up, self.left.forward - self.right.forward
+        return max(abs(up), abs(forward)) > APART
+
+
+def bust_move(frame: Frame) -> BustMove:
+    """Return how far the bust points of a frame are from where they are on the body before."""
+    return move_between(frame.stages.rest_marks, frame.marks)
+
+
+def move_between(rest: Marks, now: Marks) -> BustMove:
+    """Return how far the bust points went between two states of a body."""
+    return BustMove(
+        BustStep(now.nipple_left_z - rest.nipple_left_z, now.nipple_left_out - rest.nipple_left_out),
+        BustStep(now.nipple_right_z - rest.nipple_right_z, now.nipple_right_out - rest.nipple_right_out),
+    )
+
+
+def ups(rest: Marks, left: Floats, right: Floats) -> Floats:
+    """Return the mean move up of many turns, (n,) [mm], from the heights of both bust points, each (n,)."""
+    return 0.5 * ((left - rest.nipple_left_z) + (right - rest.nipple_right_z))
+
+
+def step_words(step: BustStep) -> str:
+    """Return a move in words: "3.9 mm up, 2.1 mm forward"."""
+    return f"{up_words(step.up)}, {forward_words(step.forward)}"
+
+
+def up_words(up: float) -> str:
+    """Return a move up or down in words [mm]."""
+    return (tr("{mm} mm down") if round(up, 1) < 0.0 else tr("{mm} mm up")).format(mm=number(abs(up)))
+
+
+def forward_words(forward: float) -> str:
+    """Return a move forward or back in words [mm]."""
+    back = round(forward, 1) < 0.0
+    return (tr("{mm} mm back") if back else tr("{mm} mm forward")).format(mm=number(abs(forward)))
+
+
+def sides_words(move: BustMove) -> tuple[str, str]:
+    """Return the moves of left and right in words: that part of them which differs more, up or forward."""
+    left, right = move.left, move.right
+    if abs(left.up - right.up) >= abs(left.forward - right.forward):
+        return up_words(left.up), up_words(right.up)
+    return forward_words(left.forward), forward_words(right.forward)
+
+
+def bust_sentence(move: BustMove) -> str:
+    """Return a move in one line, with both sides where they differ."""
+    said = tr("Bust point {way}").format(way=step_words(move.mean))
+    if not move.differs:
+        return said
+    left, right = sides_words(move)
+    return tr("{said} (left {left}, right {right})").format(said=said, left=left, right=right)

@@ -1,0 +1,85 @@
+"""The table of measures before and after: what each is counted from, and the table as plain cells."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from app.panels.result import MeasureView
+from app.presenting.lines import line_title
+from app.wording.words import tr
+from core.live import Frame
+from core.solver import Marks
+
+
+def measure_views(frame: Frame) -> list[MeasureView]:
+    """Return the rows of the table, the bust points first."""
+    return [*_bust_rows(frame), *_volume_rows(frame), *_line_rows(frame)]
+
+
+def as_table(views: Sequence[MeasureView]) -> list[list[str]]:
+    """Return the table as plain cells, with a heading."""
+    heading = [tr("Measure"), tr("Counted from"), tr("Unit"), tr("Before"), tr("After"), tr("Change")]
+    rows = [
+        [
+            view.label,
+            view.reference,
+            view.unit,
+            *("" if each is None else f"{each:.1f}" for each in (view.before, view.after, view.change)),
+        ]
+        for view in views
+    ]
+    return [heading, *rows]
+
+
+def _bust_rows(frame: Frame) -> Iterator[MeasureView]:
+    """Rows of the bust points, both and each, and of the foremost place of the breasts."""
+    rest, now = frame.stages.rest_marks, frame.marks
+    low = float(frame.stages.body.mesh.vertices[:, 2].min())
+    above, before = tr("above the lowest point of the scan"), tr("in front of the edge of the reshaped part")
+    both, left, right = tr("Bust point"), tr("Bust point left"), tr("Bust point right")
+    yield MeasureView(tr("{what}, height").format(what=both), "mm", _up(rest) - low, _up(now) - low, above)
+    for side, was, then in (
+        (left, rest.nipple_left_z, now.nipple_left_z),
+        (right, rest.nipple_right_z, now.nipple_right_z),
+    ):
+        yield MeasureView(tr("{what}, height").format(what=side), "mm", was - low, then - low, above)
+    yield MeasureView(tr("{what}, forward").format(what=both), "mm", _out(rest), _out(now), before)
+    foremost = tr("Foremost place of the skin")
+    yield MeasureView(
+        tr("{what}, height").format(what=foremost), "mm", rest.apex_z - low, now.apex_z - low, above
+    )
+    yield MeasureView(
+        tr("{what}, forward").format(what=foremost), "mm", rest.apex_protrusion, now.apex_protrusion, before
+    )
+
+
+def _volume_rows(frame: Frame) -> Iterator[MeasureView]:
+    volume = frame.stages.model.volume.rest_volume / 1000.0
+    # The body has no volume of its own there: what its skin gains is counted from the same rest volume.
+    skin = frame.stages.moving.volume_change(frame.points) / 1000.0
+    part = tr("of the reshaped part, to a fan behind it")
+    yield MeasureView(tr("Volume of the model"), "ml", volume, volume + frame.error_ml, part)
+    yield MeasureView(tr("Volume under the skin"), "ml", volume, volume + skin, part)
+
+
+def _line_rows(frame: Frame) -> Iterator[MeasureView]:
+    for line, reached in zip(frame.stages.model.lines, frame.lengths.values(), strict=True):
+        title = line_title(line.name, frame.stages.design)
+        if not line.back_length:
+            yield MeasureView(title, "mm", line.rest_length, reached, tr("along the line, end to end"))
+            continue
+        front = tr("{line}, front part").format(line=title)
+        yield MeasureView(front, "mm", line.rest_length, reached, tr("along the line, side to side"))
+        whole = tr("{line}, whole band").format(line=title)
+        back = line.back_length
+        yield MeasureView(
+            whole, "mm", line.rest_length + back, reached + back, tr("all round, back included")
+        )
+
+
+def _up(marks: Marks) -> float:
+    return 0.5 * (marks.nipple_left_z + marks.nipple_right_z)
+
+
+def _out(marks: Marks) -> float:
+    return 0.5 * (marks.nipple_left_out + marks.nipple_right_out)

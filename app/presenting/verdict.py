@@ -1,0 +1,168 @@
+"""What the window says of how a run stands: one word, the figures that matter then, and what to do."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.presenting.bust import bust_move, sides_words, step_words, ups
+from app.presenting.lines import line_title
+from app.showing.verdict_chip import state_title
+from app.wording.words import number, say, tr
+from core.doubts import ESSENTIAL, weak_sides
+from core.live import Frame
+from core.report import blamed_line, warnings
+from core.solving.condition import Condition
+
+_WATCHED = 24  # turns over which a swing is measured
+_STEADY = 5e-4  # a swing that changes by less a turn stays as large as it is [1]
+
+
+@dataclass(frozen=True)
+class StripVerdict:
+    """What the strip says of a run; ``effort`` says what the ``pace`` took."""
+
+    state: str
+    numbers: list[tuple[str, str]]
+    hint: str
+    pace: str
+    effort: str
+    settling: bool
+
+
+def state_of(frame: Frame) -> str:
+    """Return the word for a frame: its verdict's, but skin that strains beyond what is calm is told too."""
+    verdict = frame.verdict
+    strained = verdict.condition is not None and verdict.condition.strained
+    return "strained" if verdict.state == "settled" and strained else verdict.state
+
+
+def is_result(frame: Frame) -> bool:
+    """Return whether the figures of a frame can be worked with, or will be when it has settled."""
+    return state_of(frame) in ("settled", "strained", "settling")
+
+
+def kept_volume(frame: Frame) -> tuple[float, float]:
+    """Return how far the volume that is kept is from the one at rest, of that of the control mesh [%, ml].
+
+    It is the body's own where the exact answer keeps that, else that of the control mesh.
+    """
+    design = frame.stages.design
+    own = design.dense_volume and design.volume == "exact"
+    error = frame.stages.moving.volume_change(frame.points) / 1000.0 if own else frame.error_ml
+    return 1e5 * error / frame.stages.model.volume.rest_volume, error
+
+
+def strip_verdict(frame: Frame) -> StripVerdict:
+    """Return how the run of a frame stands, with the figures that matter then."""
+    return StripVerdict(
+        state_of(frame),
+        _figures(frame),
+        _hint(frame),
+        tr("{seconds} s").format(seconds=number(frame.seconds)),
+        _effort(frame),
+        frame.verdict.motion == "settling",
+    )
+
+
+def doubt_of(frame: Frame) -> str:
+    """Return why the figures of a frame are no result, or nothing."""
+    if is_result(frame):
+        return ""
+    state = state_title(state_of(frame))
+    return tr("{state}: these figures are no result to sew for.").format(state=state)
+
+
+def swing_mm(frame: Frame) -> tuple[float, float]:
+    """Return the middle of the height that the bust points swing about, and half of how far [mm]."""
+    rows = frame.tracks.get(frame.stages.design.volume, ())[-_WATCHED:]
+    marks = [row.marks for row in rows if row.marks is not None]
+    heights = np.array([(each.nipple_left_z, each.nipple_right_z) for each in marks]).reshape(-1, 2)
+    up = ups(frame.stages.rest_marks, *heights.T)
+    if not len(up):
+        return 0.0, 0.0
+    return 0.5 * float(up.max() + up.min()), 0.5 * float(np.ptp(up))
+
+
+def swing_sentence(frame: Frame) -> str:
+    """Return what a vibration or a run that runs away means, or nothing."""
+    if frame.verdict.state == "vibrating":
+        swing = tr("The calculation does not come to rest: the bust point swings by ±{swing} mm.")
+        return swing.format(swing=number(swing_mm(frame)[1]))
+    if frame.verdict.state == "diverging":
+        return tr("The calculation runs away: the body is shown as it was before.")
+    return ""
+
+
+def _effort(frame: Frame) -> str:
+    """Return how many rounds it took, or steps to the exact answer."""
+    exact = frame.stages.design.volume == "exact"
+    text = (
+        tr("Worked out in {turns} Newton steps")
+        if exact
+        else tr("Worked out in {turns} turns: in each, every control point goes once to its own balance")
+    )
+    return text.format(turns=number(frame.verdict.turns, 0))
+
+
+def _figures(frame: Frame) -> list[tuple[str, str]]:
+    verdict, state = frame.verdict, state_of(frame)
+    if state == "diverging":
+        return []  # the figures would be those of the body shown, as it was before
+    if state == "vibrating":
+        return _swing_figures(frame)
+    error, ml = kept_volume(frame)
+    kept = (tr("Volume error"), f"{number(error, 2, signed=True)} % · {number(ml, 1, signed=True)} ml")
+    if verdict.condition and state == "folded":
+        return [kept, (tr("Turned skin"), f"{number(verdict.condition.largest_turn, 0)}°")]
+    if verdict.condition and state == "overstrained":
+        return [kept, (tr("Skin"), _strain(verdict.condition))]
+    move = bust_move(frame)
+    told = [kept, (tr("Bust point"), step_words(move.mean))]
+    return [*told, (tr("Left · right"), " · ".join(sides_words(move)))] if move.differs else told
+
+
+def _swing_figures(frame: Frame) -> list[tuple[str, str]]:
+    verdict, (middle, swing) = frame.verdict, swing_mm(frame)
+    growth = verdict.growth - 1.0
+    grows = tr("grows") if growth > _STEADY else tr("fades") if growth < -_STEADY else tr("stays as large")
+    percent = f"{number(100.0 * verdict.error, 2)} ± {number(100.0 * verdict.amplitude, 2)} %"
+    return [
+        (tr("Volume error"), percent),
+        (tr("Bust point"), f"{number(middle, signed=True)} ± {number(swing)} mm"),
+        (tr("The swing"), grows),
+    ]
+
+
+def _strain(condition: Condition) -> str:
+    """Return how far the skin is pressed together and stretched at the worst places."""
+    pressed, stretched = 100.0 * (condition.shortest - 1.0), 100.0 * (condition.longest - 1.0)
+    return tr("{pressed} to {stretched} %").format(
+        pressed=number(pressed, 0, signed=True), stretched=number(stretched, 0, signed=True)
+    )
+
+
+def _hint(frame: Frame) -> str:
+    """Return what to do about it, or what else has to be known."""
+    state, condition = state_of(frame), frame.verdict.condition
+    if state == "diverging":
+        return tr("The turns run away: the body is shown as it was before. Lengthen or soften the lines.")
+    if state == "settled":
+        if any(weak_sides(frame.stages.landmarks, kind) for kind in ESSENTIAL):
+            return tr("Some landmarks are doubtful: check them in the Landmarks step.")
+        return "".join(map(say, warnings(frame.stages)[:1]))  # the others stand in the notice
+    what = {
+        "folded": tr("The skin folds over: this is no body any more."),
+        "overstrained": tr(
+            "The skin is pressed or stretched by more than 30 % in places: no shape to sew for."
+        ),
+        "strained": tr("The skin is pressed or stretched by more than 20 % in places ({strain})."),
+    }.get(state, "")
+    if condition is not None:
+        what = what.format(strain=_strain(condition))
+    line = blamed_line(frame.stages)
+    if not what or line is None:
+        return what
+    wish = tr("Set {line} longer.") if line.ratio < 1.0 else tr("Set {line} shorter.")
+    return f"{what} {wish.format(line=line_title(line.name, frame.stages.design))}"
