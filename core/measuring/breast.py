@@ -62,7 +62,7 @@ def breast_of(side: Side, root: Root) -> Breast | None:
         return None  # the skin goes on from the breast to the rim: the root is open
     outside = ~band & ~own
     facing = np.einsum("ij,ij->i", piece.vertex_normals, chart.outward(piece.vertices)) > FACING
-    wall = wall_of(uvw[outside & facing], chart.flat(root.loop))
+    wall = wall_of(chart, uvw[outside & facing], chart.flat(root.loop))
     if wall is None:
         return None
     inside = piece.faces[(own | band)[piece.faces].all(axis=1)]

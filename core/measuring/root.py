@@ -56,13 +56,16 @@ class Root:
         return np.concatenate([self.loop, self.loop[:1]])
 
 
-def chart_of(landmarks: Landmarks, depth: tuple[float, float]) -> Chart:
-    """Return a chart about the axis of the trunk, ``depth`` being y of its front and of its back [mm]."""
-    busts = np.array([landmarks.position(f"bust_point_{side}") for side in SIDES])
+def chart_of(landmarks: Landmarks, side: str, depth: tuple[float, float]) -> Chart:
+    """Return a chart about the axis of the trunk, ``depth`` being y of its front and of its back [mm].
+
+    It keeps lengths where the root of the breast of a ``side`` ends.
+    """
+    busts = np.array([landmarks.position(f"bust_point_{each}") for each in SIDES])
     centre = np.array([busts[:, 0].mean(), 0.5 * (depth[0] + depth[1])])
-    ends = [mark.position for name, mark in landmarks.points.items() if name.startswith("root")]
-    reach = [float(np.linalg.norm(place[:2] - centre)) for place in ends or busts]
-    return Chart(centre, float(np.mean(reach)))
+    ends = [landmarks.points.get(f"root_{name}_{side}") for name in ("inner", "outer")]
+    reach = [float(np.linalg.norm(mark.position[:2] - centre)) for mark in ends if mark]
+    return Chart(centre, float(np.mean(reach)) if reach else 0.5 * abs(depth[1] - depth[0]))
 
 
 @dataclass(frozen=True, eq=False)

@@ -70,9 +70,9 @@ def subject_of(mesh: Mesh, landmarks: Landmarks) -> Subject:
     spreads: dict[str, float] = {}
     points = trunk_levels(mesh, [landmarks.bust_level])[0].points
     if len(points):
-        chart = chart_of(landmarks, (float(points[:, 1].min()), float(points[:, 1].max())))
+        depth = float(points[:, 1].min()), float(points[:, 1].max())
         for name in SIDES:
-            side = side_of(mesh, landmarks, name, chart)
+            side = side_of(mesh, landmarks, name, chart_of(landmarks, name, depth))
             root = root_of(side) if side else None
             if side is None or root is None:
                 continue

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.interpolate import RBFInterpolator
 from scipy.spatial import cKDTree
 
+from core.measuring.chart import Chart
 from core.mesh import Floats, Points
 
 COLLAR = 22.0
@@ -20,34 +21,54 @@ STIFF = 20.0
 """How little the wall follows the unevenness of the skin: the smoothing of the spline [1]."""
 
 
+FARTHEST = 1000.0
+"""No chest lies so far from its axis [mm]."""
+
 FEWEST = 24
 """A wall needs so many places of skin round the root."""
 
 
 @dataclass(frozen=True, eq=False)
 class Wall:
-    """How far out the chest lies behind a breast, in its chart."""
+    """How far out the chest lies behind a breast, in its chart: an oval trunk, and what it differs from that.
 
+    1 / w^2 of an oval, a round or a flat trunk is one wave of twice the angle: ``wave`` (4,), with the
+    height. ``spline`` is the rest [mm].
+    """
+
+    radius: float
+    wave: Floats
     spline: RBFInterpolator
 
     def out(self, uv: Points) -> Floats:
-        """Return how far out it lies at places of the chart, shape (k, 2) [mm]; (k,) [mm]."""
-        return np.asarray(1.0 / self.spline(uv)[:, 0])
+        """Return how far from the axis it lies over places of the chart, shape (k, 2) [mm]; (k,) [mm]."""
+        return np.asarray(_oval(uv, self.radius, self.wave) + self.spline(uv)[:, 0])
 
 
-def wall_of(chest: Points, loop: Points) -> Wall | None:
+def wall_of(chart: Chart, chest: Points, loop: Points) -> Wall | None:
     """Lay the wall through the skin just outside a root; None if there is too little of it.
 
     ``chest`` (n, 3) [mm] are the vertices outside the breast and ``loop`` (k, 3) [mm] the root, in the chart.
-    A thin plate bends least between: with the slope of the chest all round it arches as a chest does, where
-    a flat fan would cut through the ribs. Source: ours.
+    What an oval trunk does not fit a thin plate does, which bends least: with the slope of the chest all
+    round it arches as a chest does, where a flat fan would cut through the ribs. Source: ours.
     """
     away = np.asarray(cKDTree(loop[:, :2]).query(chest[:, :2], distance_upper_bound=COLLAR)[0])
     places = _thinned(chest[away < COLLAR])
     if len(places) < FEWEST:
         return None
-    every = np.concatenate([places, loop[::2]])
-    return Wall(RBFInterpolator(every[:, :2], 1.0 / every[:, 2:], smoothing=STIFF))
+    uv, out = np.split(np.concatenate([places, loop[::2]]), [2], axis=1)
+    wave = np.linalg.lstsq(_waves(uv, chart.radius), out[:, 0] ** -2.0, rcond=None)[0]
+    rest = out - _oval(uv, chart.radius, wave)[:, None]
+    return Wall(chart.radius, wave, RBFInterpolator(uv, rest, smoothing=STIFF))
+
+
+def _waves(uv: Points, radius: float) -> Floats:
+    turn = 2.0 * uv[:, 0] / radius
+    return np.stack([np.ones(len(uv)), np.cos(turn), np.sin(turn), uv[:, 1] / radius], axis=1)
+
+
+def _oval(uv: Points, radius: float, wave: Floats) -> Floats:
+    return np.asarray(np.maximum(_waves(uv, radius) @ wave, FARTHEST**-2.0) ** -0.5)
 
 
 def _thinned(places: Points) -> Points:
