@@ -14,7 +14,9 @@ from window_tools import Script, drag, points, run_main, settled, undrawn
 
 import app.desks.desk
 from app.main_window import MainWindow
-from core.project import open_project
+from app.wording.samples import sample_design
+from core.document import Document
+from core.project import ScanFile, open_project, save_project
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -140,8 +142,10 @@ def test_the_file_that_was_refused_last_is_the_one_that_is_told(tmp_path: Path, 
 
 
 def test_a_save_that_fails_elsewhere_leaves_what_is_saved_here_saved(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, project: Path
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, mannequin: Path
 ) -> None:
+    saved, scan = tmp_path / "customer.busk", ScanFile(mannequin.name, mannequin.read_bytes())
+    save_project(saved, Document.of(sample_design()), scan, None)
     monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(tmp_path / "nowhere" / "a.busk"))
     told: list[object] = []
 
@@ -159,7 +163,7 @@ def test_a_save_that_fails_elsewhere_leaves_what_is_saved_here_saved(
         yield lambda: len(told) == 2
         assert window.session.unsaved
 
-    run_main([str(project)], script)
+    run_main([str(saved)], script)
 
 
 @pytest.mark.parametrize("last", ["discard", "save"])
