@@ -31,3 +31,7 @@ class LineError(UserError):
 
 class ProjectError(UserError):
     """The project file cannot be read or written."""
+
+
+class SizeError(UserError):
+    """A table of sizes cannot be read, or no size can be made of these girths."""

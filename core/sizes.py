@@ -1,0 +1,224 @@
+"""Sizes: band and cup from two girths, in every system that is told as data, with the way there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from math import isfinite
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import platformdirs
+
+from core.errors import SizeError
+from core.sizing.rule import allowance_sentence, band_sentences, cup_sentences
+from core.sizing.table import Scale, SizeTable, Words
+from core.sizing.table_file import read_table, table_of
+
+ALLOWANCE = (0.0, 20.0)
+"""What may be taken off the under-bust girth for a tape that is worn tight [mm]: an estimate, not a norm."""
+
+_ORDER = ("jp", "eu", "uk", "us", "fr", "it", "au")
+_LONGEST = 5000.0  # mm; no girth of a body is longer
+
+
+@dataclass(frozen=True)
+class Neighbour:
+    """The next band or cup: its ``name``, the ``label`` of that size with all else as it is.
+
+    ``part`` is "band" or "cup", ``up`` whether it is the larger one. ``missing_mm`` is how far the border is:
+    what the under-bust girth would have to change for a band, the difference of the girths for a cup.
+    """
+
+    part: str
+    up: bool
+    name: str
+    label: str
+    missing_mm: float
+
+
+@dataclass(frozen=True)
+class Sister:
+    """A sister size: a band smaller and a cup larger, or the other way round.
+
+    ``bust_mm`` is how much longer the bust is that it is made for, nominally.
+    """
+
+    label: str
+    bust_mm: float
+
+
+@dataclass(frozen=True)
+class SizeAnswer:
+    """What a table says of a body: the size by its ``label``, empty if the body is not ``inside`` the table.
+
+    ``rule`` says how it was found, sentence by sentence; ``doubts`` what is uncertain in the table.
+    """
+
+    table: SizeTable
+    underbust_mm: float
+    bust_mm: float
+    allowance_mm: float
+    label: str
+    band: str
+    cup: str
+    neighbours: tuple[Neighbour, ...]
+    sisters: tuple[Sister, ...]
+    rule: tuple[str, ...]
+
+    @property
+    def inside(self) -> bool:
+        """Tell whether the table has a size for this body."""
+        return bool(self.label)
+
+    @property
+    def doubts(self) -> tuple[Words, ...]:
+        """What is uncertain in the table."""
+        return self.table.doubts
+
+
+def size(table: SizeTable, underbust_mm: float, bust_mm: float, allowance_mm: float = 0.0) -> SizeAnswer:
+    """Return the size that a table makes of two girths, as a tape measures them [mm].
+
+    ``allowance_mm`` is taken off the under-bust first, and told. Raises SizeError for what no body measures.
+    """
+    _check(underbust_mm, bust_mm, allowance_mm)
+    underbust, bust = table.in_unit(underbust_mm - allowance_mm), table.in_unit(bust_mm)
+    band, cup = table.steps(underbust, bust)
+    over = table.over(underbust, bust)
+    rule = band_sentences(table, underbust)
+    if allowance_mm:
+        rule = (allowance_sentence(table, *map(table.in_unit, (underbust_mm, allowance_mm))), *rule)
+    if over is not None:
+        rule = (*rule, *cup_sentences(table, over))
+    return SizeAnswer(
+        table=table,
+        underbust_mm=underbust_mm,
+        bust_mm=bust_mm,
+        allowance_mm=allowance_mm,
+        label=table.labelled(band, cup),
+        band=band.name if band else "",
+        cup=cup.name if cup else "",
+        neighbours=tuple(_neighbours(table, underbust, over)),
+        sisters=tuple(_sisters(table, underbust, over)),
+        rule=rule,
+    )
+
+
+def sizes(underbust_mm: float, bust_mm: float, allowance_mm: float = 0.0) -> Mapping[str, SizeAnswer]:
+    """Return the sizes in every system, by the key of its table: those of Busk, then the designer's own.
+
+    Own tables that cannot be read are left out: ``own_tables`` tells why. Raises SizeError as ``size`` does.
+    """
+    tables = (*built_in(), *own_tables()[0])
+    return MappingProxyType({each.key: size(each, underbust_mm, bust_mm, allowance_mm) for each in tables})
+
+
+def sizes_text(answer: SizeAnswer, language: str = "en") -> dict[str, Any]:
+    """Return an answer as plain data for JSON, lengths in mm; the texts of the table in ``language``."""
+    table = answer.table
+    return {
+        "key": table.key,
+        "system": table.system,
+        "title": table.title.told(language),
+        "size": answer.label or None,
+        "band": answer.band or None,
+        "cup": answer.cup or None,
+        "inside": answer.inside,
+        "underbust_mm": answer.underbust_mm,
+        "bust_mm": answer.bust_mm,
+        "allowance_mm": answer.allowance_mm,
+        "unit": table.unit,
+        "rule": list(answer.rule),
+        "neighbours": [
+            {
+                "part": each.part,
+                "direction": "up" if each.up else "down",
+                "name": each.name,
+                "size": each.label or None,
+                "missing_mm": round(each.missing_mm, 2),
+            }
+            for each in answer.neighbours
+        ],
+        "sisters": [{"size": each.label, "bust_mm": round(each.bust_mm, 2)} for each in answer.sisters],
+        "doubts": [each.told(language) for each in answer.doubts],
+        "sources": [{"name": each.name, "says": each.words.told(language)} for each in table.sources],
+    }
+
+
+@cache
+def built_in() -> tuple[SizeTable, ...]:
+    """Return the tables that come with Busk."""
+    folder = resources.files("resources") / "sizes"
+    return tuple(table_of(key, (folder / f"{key}.json").read_text(encoding="utf-8")) for key in _ORDER)
+
+
+def own_folder() -> Path:
+    """Return where a designer's own tables lie, each as one JSON file."""
+    return Path(platformdirs.user_data_path("Busk", appauthor=False)) / "sizes"
+
+
+def own_tables() -> tuple[list[SizeTable], list[SizeError]]:
+    """Return the designer's own tables, and why some of them cannot be read."""
+    tables, problems = [], []
+    for path in sorted(own_folder().glob("*.json")):
+        try:
+            if path.stem in _ORDER:
+                raise SizeError(f"Busk has a table {path.stem} itself.", f"Give {path.name} another name.")
+            tables.append(read_table(path))
+        except SizeError as problem:
+            problems.append(problem)
+    return tables, problems
+
+
+def _check(underbust_mm: float, bust_mm: float, allowance_mm: float) -> None:
+    for girth in (underbust_mm, bust_mm):
+        if not (isfinite(girth) and 0.0 < girth <= _LONGEST):
+            raise SizeError(f"No body has a girth of {girth:g} mm.", "Look at the landmarks and the unit.")
+    low, high = ALLOWANCE
+    if not low <= allowance_mm <= high:
+        raise SizeError(
+            f"{allowance_mm:g} mm cannot be taken off for a tape that is worn tight.",
+            f"Choose {low:g} to {high:g}.",
+        )
+
+
+def _neighbours(table: SizeTable, underbust: float, over: float | None) -> Iterator[Neighbour]:
+    """Yield the bands and cups next to a body: below and above, or the nearest if it lies outside."""
+    band = table.bands.step(table.bands.place(underbust))
+    cup = None if over is None else table.cups.step(table.cups.place(over))
+    for up, place, missing in _next(table.bands, underbust):
+        step = table.bands.steps[place]
+        yield Neighbour("band", up, step.name, table.labelled(step, cup), missing * table.unit_mm)
+    if over is None:
+        return
+    for up, place, missing in _next(table.cups, over):
+        step = table.cups.steps[place]
+        yield Neighbour("cup", up, step.name, table.labelled(band, step), missing * table.unit_mm)
+
+
+def _next(scale: Scale, value: float) -> Iterator[tuple[bool, int, float]]:
+    """Yield the steps next to a value: whether it is above, its place and how far its border is [unit]."""
+    place = scale.place(value)
+    last = len(scale.steps) - 1
+    if place > 0:
+        below = min(place - 1, last)
+        yield False, below, value - scale.borders[below + 1]
+    if place < last:
+        above = place + 1
+        yield True, above, scale.borders[above] - value
+
+
+def _sisters(table: SizeTable, underbust: float, over: float | None) -> Iterator[Sister]:
+    if over is None:
+        return
+    place = (table.bands.place(underbust), table.cups.place(over))
+    here = (table.bands.step(place[0]), table.cups.step(place[1]))
+    for turn in (-1, 1):
+        band, cup = table.bands.step(place[0] + turn), table.cups.step(place[1] - turn)
+        if here[0] and here[1] and band and cup:
+            longer = band.middle + cup.middle - here[0].middle - here[1].middle
+            yield Sister(table.labelled(band, cup), longer * table.unit_mm)

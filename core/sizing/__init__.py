@@ -1,0 +1,1 @@
+"""Rooms of ``core.sizes``: what a table of sizes is, how its file is read, the rule in words."""
