@@ -37,7 +37,7 @@ class OwnMeasure:
         if not self.name.strip() or len(self.name) > LONGEST_NAME or not printable:
             raise UserError("A measure needs a name of its own.", f"Use up to {LONGEST_NAME} letters.")
         if self.kind not in KINDS:
-            raise UserError(f"There is no kind of measure '{self.kind}'.", f"Choose {', '.join(KINDS)}.")
+            raise UserError(f"There is no kind of measure '{self.kind}'.", "Choose straight, skin or girth.")
         unknown = [mark for mark in self.marks if mark not in NAMES]
         if unknown:
             raise UserError(f"There is no landmark {unknown[0]}.", f"Choose one of {', '.join(NAMES)}.")

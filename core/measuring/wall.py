@@ -57,7 +57,7 @@ def wall_of(chart: Chart, chest: Points, loop: Points) -> Wall | None:
     if len(places) < FEWEST:
         return None
     uv, out = np.split(np.concatenate([places, loop[::2]]), [2], axis=1)
-    wave = np.linalg.lstsq(_waves(uv, chart.radius), out[:, 0] ** -2.0, rcond=None)[0]
+    wave = np.asarray(np.linalg.lstsq(_waves(uv, chart.radius), out[:, 0] ** -2.0, rcond=None)[0], np.float64)
     rest = out - _oval(uv, chart.radius, wave)[:, None]
     return Wall(chart.radius, wave, RBFInterpolator(uv, rest, smoothing=STIFF))
 
