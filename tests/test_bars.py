@@ -256,7 +256,7 @@ def test_the_strip_says_the_verdict(strip: Strip, qtbot: QtBot) -> None:
     qtbot.waitUntil(lambda: strip.chip.state() == "vibrating")
     said = [label.text() for label in strip.findChildren(QLabel) if label.isVisible()]
     assert {"0.9 s", "Volume error", "0.1 %"} <= set(said)
-    assert set(TONES) == {*STATES, "stale", "paused"}
+    assert set(TONES) == {*STATES, "strained", "stale", "paused"}
 
 
 def test_the_strip_says_what_to_do_about_a_fold(strip: Strip) -> None:

@@ -14,8 +14,8 @@ from PySide6.QtWidgets import QApplication, QLabel, QPushButton
 from pytestqt.qtbot import QtBot
 
 from app.dress.theme import apply_theme
+from app.panels.length_groove import LONGEST, SHORTEST, Feasible
 from app.panels.length_slider import LengthSlider
-from app.panels.length_groove import Feasible
 from app.panels.line_row import LineView
 from app.panels.lines import LinesPanel
 from app.wording.words import use_language
@@ -153,7 +153,13 @@ def test_a_length_beyond_the_slider_can_be_typed(lines: LinesPanel, qtbot: QtBot
         QTest.keyClick(row.percent, Qt.Key.Key_Return)
     assert said.args == ["waist", pytest.approx(0.6)]
     lines.set_lines([replace(WAIST, ratio=0.6), RIBS])
-    assert (row.percent.text(), row.slider.ratio()) == ("60.0", 0.8)
+    slider = row.slider
+    assert (row.percent.text(), slider.ratio()) == ("60.0", 0.6)
+    assert slider._x_of(0.6) > slider._x_of(slider._ends[0]), (
+        "it does not stand at the end as if that were it"
+    )
+    lines.set_lines([replace(WAIST, ratio=0.95), RIBS])
+    assert (slider.ratio(), slider._ends) == (0.95, (SHORTEST, LONGEST))
 
 
 def test_nonsense_is_marked_and_not_committed(lines: LinesPanel, qtbot: QtBot) -> None:

@@ -147,9 +147,7 @@ class VariantDesk(QObject):
 
     def _show_way(self) -> None:
         """Light what puts variants side by side as long as they are."""
-        beside = self._window.view.beside.way == "variants"
-        self.beside.setChecked(beside)
-        self._window.variants.set_beside(beside)
+        self.beside.setChecked(self._window.view.beside.way == "variants")
 
     def _others(self) -> dict[str, Design]:
         document = self._session.document

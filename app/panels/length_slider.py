@@ -42,7 +42,8 @@ _SMALLEST_WEDGE = 0.0005  # a reached length nearer to the set one shows no wedg
 class LengthSlider(QAbstractSlider):
     """A slider from 80 to 112 % with a wedge under the groove at the reached length.
 
-    It is wider where a length beyond these was typed. The groove shows how short the line may become; a hand meets resistance where that ends.
+    It is wider where a length beyond these was typed. The groove shows how short the line may become; a hand
+    meets resistance where that ends.
 
     ``previewed`` (share of the rest length) while the handle is dragged; ``committed`` once on release or at
     a key; ``cancelled`` when Esc ends a drag and the old value is back.

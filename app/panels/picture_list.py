@@ -154,9 +154,8 @@ class PictureRowPainter(RowPainter):
             place = QRectF(left, area.top() + 7 + 19 * line, room, 19)
             if line == 1 and view.mark is not None:
                 tone, drawing = view.mark
-                token = "text_quiet" if tone == "plain" else tone
-                spot = QRectF(left, place.center().y() - 7, 14, 14)
-                paint_icon(painter, drawing, getattr(tokens, token), spot)
+                ink = getattr(tokens, "text_quiet" if tone == "plain" else tone)
+                paint_icon(painter, drawing, ink, QRectF(left, place.center().y() - 7, 14, 14))
                 place.setLeft(left + 19)
             self.write(painter, place, text, role, token)
 

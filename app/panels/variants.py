@@ -85,7 +85,6 @@ class VariantsPanel(QWidget):
         row = QHBoxLayout(self._buttons)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(6)
-        presses = []
         for text, tip, signal in (
             (
                 tr("Side by side"),
@@ -99,9 +98,6 @@ class VariantsPanel(QWidget):
             press.setToolTip(tip)
             press.clicked.connect(signal)
             row.addWidget(press)
-            presses.append(press)
-        self._beside = presses[0]
-        self._beside.setCheckable(True)
         row.addStretch(1)
         column.addWidget(self._buttons)
         column.addStretch(0)
@@ -118,10 +114,6 @@ class VariantsPanel(QWidget):
             self._note.setText(
                 tr("Small figures with a sign: the difference to {name}.").format(name=view.names[0])
             )
-
-    def set_beside(self, beside: bool) -> None:
-        """Show whether the bodies of the variants stand side by side."""
-        self._beside.setChecked(beside)
 
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from app.panels.legend import MapKind
-from app.seeing.paint import Ramp
 from app.presenting.bust import BustMove, BustStep, bust_sentence, forward_words, step_words
+from app.seeing.paint import Ramp
 from app.wording.tokens import MAP_AMOUNT, MAP_LESS, MAP_MORE
 from app.wording.words import tr
 from core.mesh import Floats
@@ -107,7 +107,7 @@ def section_words(axis: str, side: str, move: BustMove) -> str:
 
 
 def sides_words(axis: str, pairs: Sequence[tuple[Floats, Floats]]) -> str:
-    """Return how far the foremost places of two sides are apart, in words; each pair is (other, this) [mm]."""
+    """Return how far the foremost places of two sides are apart, in words; a pair is (other, this) [mm]."""
     steps = [this - other for other, this in pairs]
     if axis == "x" and len(steps) == 1:
         way = step_words(BustStep(float(steps[0][1]), float(steps[0][0])))

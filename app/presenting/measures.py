@@ -57,7 +57,7 @@ def _volume_rows(frame: Frame) -> Iterator[MeasureView]:
     volume = frame.stages.model.volume.rest_volume / 1000.0
     # The body has no volume of its own there: what its skin gains is counted from the same rest volume.
     skin = frame.stages.moving.volume_change(frame.points) / 1000.0
-    part = tr("of the reshaped part, to a fan behind it")
+    part = tr("inside the reshaped part, closed behind")
     yield MeasureView(tr("Volume of the model"), "ml", volume, volume + frame.error_ml, part)
     yield MeasureView(tr("Volume under the skin"), "ml", volume, volume + skin, part)
 

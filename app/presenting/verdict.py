@@ -46,12 +46,17 @@ def is_result(frame: Frame) -> bool:
 def kept_volume(frame: Frame) -> tuple[float, float]:
     """Return how far the volume that is kept is from the one at rest, of that of the control mesh [%, ml].
 
-    It is the body's own where the exact answer keeps that, else that of the control mesh.
+    It is the body's own where the exact answer keeps that, else that of the control mesh; while it swings,
+    the mean of its swing.
     """
-    design = frame.stages.design
-    own = design.dense_volume and design.volume == "exact"
-    error = frame.stages.moving.volume_change(frame.points) / 1000.0 if own else frame.error_ml
-    return 1e5 * error / frame.stages.model.volume.rest_volume, error
+    design, rest = frame.stages.design, frame.stages.model.volume.rest_volume / 1000.0
+    if frame.verdict.state == "vibrating":
+        error = frame.verdict.error * rest
+    elif design.dense_volume and design.volume == "exact":
+        error = frame.stages.moving.volume_change(frame.points) / 1000.0
+    else:
+        error = frame.error_ml
+    return 100.0 * error / rest, error
 
 
 def strip_verdict(frame: Frame) -> StripVerdict:

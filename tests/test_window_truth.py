@@ -1,0 +1,211 @@
+"""What the window says of a result, through the real main(): one number everywhere, and one word."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QGuiApplication
+from PySide6.QtTest import QTest
+from window_tools import Script, run_main, settled, undrawn
+
+import app.keeping.tables
+from app.main_window import MainWindow
+from app.panels.picture_list import VIEW, PictureRow
+from core.frame import Frame
+from core.solving.condition import CALM_RANGE
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+def frame_of(window: MainWindow) -> Frame:
+    frame = window.session.frame
+    assert frame is not None
+    return frame
+
+
+def strip_says(window: MainWindow) -> dict[str, str]:
+    window.desk.plot_now()
+    return {name.text(): value.text() for name, value in window.strip._pairs if name.text()}
+
+
+def kept(window: MainWindow, place: int = 0) -> PictureRow:
+    row = window.history.snapshots.item(place).data(VIEW)
+    assert isinstance(row, PictureRow)
+    return row
+
+
+def title_of_b(window: MainWindow) -> list[str]:
+    return window.view.panes.titles[1].text.split("\n")
+
+
+def test_the_whole_window_tells_one_lift_that_of_the_bust_points() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.variant_desk.choose("B")
+        window.lines_desk.commit_length("mid-bust", 0.9)
+        yield settled(window)
+        now, rest = frame_of(window).marks, frame_of(window).stages.rest_marks
+        up = 0.5 * (now.nipple_left_z - rest.nipple_left_z + now.nipple_right_z - rest.nipple_right_z)
+        forward = 0.5 * (now.nipple_left_out - rest.nipple_left_out)
+        forward += 0.5 * (now.nipple_right_out - rest.nipple_right_out)
+        assert now.apex_z - rest.apex_z > up + 3.0, "the foremost place wandered up: that is no lift"
+        said = f"{up:.1f} mm up, {-forward:.1f} mm back"
+        assert strip_says(window)["Bust point"] == said
+        (main,) = (each for each in window.strip.height_plot.canvas.plotted.curves if each.role == "main")
+        assert window.strip.height_plot.title.accessibleName() == "Bust point height mm"
+        assert main.values[-1] == up
+        window.desk.go_to("result")
+        height, forth = (row_of(window, f"Bust point, {each}") for each in ("height", "forward"))
+        assert (height, forth) == (pytest.approx(up, abs=1e-9), pytest.approx(forward, abs=1e-9))
+        yield lambda: window.history.snapshots.count() == 1
+        assert kept(window).words[1] == f"Bust point {said}"
+        window.inspector.open("variants")
+        yield lambda: window.variants.view is not None and "" not in window.variants.view.states
+        table = {row.label: row.figures[0].values[1] for row in window.variants.view.rows}
+        assert (table["Bust point, up"], table["Bust point, forward"]) == (up, forward)
+        window.variant_desk.flip_side_by_side()
+        assert title_of_b(window) == [
+            "Variant B   Settled, strained",
+            f"Bust point {said}",
+            "Mid-bust 90.0 %",
+        ]
+        window.section_desk.set_on(True)
+        assert window.section_desk.panel.readout.text().startswith("Bust point left ")
+
+    run_main([], script)
+
+
+def row_of(window: MainWindow, label: str) -> float | None:
+    return next(row.change for row in window.result.rows if row.label == label)
+
+
+def test_a_settled_body_that_is_strained_says_so_in_one_voice() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        window.desk.plot_now()
+        assert window.rail.items["lines"].state() == "done"
+        window.lines_desk.commit_length("mid-bust", 0.9)
+        yield settled(window)
+        window.desk.plot_now()
+        condition = frame_of(window).verdict.condition
+        assert condition is not None
+        assert condition.shortest < CALM_RANGE[0]
+        yield lambda: window.strip.chip.state() == "strained"
+        assert window.strip._hint.text().endswith("Set Mid-bust longer.")
+        assert {window.rail.items[step].state() for step in ("lines", "result")} == {"look"}
+        assert window.status._facts.text().endswith("Settled, strained")
+        row = window.lines.rows["mid-bust"]
+        window.desk.select_line("mid-bust")
+        yield lambda: row.view.feasible is not None and not row.view.feasible.stale
+        assert row.view.feasible.tone(0.9) == "warn"
+        assert row.details._figures[0][3].property("tone") == "warn", "the gap is told as the groove is"
+        ratio = row.view.feasible.amber + 0.005
+        window.lines_desk.commit_length("mid-bust", ratio)
+        yield settled(window)
+        yield lambda: window.strip.chip.state() == "settled"
+        assert row.view.feasible.tone(ratio) == ""
+
+    run_main([], script)
+
+
+def test_a_run_that_never_rests_is_no_result_and_has_a_way_out() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.variant_desk.choose("B")
+        window.session.choose_control("conventional")
+        window.lines_desk.commit_length("mid-bust", 0.6)
+        yield settled(window)
+        assert frame_of(window).verdict.state == "vibrating"
+        notice = window.notices.notice()
+        assert notice is not None
+        assert "swings by ±3.7 mm" in notice.sentence
+        assert strip_says(window)["Bust point"].endswith(" ± 3.7 mm")
+        assert window.rail.items["result"].state() == "look"
+        window.inspector.open("variants")
+        yield lambda: window.variants.view is not None and "" not in window.variants.view.states
+        table = {row.label: row.figures[0].values for row in window.variants.view.rows}
+        assert table["Bust point, up"][0] is not None
+        assert table["Bust point, up"][1] is None
+        window.variant_desk.flip_side_by_side()
+        assert title_of_b(window) == ["Variant B   Vibrating", "Mid-bust 60.0 %"]
+        window.desk.go_to("result")
+        assert "no result" in window.result.doubt
+        yield lambda: window.history.snapshots.count() >= 1
+        assert kept(window).words == ("Vibrating", "No result to sew for")
+        assert kept(window).mark == ("warn", "wave")
+
+        (button,) = window.notices._buttons
+        assert button.text() == "Use Adaptive"
+        button.click()
+        yield settled(window)
+        assert frame_of(window).verdict.motion == "settled"
+        assert window.notices.notice() is None
+        assert window.session.undo_stack.undoText() == "Volume control: Adaptive"
+        window.actions_.undo.trigger()
+        yield settled(window)
+        assert frame_of(window).verdict.state == "vibrating"
+        assert window.notices.notice() is not None, "it is told again"
+
+    run_main([], script)
+
+
+def test_the_same_key_puts_variants_side_by_side_and_back() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.activateWindow()
+        yield window.isActiveWindow
+        flip, button = window.variant_desk.beside, window.variant_desk._button
+        assert not button.isVisible(), "there is one variant"
+        window.variant_desk.choose("B")
+        yield settled(window)
+        assert button.isVisible()
+        keys = Qt.Key.Key_V, Qt.KeyboardModifier.ShiftModifier
+        QTest.keyClick(window, *keys)
+        yield lambda: window.view.beside.way == "variants"
+        assert flip.isChecked()
+        QTest.keyClick(window, *keys)
+        assert window.view.beside.way == "after"
+        assert not flip.isChecked()
+        button.click()
+        assert window.view.beside.way == "variants", "the variants are known: they come at once"
+        window.view.compare_by("wipe")
+        assert not flip.isChecked()
+
+    run_main([], script)
+
+
+def test_measures_say_from_where_they_count_and_leave_as_a_table(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "measures.csv"
+    monkeypatch.setattr(app.keeping.tables, "ask_save", lambda *_: str(path))
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.desk.go_to("result")
+        body, marks = frame_of(window).stages.body.mesh.vertices, frame_of(window).stages.rest_marks
+        rows = {row.label: row for row in window.result.rows}
+        assert all(row.reference for row in rows.values())
+        above = rows["Bust point left, height"]
+        assert above.before == pytest.approx(marks.nipple_left_z - body[:, 2].min())
+        line = frame_of(window).stages.model.lines[1]
+        whole = rows["Mid-bust, whole band"]
+        assert (line.name, whole.before) == ("mid-bust", pytest.approx(line.whole_length))
+        assert whole.change == pytest.approx(frame_of(window).lengths["mid-bust"] - line.rest_length)
+        window.result.table_asked.emit()
+        heading, *table = csv.reader(path.read_text(encoding="utf-8-sig").splitlines())
+        assert heading == ["Measure", "Counted from", "Unit", "Before", "After", "Change"]
+        assert [row[0] for row in table] == list(rows)
+        cells = table[list(rows).index("Mid-bust, whole band")]
+        assert cells[2:] == ["mm", *(f"{each:.1f}" for each in (whole.before, whole.after, whole.change))]
+        window.result.copy_asked.emit()
+        assert "\t".join(cells) + "\n" in QGuiApplication.clipboard().text()
+
+    run_main([], script)
