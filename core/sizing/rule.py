@@ -2,7 +2,34 @@
 
 from __future__ import annotations
 
-from core.sizing.table import BAND, Scale, SizeTable, Step
+from typing import NamedTuple
+
+from core.sizing.table import BAND, UNDERBUST, Scale, SizeTable
+
+
+class _Words(NamedTuple):
+    inside: str
+    below: str
+    above: str
+
+
+_BAND_WORDS = _Words(
+    "Under-bust {} gives band {} ({} to {}).",
+    "Under-bust {} lies below the smallest band, {}, which begins at {}.",
+    "Under-bust {} lies above the largest band, {}, which ends at {}.",
+)
+_CUP_WORDS = {
+    UNDERBUST: _Words(
+        "Bust less under-bust {} gives cup {} ({} to {}).",
+        "Bust less under-bust {} lies below the smallest cup, {}, which begins at {}.",
+        "Bust less under-bust {} lies above the largest cup, {}, which ends at {}.",
+    ),
+    BAND: _Words(
+        "Bust less band {} gives cup {} ({} to {}).",
+        "Bust less band {} lies below the smallest cup, {}, which begins at {}.",
+        "Bust less band {} lies above the largest cup, {}, which ends at {}.",
+    ),
+}
 
 
 def plain(value: float) -> str:
@@ -12,54 +39,32 @@ def plain(value: float) -> str:
 
 def allowance_sentence(table: SizeTable, underbust: float, allowance: float) -> str:
     """Say what is taken off the under-bust girth for a tape that is worn tight; both [unit of the table]."""
-    girth, taken, left = plain(underbust), plain(allowance), plain(underbust - allowance)
-    unit = table.unit
-    return f"Under-bust {girth} {unit} less {taken} {unit} for a tape that is worn tight: {left} {unit}."
+    told = (f"{plain(value)} {table.unit}" for value in (underbust, allowance, underbust - allowance))
+    return "Under-bust {} less {} for a tape that is worn tight: {}.".format(*told)
 
 
 def band_sentences(table: SizeTable, value: float) -> tuple[str, ...]:
     """Say which band an under-bust girth [unit of the table] gives, and why."""
-    scale, told = table.bands, f"{plain(value)} {table.unit}"
-    place = scale.place(value)
-    step = scale.step(place)
-    if step is not None:
-        low, high = _range(scale, place, value)
-        named = f"Under-bust {told} gives band {step.name} ({low} to {high})."
-        return (named, *_gap(step, value))
-    if place < 0:
-        name, low = scale.steps[0].name, plain(scale.borders[0])
-        return (f"Under-bust {told} lies below the smallest band, {name}, which begins at {low}.",)
-    name, high = scale.steps[-1].name, plain(scale.borders[-1])
-    return (f"Under-bust {told} lies above the largest band, {name}, which ends at {high}.",)
+    return _sentences(_BAND_WORDS, table.bands, value, table.unit)
 
 
 def cup_sentences(table: SizeTable, value: float) -> tuple[str, ...]:
     """Say which cup a difference of girths [unit of the table] gives, and why."""
-    scale, told = table.cups, f"{plain(value)} {table.unit}"
-    what = "Bust less band" if table.cup_from == BAND else "Bust less under-bust"
-    place = scale.place(value)
+    return _sentences(_CUP_WORDS[table.cup_from], table.cups, value, table.unit)
+
+
+def _sentences(words: _Words, scale: Scale, value: float, unit: str) -> tuple[str, ...]:
+    place, told = scale.place(value), f"{plain(value)} {unit}"
     step = scale.step(place)
-    if step is not None:
-        low, high = _range(scale, place, value)
-        return (f"{what} {told} gives cup {step.name} ({low} to {high}).", *_gap(step, value))
-    if place < 0:
-        name, low = scale.steps[0].name, plain(scale.borders[0])
-        return (f"{what} {told} lies below the smallest cup, {name}, which begins at {low}.",)
-    name, high = scale.steps[-1].name, plain(scale.borders[-1])
-    return (f"{what} {told} lies above the largest cup, {name}, which ends at {high}.",)
-
-
-def _range(scale: Scale, place: int, value: float) -> tuple[str, str]:
-    """Return the range to show: that of the source, or where the value lies in a gap, that with the gaps."""
-    step = scale.steps[place]
-    low, high = (step.least, step.most) if step.says(value) else scale.ends(place)
-    return plain(low), plain(high)
-
-
-def _gap(step: Step, value: float) -> tuple[str, ...]:
+    if step is None:
+        if place < 0:
+            return (words.below.format(told, scale.steps[0].name, plain(scale.borders[0])),)
+        return (words.above.format(told, scale.steps[-1].name, plain(scale.borders[-1])),)
+    least, most = plain(step.least), plain(step.most)
     if step.says(value):
-        return ()
+        return (words.inside.format(told, step.name, least, most),)
+    nearest = words.inside.format(told, step.name, *map(plain, scale.ends(place)))
     rest = "what lies between two steps goes to the nearest."
     if step.least == step.most:
-        return (f"The table itself names {plain(step.middle)} for {step.name}; {rest}",)
-    return (f"The table itself names {plain(step.least)} to {plain(step.most)} for {step.name}; {rest}",)
+        return nearest, f"The table itself names {least} for {step.name}; {rest}"
+    return nearest, f"The table itself names {least} to {most} for {step.name}; {rest}"
