@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from core.body import Body
-from core.finding.bust_point import ACROSS
+from core.finding.bust_point import ACROSS, NIPPLE
 from core.landmark import CERTAIN, SIDES, Landmarks
 
 ESSENTIAL = ("bust_point", "fold")
@@ -18,9 +18,23 @@ def doubts(body: Body, landmarks: Landmarks) -> list[str]:
 
 def landmark_doubts(landmarks: Landmarks) -> list[str]:
     """Return what should be looked at on the landmarks alone; a side without a breast is named once."""
+    said = [sentence for kind in ESSENTIAL for sentence in _doubt(kind, _untold(landmarks, kind), landmarks)]
+    return [*said, *landmarks.warnings]
+
+
+def first_doubt(landmarks: Landmarks) -> str:
+    """Return the name of the landmark that the first sentence of ``landmark_doubts`` speaks of, or of the
+    least sure one.
+    """
+    weak = [f"{kind}_{side}" for kind in ESSENTIAL for side in _untold(landmarks, kind)]
+    names = [f"{kind}_{side}" for kind in ESSENTIAL for side in SIDES]
+    return weak[0] if weak else min(names, key=lambda name: landmarks.points[name].confidence)
+
+
+def _untold(landmarks: Landmarks, kind: str) -> list[str]:
+    """Return the weak sides of a landmark, but for sides without a breast, of which a warning tells."""
     told = [side for side in SIDES if landmarks.points[f"bust_point_{side}"].rule == ACROSS]
-    weak = {kind: [side for side in weak_sides(landmarks, kind) if side not in told] for kind in ESSENTIAL}
-    return [sentence for kind in ESSENTIAL for sentence in _doubt(kind, weak[kind])] + [*landmarks.warnings]
+    return [side for side in weak_sides(landmarks, kind) if side not in told]
 
 
 def weak_sides(landmarks: Landmarks, kind: str) -> list[str]:
@@ -29,14 +43,19 @@ def weak_sides(landmarks: Landmarks, kind: str) -> list[str]:
     return [side for side, mark in found.items() if mark and not mark.by_hand and mark.confidence < CERTAIN]
 
 
-def _doubt(kind: str, sides: list[str]) -> list[str]:
+def _doubt(kind: str, sides: list[str], landmarks: Landmarks) -> list[str]:
     if not sides:
         return []
-    both = len(sides) == 2
     if kind == "fold":
-        if both:
-            return ["The folds under both breasts could not be seen clearly: please check them."]
-        return [f"The fold under the {sides[0]} breast could not be seen clearly: please check it."]
-    if both:
-        return ["No nipple stands out clearly: the bust points follow the shape of the breasts."]
-    return [f"No nipple stands out clearly on the {sides[0]} breast: please check its bust point."]
+        one = f"The fold under the {sides[0]} breast could not be seen clearly: please check it."
+        two = "The folds under both breasts could not be seen clearly: please check them."
+        return [two if len(sides) == 2 else one]
+    shown = [side for side in sides if landmarks.points[f"bust_point_{side}"].rule == NIPPLE]
+    if shown:
+        one = f"The nipple of the {shown[0]} breast is not clearly seen: please check its bust point."
+        two = "The nipples are not clearly seen: please check both bust points."
+        rest = _doubt(kind, [side for side in sides if side not in shown], landmarks)
+        return [two if len(shown) == 2 else one, *rest]
+    one = f"No nipple stands out clearly on the {sides[0]} breast: please check its bust point."
+    two = "No nipple stands out clearly: the bust points follow the shape of the breasts."
+    return [two if len(sides) == 2 else one]

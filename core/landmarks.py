@@ -17,7 +17,7 @@ from core.finding.trunk_marks import trunk_marks
 from core.finding.under_breast import ABOVE, folds_and_lowest
 from core.landmark import SIDES, Landmark, Landmarks
 from core.mesh import Mesh, Points
-from core.placing import laid_on
+from core.placing import held_against, laid_on
 from core.trunk import survey
 
 NOTHING: Mapping[str, Points] = MappingProxyType({})
@@ -44,7 +44,8 @@ def find_landmarks(body: Body, placed: Mapping[str, Points] = NOTHING) -> Landma
         poles = find_poles(trunk, anchor)
         flat = missing_sides(poles, anchor.lone)
         missing = [side for side in flat if f"bust_point_{side}" not in by_hand]
-        busts = [by_hand.get(mark.name, mark) for mark in bust_points(calm, poles, trunk.middle, flat)]
+        seen = bust_points(calm, poles, trunk.middle, flat)
+        busts = [held_against(by_hand.get(mark.name), mark) for mark in seen]
         marks = busts + folds_and_lowest(calm, busts, anchor.z, by_hand)
         found = _levels(calm, marks, by_hand, missing)
         warnings = check(calm, trunk, poles, missing, found)
@@ -52,7 +53,8 @@ def find_landmarks(body: Body, placed: Mapping[str, Points] = NOTHING) -> Landma
         mark.name: mark if mark.name.startswith("front_centre") else _less(mark, UNMEASURED)
         for mark in (*trunk_marks(calm, found), *root_marks(calm, found))
     }
-    points = MappingProxyType({**found.points, **further, **by_hand})
+    further = {name: held_against(by_hand.get(name), mark) for name, mark in further.items()}
+    points = MappingProxyType({**by_hand, **further, **found.points})
     warnings = (*[BURIED] * (BURIED in body.repairs), *warnings)
     warnings = (*warnings, *placed_warnings(found), *coarse_warning(_spacing(calm, found.points)))
     return Landmarks(points, found.bust_level, found.underbust_level, warnings)
@@ -73,8 +75,8 @@ def _levels(
     """Return the landmarks with the levels of the sides that have a breast; others are unsure."""
     sure = trust(_spacing(mesh, {mark.name: mark for mark in marks}))
     found = {
-        mark.name: by_hand.get(
-            mark.name, _less(mark, sure * (0.3 if mark.name.endswith(tuple(missing)) else 1.0))
+        mark.name: held_against(
+            by_hand.get(mark.name), _less(mark, sure * (0.3 if mark.name.endswith(tuple(missing)) else 1.0))
         )
         for mark in marks
     }

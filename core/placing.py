@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from core.errors import LandmarkError
-from core.landmark import NAMES, Landmark
+from core.landmark import CERTAIN, NAMES, Landmark
 from core.mesh import FARTHEST, Floats, Mesh, Points
 from core.proximity import nearest_on
 
@@ -20,6 +20,9 @@ HELP = (
 """What a user has to know to place a landmark."""
 
 PLACED = "Placed by hand."
+
+ASTRAY = 15.0
+"""So far from where a rule that is sure of itself finds it [mm], a placed landmark contradicts the rule."""
 
 REACH = 30.0
 """A placed point may lie so far off the skin [mm]."""
@@ -76,6 +79,18 @@ def laid_on(mesh: Mesh, placed: Mapping[str, Points]) -> dict[str, Landmark]:
     Raises LandmarkError for a name that no landmark has, and for a place that is not near the skin.
     """
     return {name: _laid(mesh, name, np.asarray(place, dtype=np.float64)) for name, place in placed.items()}
+
+
+def held_against(placed: Landmark | None, found: Landmark) -> Landmark:
+    """Return a landmark ``placed`` by hand, with how far it is off what its rule ``found``, which stands if
+    none was placed.
+    """
+    if placed is None or found.by_hand:
+        return found
+    off = float(np.linalg.norm(placed.position - found.position))
+    if off < ASTRAY or found.confidence < CERTAIN:
+        return placed
+    return replace(placed, off=off, rule=f"Placed by hand, {off:.0f} mm from where the rule finds it.")
 
 
 def nearest_skin(mesh: Mesh, point: Points) -> Points:

@@ -32,7 +32,7 @@ def overlay(qtbot: QtBot) -> Iterator[Overlay]:
 
 def crowd() -> list[Pin]:
     places = [np.array([side * 60.0, -130.0, z]) for side in (-1, 1) for z in (0.0, 4.0, 8.0)]
-    return [Pin(str(i), "Lowest point", place, 0.9) for i, place in enumerate(places)]
+    return [Pin(str(i), "Lowest point", place, "ok", "90 %") for i, place in enumerate(places)]
 
 
 @pytest.mark.parametrize("view", [View(), View(distance=300.0), View(focus=(0.0, 0.0, 300.0))])

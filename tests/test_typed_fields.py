@@ -12,6 +12,8 @@ from app.panels.line_parts import StiffnessField
 from app.panels.number_field import NumberField
 from app.panels.typed_field import Refusal
 
+pytestmark = pytest.mark.usefixtures("qapp")
+
 
 @pytest.mark.parametrize(
     ("text", "unit", "ratio"),
@@ -72,12 +74,12 @@ def test_a_refusal_says_under_the_field_what_can_be_typed_and_goes_with_the_next
 
 
 @pytest.mark.parametrize("text", ["soft", "0.001", "1e9"])
-def test_a_stiffness_that_cannot_be_names_its_range(qapp: object, text: str) -> None:
+def test_a_stiffness_that_cannot_be_names_its_range(text: str) -> None:
     with pytest.raises(ValueError, match="A stiffness goes from"):
         StiffnessField()._read(text)
 
 
-def test_fields_of_several_lines_are_told_apart_by_ear(qapp: object) -> None:
+def test_fields_of_several_lines_are_told_apart_by_ear() -> None:
     field, stiffness = number_field("mm"), StiffnessField()
     stiffness.name_line("Waist")
     assert field.accessibleName() == "Waist: length in millimetres"

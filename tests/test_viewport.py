@@ -233,7 +233,7 @@ def test_the_label_of_a_line_is_drawn_and_goes(view: Viewport) -> None:
 
 def test_a_pin_behind_the_body_is_hollow(view: Viewport) -> None:
     front, back = np.array([70.0, -RADIUS, 60.0]), np.array([-70.0, RADIUS, 60.0])
-    view.set_pins([Pin("front", "Front", front, 0.9), Pin("back", "Back", back, 0.5)])
+    view.set_pins([Pin("front", "Front", front, "ok", "90 %"), Pin("back", "Back", back, "ok", "50 %")])
     image = pixels(view.picture())
 
     def heart(place: np.ndarray) -> np.ndarray:
@@ -246,7 +246,7 @@ def test_a_pin_behind_the_body_is_hollow(view: Viewport) -> None:
 
 def test_a_dragged_pin_stays_on_the_skin(view: Viewport, qtbot: QtBot) -> None:
     place = np.array([40.0, -np.sqrt(RADIUS**2 - 40.0**2 - 60.0**2), 60.0])
-    view.set_pins([Pin("bust", "Bust point", place, 0.9)])
+    view.set_pins([Pin("bust", "Bust point", place, "ok", "90 %")])
     x, y, _ = view.scene.view.to_picture(place, 360, 270)[0]
     heard: list[tuple[str, np.ndarray]] = []
     view.pin_moved.connect(lambda name, skin: heard.append((name, skin)))

@@ -146,9 +146,9 @@ def test_what_is_amber_is_counted_and_can_be_confirmed(empty_house: None, qtbot:
     panel.confirmed.connect(heard.append)
     panel.select("side_left")
     assert panel.right.isHidden()
-    assert panel.rows["side_left"]._tone() == "control", "nothing hangs on it"
+    assert panel.rows["side_left"].view.tone == "control", "nothing hangs on it"
     panel.select("fold_left")
-    assert panel.rows["fold_left"]._tone() == "warn"
+    assert panel.rows["fold_left"].view.tone == "warn"
     assert panel._doubts._count.text() == "To look at: 1"
     assert "drawn on the body" in panel.rows["fold_left"].toolTip()
     panel.right.click()

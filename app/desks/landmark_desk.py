@@ -11,11 +11,11 @@ from PySide6.QtGui import QCursor, QKeyEvent
 from PySide6.QtWidgets import QToolTip
 
 from app.dress.theme import tone_of
-from app.presenting.scan import kind_of, landmark_title, landmark_views, other_side
+from app.presenting.scan import kind_of, landmark_title, landmark_views, other_side, spot_of
 from app.wording.words import say, tr
 from core.body import Body
 from core.design import Design
-from core.doubts import ESSENTIAL, landmark_doubts
+from core.doubts import ESSENTIAL, first_doubt, landmark_doubts
 from core.live import Frame
 from core.mesh import Points
 from core.pipeline import Stages, StuckError
@@ -77,7 +77,7 @@ class LandmarkDesk(QObject):
     def show_found(self, stages: Stages) -> None:
         """Show what was found on a body."""
         window, said = self._window, landmark_doubts(stages.landmarks)
-        views = landmark_views(stages.landmarks.points)
+        views = landmark_views(stages.landmarks.points, window.view.pins.accepted)
         window.landmarks.set_landmarks(views, said)
         weak = sum(view.weak for view in views)
         window.rail.set_state("landmarks", "look" if weak or said else "done", weak)
@@ -90,7 +90,8 @@ class LandmarkDesk(QObject):
         worst = min(marks, key=lambda mark: mark.confidence)
         if tone_of(worst.confidence) == "bad" or stages.landmarks.warnings:
             said, *more = landmark_doubts(stages.landmarks)
-            look = (tr("Look at it"), lambda: self._look_at(worst.name))
+            spoken_of = first_doubt(stages.landmarks)
+            look = (tr("Look at it"), lambda: self._look_at(spoken_of))
             self._window.notices.show_notice("warn", said, " ".join(map(say, more)), [look], lasting=True)
 
     def show_stuck(self, stuck: StuckError) -> None:
@@ -191,9 +192,19 @@ class LandmarkDesk(QObject):
         self._window.view.viewport.setFocus()
 
     def confirm(self, names: Sequence[str]) -> None:
-        """Keep landmarks where they were found: the designer has looked at them."""
+        """Keep landmarks where they are: the designer has looked at them.
+
+        What a hand placed is kept already; that it contradicts its rule is not said again in this window.
+        """
         frame = self._session.frame
         if frame is None or self._session.design is None:
+            return
+        marks = frame.stages.landmarks.points
+        self._window.view.pins.accepted.update(spot_of(marks[name]) for name in names if marks[name].by_hand)
+        names = [name for name in names if not marks[name].by_hand]
+        if not names:
+            self.show_found(frame.stages)
+            self._window.view.pins.set_landmarks(dict(marks))
             return
         self._carried = {name: frame.stages.landmarks.position(name) for name in names}
         after, self._carried = self._placed(self._session.design), {}

@@ -6,7 +6,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QEnterEvent, QPainter, QPaintEvent, QPen
+from PySide6.QtGui import (
+    QColor,
+    QEnterEvent,
+    QFocusEvent,
+    QFontMetrics,
+    QKeyEvent,
+    QPainter,
+    QPaintEvent,
+    QPen,
+)
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
 from app.dress.parts import paint_card
@@ -19,7 +28,8 @@ class LandmarkView:
     """What is shown of a landmark; ``confidence`` 0..1, ``group`` bust, under or further.
 
     ``absent``: it was not found, and can be placed. ``weak``: the control mesh hangs on it and it could
-    hardly be seen. ``traced``: it was read from a curve on the skin.
+    hardly be seen, or a hand has put it ``off_mm`` from where its rule surely finds it. ``traced``: it was
+    read from a curve on the skin. List, pins and step have ``tone`` and ``state`` from here alone.
     """
 
     name: str
@@ -31,17 +41,42 @@ class LandmarkView:
     absent: bool = False
     weak: bool = False
     traced: bool = False
+    off_mm: float = 0.0
+
+    @property
+    def tone(self) -> str:
+        """The token of its colour: amber and red are for what wants a look, and for nothing else."""
+        if self.by_hand:
+            return "warn" if self.weak else "accent"
+        tone = tone_of(self.confidence)
+        return "control" if self.absent or not (self.weak or tone == "ok") else tone
+
+    @property
+    def state(self) -> str:
+        """How it came to be there, or how sure it is, in a word or two."""
+        if self.absent:
+            return tr("not found")
+        if self.by_hand:
+            off = tr("by hand, {mm} mm off").format(mm=f"{self.off_mm:.0f}")
+            return off if self.off_mm else tr("by hand")
+        return f"{self.confidence * 100:.0f} %"
 
     def words(self) -> str:
-        """Return the rule that it was found by, and what it was read from."""
+        """Return the rule that it was found by, what it was read from, and why it is grey if it is."""
         read = tr("The curve that it was read from is drawn on the body.")
-        return f"{say(self.rule)}\n{read}" if self.traced else say(self.rule)
+        grey = tr("Not certain, and grey: the model does not hang on it.")
+        unsure = self.tone == "control" and not self.absent
+        return "\n".join([say(self.rule), *[read] * self.traced, *[grey] * unsure])
 
 
 class LandmarkRow(QAbstractButton):
-    """A landmark: dot, name, bar and percent of confidence; ``hovered`` while the pointer is over it."""
+    """A landmark: dot, name, bar and percent of confidence; ``hovered`` while the pointer is over it.
+
+    ``reached`` when the keyboard comes to it. Arrows and Enter are left to the list.
+    """
 
     hovered = Signal(bool)
+    reached = Signal()
 
     def __init__(self, view: LandmarkView) -> None:
         super().__init__()
@@ -63,11 +98,22 @@ class LandmarkRow(QAbstractButton):
         self.view = view
         self.setText(view.title)
         self.setToolTip(view.words())
-        self.setAccessibleName(f"{view.title} {self._words()}")
+        self.setAccessibleName(f"{view.title} {view.state}")
         self.update()
 
     def enterEvent(self, event: QEnterEvent) -> None:
         self.hovered.emit(True)
+
+    def focusInEvent(self, event: QFocusEvent) -> None:
+        super().focusInEvent(event)
+        if event.reason() in (Qt.FocusReason.TabFocusReason, Qt.FocusReason.BacktabFocusReason):
+            self.reached.emit()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.key() == Qt.Key.Key_Space:
+            super().keyPressEvent(event)
+        else:
+            event.ignore()
 
     def leaveEvent(self, event: QEvent) -> None:
         self.hovered.emit(False)
@@ -77,7 +123,7 @@ class LandmarkRow(QAbstractButton):
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         paint_card(painter, self, "selected", 7)
-        tone = getattr(tokens, self._tone())
+        tone, state = getattr(tokens, self.view.tone), self.view.state
         middle, right = self.height() / 2, self.width() - 10
         painter.setPen(QPen(QColor(tokens.text_caption if self.view.absent else tokens.raised), 1.5))
         painter.setBrush(Qt.BrushStyle.NoBrush if self.view.absent else QColor(tone))
@@ -85,14 +131,16 @@ class LandmarkRow(QAbstractButton):
         painter.setFont(font("name" if self.isChecked() else "body"))
         painter.setPen(QColor(tokens.text_quiet if self.view.absent else tokens.text))
         left = Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft
-        room = self.width() - 28 - (70 if self.view.by_hand else 90 if self.view.absent else 112)
+        plain = self.view.by_hand or self.view.absent
+        said = QFontMetrics(font("secondary", tabular=True)).horizontalAdvance(state)
+        room = self.width() - 28 - (said + 18 if plain else 112)
         title = painter.fontMetrics().elidedText(self.text(), Qt.TextElideMode.ElideRight, room)
         painter.drawText(QRectF(28, 0, room, self.height()), left, title)
         painter.setFont(font("secondary", tabular=True))
         painter.setPen(QColor(tokens.text if self.isChecked() else tokens.text_quiet))
         past = Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight
-        painter.drawText(QRectF(right - 110, 0, 110, self.height()), past, self._words())
-        if self.view.by_hand or self.view.absent:
+        painter.drawText(QRectF(right - 180, 0, 180, self.height()), past, state)
+        if plain:
             return
         painter.setPen(Qt.PenStyle.NoPen)
         bar = QRectF(right - 48 - 52, middle - 1.5, 52, 3)
@@ -101,15 +149,3 @@ class LandmarkRow(QAbstractButton):
         bar.setWidth(52 * min(max(self.view.confidence, 0.0), 1.0))
         painter.setBrush(QColor(tone))
         painter.drawRoundedRect(bar, 1.5, 1.5)
-
-    def _tone(self) -> str:
-        """Return the token of its colour: amber and red are for what wants a look, and for nothing else."""
-        if self.view.by_hand:
-            return "accent"
-        tone = tone_of(self.view.confidence)
-        return tone if self.view.weak or tone == "ok" else "control"
-
-    def _words(self) -> str:
-        if self.view.absent:
-            return tr("not found")
-        return tr("by hand") if self.view.by_hand else f"{self.view.confidence * 100:.0f} %"

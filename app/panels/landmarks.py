@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import QRectF, Qt, Signal
+from PySide6.QtCore import QElapsedTimer, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPaintEvent
-from PySide6.QtWidgets import QButtonGroup, QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QApplication, QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
 from app.dress.parts import Disclosure, EmptyState, ToolButton, button, hairline, sentence
 from app.dress.theme import label, tokens_of
@@ -22,6 +22,13 @@ def keys_in_words() -> list[tuple[str, str]]:
         ("Enter", tr("Move its pin by keys, then put it down")),
         ("← → ↑ ↓", tr("Move the pin by 1 mm, with Shift by 5 mm")),
     ]
+
+
+class _Area(QScrollArea):
+    """An area that leaves the keys to the list: arrows go from landmark to landmark."""
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        event.ignore()
 
 
 class LandmarksPanel(QWidget):
@@ -45,6 +52,7 @@ class LandmarksPanel(QWidget):
         super().__init__()
         self.rows: dict[str, LandmarkRow] = {}
         self._selected: str | None = None
+        self._answered = QElapsedTimer()
         column = QVBoxLayout(self)
         column.setContentsMargins(14, 14, 14, 14)
         column.setSpacing(2)
@@ -60,7 +68,6 @@ class LandmarksPanel(QWidget):
         column.addWidget(self._list(), 1)
         column.addWidget(self._foot())
         column.addStretch(0)
-        self._group = QButtonGroup(self)
         self.set_landmarks([])
 
     def _head(self) -> QHBoxLayout:
@@ -100,8 +107,9 @@ class LandmarksPanel(QWidget):
         disclosure.toggled.connect(self.further.setVisible)
         self.further.hide()
         column.addStretch(1)
-        self._area = QScrollArea()
+        self._area = _Area()
         self._area.setAccessibleName(tr("Landmarks"))
+        self._area.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # its rows take the keyboard
         self._area.setWidgetResizable(True)
         self._area.setFrameShape(QFrame.Shape.NoFrame)
         self._area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
@@ -119,11 +127,15 @@ class LandmarksPanel(QWidget):
         self.right.setToolTip(tr("Keep it where it was found, and ask no more"))
         self.reset, self.reset_all = button(tr("Find it again")), button(tr("Find all again"), "quiet")
         self.place.clicked.connect(lambda: self.place_asked.emit(self._selected))
-        self.right.clicked.connect(lambda: self.confirmed.emit((self._selected,)))
+        self.right.clicked.connect(self._confirm)
         self.reset.clicked.connect(lambda: self.reset_asked.emit((self._selected,)))
         self.reset_all.clicked.connect(lambda: self.reset_asked.emit(self._placed()))
+        # Each answer has a place of its own: none may lie where another was under the pointer a moment ago.
+        kept = self.right.sizePolicy()
+        kept.setRetainSizeWhenHidden(True)
+        self.right.setSizePolicy(kept)
         buttons = QHBoxLayout()
-        for each in (self.place, self.right, self.reset, self.reset_all):
+        for each in (self.place, self.right, self.reset):
             buttons.addWidget(each)
         buttons.addStretch(1)
         rule.addWidget(hairline())
@@ -132,6 +144,7 @@ class LandmarksPanel(QWidget):
             rule.addWidget(part)
         rule.addSpacing(4)
         rule.addLayout(buttons)
+        rule.addWidget(self.reset_all, alignment=Qt.AlignmentFlag.AlignLeft)
         return self._rule_box
 
     def set_landmarks(
@@ -183,7 +196,8 @@ class LandmarksPanel(QWidget):
     def keyPressEvent(self, event: QKeyEvent) -> None:
         step = {Qt.Key.Key_Up: -1, Qt.Key.Key_Down: 1}.get(Qt.Key(event.key()))
         names = [name for name, row in self.rows.items() if row.isVisible()]
-        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self._selected in names:
+        chosen = self.rows.get(self._selected or "")
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and chosen is not None and chosen.hasFocus():
             self.keys_asked.emit()
             return
         if step is None or not names:
@@ -191,9 +205,30 @@ class LandmarksPanel(QWidget):
             return
         here = names.index(self._selected) if self._selected in names else -1
         name = names[min(max(here + step, 0), len(names) - 1)]
+        self._reach(name)
         self.rows[name].setFocus(Qt.FocusReason.OtherFocusReason)
+
+    def _reach(self, name: str) -> None:
+        """Select the landmark that the keyboard has come to."""
         self._area.ensureWidgetVisible(self.rows[name])
-        self._choose(name)
+        if name != self._selected:
+            self._choose(name)
+
+    def _confirm(self) -> None:
+        """Say that the selected landmark is right, and go on to the next one that wants a look."""
+        name, rows = self._selected, list(self.rows)
+        # The second click of a double click would answer for the next landmark, unseen.
+        again = self._answered.isValid() and self._answered.elapsed() < QApplication.doubleClickInterval()
+        if name is None or again:
+            return
+        self._answered.start()
+        at = rows.index(name)
+        weak = [each for each in rows[at + 1 :] + rows[:at] if self.rows[each].view.weak]
+        self.confirmed.emit((name,))
+        if weak:
+            self._reach(weak[0])
+        elif self.right.hasFocus():
+            self.rows[name].setFocus(Qt.FocusReason.OtherFocusReason)
 
     def _placed(self) -> tuple[str, ...]:
         return tuple(name for name, row in self.rows.items() if row.view.by_hand)
@@ -208,10 +243,10 @@ class LandmarksPanel(QWidget):
             row.setParent(None)
             row.deleteLater()
         self.rows = {view.name: LandmarkRow(view) for view in landmarks}
-        self._group.setExclusive(False)
         for name, row in self.rows.items():
             self._groups[row.view.group].addWidget(row)
             row.clicked.connect(lambda _=False, chosen=name: self._choose(chosen))
+            row.reached.connect(lambda chosen=name: self._reach(chosen))
             row.hovered.connect(lambda over, name=name: self.hovered.emit(name if over else ""))
 
     def _choose(self, name: str) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 from app.panels.landmark_row import LandmarkView
 from app.panels.scan import ScanView
@@ -23,6 +23,15 @@ GROUPS = {
 
 PINNED = ("bust_point", "lowest", "fold")
 """The kinds of landmarks that always have a pin at the Landmarks step."""
+
+
+Spot = tuple[str, tuple[float, ...]]
+"""A landmark's name and where it lies, to a tenth of a millimetre."""
+
+
+def spot_of(mark: Landmark) -> Spot:
+    """Return by what a landmark is known again once all of them have been found anew."""
+    return mark.name, tuple(mark.position.round(1).tolist())
 
 
 def kind_of(name: str) -> str:
@@ -62,23 +71,28 @@ def other_side(name: str) -> str:
     return ""
 
 
-def landmark_views(points: Mapping[str, Landmark]) -> list[LandmarkView]:
-    """Return the rows of the list of landmarks, those of the bust first; the absent ones are among them."""
+def landmark_views(points: Mapping[str, Landmark], accepted: Collection[Spot] = ()) -> list[LandmarkView]:
+    """Return the rows of the list of landmarks, those of the bust first; the absent ones are among them.
+
+    What is ``accepted`` need not be looked at again.
+    """
     order = list(GROUPS)
     known = sorted(
         NAMES, key=lambda name: order.index(kind_of(name)) if kind_of(name) in order else len(order)
     )
-    return [_landmark_view(name, points.get(name)) for name in known]
+    return [landmark_view(name, points.get(name), accepted) for name in known]
 
 
-def _landmark_view(name: str, mark: Landmark | None) -> LandmarkView:
+def landmark_view(name: str, mark: Landmark | None, accepted: Collection[Spot] = ()) -> LandmarkView:
+    """Return what is shown of a landmark, ``mark`` if it was found: in the list and on its pin alike."""
     title, group = landmark_title(name), GROUPS.get(kind_of(name), "further")
     if mark is None:
         return LandmarkView(name, title, 0.0, tr("The scan does not show it."), group, absent=True)
-    weak = kind_of(name) in ESSENTIAL and not mark.by_hand and mark.confidence < CERTAIN
-    traced = len(mark.evidence) > 0
+    unsure = kind_of(name) in ESSENTIAL and not mark.by_hand and mark.confidence < CERTAIN
+    weak = unsure or (mark.off > 0.0 and spot_of(mark) not in accepted)
+    traced, off = len(mark.evidence) > 0, mark.off
     return LandmarkView(
-        name, title, mark.confidence, mark.rule, group, mark.by_hand, weak=weak, traced=traced
+        name, title, mark.confidence, mark.rule, group, mark.by_hand, weak=weak, traced=traced, off_mm=off
     )
 
 

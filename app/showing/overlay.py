@@ -10,7 +10,7 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
-from app.dress.theme import font, tokens_of, tone_of
+from app.dress.theme import font, tokens_of
 from app.seeing.camera import View
 from core.mesh import Floats, Points
 
@@ -32,12 +32,16 @@ GRIP = 11.0
 
 @dataclass(frozen=True, eq=False)
 class Pin:
-    """A landmark: its name, what is written beside it, position (3,) [mm] and confidence 0..1."""
+    """A landmark: its name, what is written beside it, position (3,) [mm], and how it stands.
+
+    ``tone`` is the token of its dot, ``state`` a word or two behind its label.
+    """
 
     name: str
     label: str
     position: Floats
-    confidence: float
+    tone: str
+    state: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,7 +158,7 @@ class Overlay(QWidget):
         return pills
 
     def _pin_width(self, pin: Pin) -> float:
-        return _width(pin.label, _percent(pin.confidence))
+        return _width(pin.label, pin.state)
 
     # -- painting
 
@@ -169,9 +173,9 @@ class Overlay(QWidget):
             self._head(painter, QPointF(spot[0], spot[1]), pin)
         tokens = tokens_of(self)
         for pin, pill in zip(self._pins, pills, strict=True):
-            dot = getattr(tokens, tone_of(pin.confidence))
+            dot = getattr(tokens, pin.tone)
             self._pill(painter, pill, pin.name == self._selected)
-            self._words(painter, pill, dot, pin.label, _percent(pin.confidence))
+            self._words(painter, pill, dot, pin.label, pin.state)
 
     def _paint_band(self, painter: QPainter, band: BandLabel) -> None:
         x, y, _ = self._spots([band.anchor])[0]
@@ -254,11 +258,6 @@ class Overlay(QWidget):
         painter.setPen(QColor(tokens.text_quiet))
         start = 22.0 + QFontMetricsF(font("title")).horizontalAdvance(text) + 8.0
         painter.drawText(pill.adjusted(start, 0.0, 0.0, 0.0), across, detail)
-
-
-def _percent(part: float) -> str:
-    """Return a share 0..1 in percent, with a thin space before the sign."""
-    return f"{100.0 * part:.0f}\u2009%"
 
 
 def _width(text: str, detail: str) -> float:

@@ -6,19 +6,24 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from app.presenting.scan import PINNED, kind_of, landmark_title
+from app.presenting.scan import PINNED, Spot, kind_of, landmark_title, landmark_view
 from app.showing.overlay import Pin
 from app.showing.viewport import Viewport
+from app.wording.words import tr
 from core.landmark import Landmark
 from core.mesh import Points
 
 
 class PinBoard:
-    """Keeps the pins of every viewport on which the body of the document is seen, the first one in front."""
+    """Keeps the pins of every viewport on which the body of the document is seen, the first one in front.
+
+    ``accepted`` are places that contradict their rules and have been found right.
+    """
 
     def __init__(self, viewports: Sequence[Viewport]) -> None:
         self._viewports = tuple(viewports)
         self._landmarks: Mapping[str, Landmark] = {}
+        self.accepted: set[Spot] = set()
         self._shown = False
         self._selected = ""
         self._hovered = ""
@@ -80,14 +85,18 @@ class PinBoard:
         """Show the pins of the bust and of the selected landmark, with the curve that this was read from."""
         found = self._landmarks if self._shown else {}
         pins = {
-            mark.name: Pin(mark.name, landmark_title(mark.name), mark.position, mark.confidence)
+            mark.name: self._pin(mark)
             for mark in found.values()
             if kind_of(mark.name) in PINNED or mark.by_hand or mark.name == self._selected
         }
         for name, place in self._carried.items() if self._shown else ():
-            pins[name] = Pin(name, landmark_title(name), place, 1.0)
+            pins[name] = Pin(name, landmark_title(name), place, "accent", tr("by hand"))
         chosen = found.get(self._hovered or self._selected) if not self._carried else None
         for viewport in self._viewports:
             if viewport.scene.body is not None:
                 viewport.scene.show_trace(chosen.evidence if chosen else np.empty((0, 3)))
             viewport.set_pins(pins.values(), self._selected)
+
+    def _pin(self, mark: Landmark) -> Pin:
+        said = landmark_view(mark.name, mark, self.accepted)
+        return Pin(mark.name, said.title, mark.position, said.tone, said.state)

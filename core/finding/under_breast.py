@@ -11,6 +11,7 @@ from core.finding.breast_profile import OWN, Profile, profiles
 from core.finding.fold import Trace, trace
 from core.landmark import SIDES, Landmark
 from core.mesh import MIRROR, Mesh, Points
+from core.placing import held_against
 
 HOLLOW = 0.006
 """A crease is hollower than this [1/mm]."""
@@ -38,6 +39,9 @@ HIDDEN = (ESTIMATED, MIRRORED, GUESSED)
 
 LOWEST = "The lowest point of the breast between the bust point and the fold."
 
+MISSING = 0.3
+"""The most confidence [1] in a lowest point over a fold that shows in no crease, or hangs over."""
+
 ASTRAY = 17.0
 """A bust point without any certainty may lie so far to the side [mm], and the profile through it with it."""
 
@@ -56,11 +60,15 @@ UNLIKE = 6.0, 8.0
 
 @dataclass(frozen=True, eq=False)
 class Under:
-    """What was found under one breast; ``fold`` is None where its crease does not show."""
+    """What was found under one breast; ``fold`` is None where its crease does not show.
+
+    ``sure`` is the confidence (0..1) in what the profile shows, whoever placed the fold.
+    """
 
     bundle: Sequence[Profile]
     trace: Trace | None
     fold: Landmark | None
+    sure: float
 
 
 def folds_and_lowest(
@@ -102,16 +110,21 @@ def _under(mesh: Mesh, bust: Landmark, level: float, side: str, placed: Mapping[
     if name in placed:
         bottom = min(bottom, placed[name].position[2] - BEYOND)
     bundle = profiles(mesh, bust.position, bottom)
-    if name in placed:
-        return Under(bundle, None, placed[name])
     crease = trace(bundle, level + ABOVE)
-    torn = not bundle[OWN].whole
+    found = _fold(name, bust, crease, torn=not bundle[OWN].whole)
+    sure = found.confidence if found else 0.0
+    if name in placed:
+        return Under(bundle, None, held_against(placed[name], found) if found else placed[name], sure)
+    return Under(bundle, crease, found, sure)
+
+
+def _fold(name: str, bust: Landmark, crease: Trace | None, torn: bool) -> Landmark | None:
+    """Return the fold that a crease shows below a bust point; a profile that is ``torn`` shows less."""
     if crease is None or not crease.seen[crease.own] or (torn and crease.depth < HOLLOW):
-        return Under(bundle, crease, None)
+        return None
     rule = CREASE if crease.depth > HOLLOW else NO_CREASE
-    place = crease.curve[crease.own]
     confidence = _confidence(crease, bust) * (0.5 if torn else 1.0)
-    return Under(bundle, crease, Landmark(name, place, confidence, rule, crease.curve))
+    return Landmark(name, crease.curve[crease.own], confidence, rule, crease.curve)
 
 
 def _confidence(crease: Trace, bust: Landmark) -> float:
@@ -186,5 +199,7 @@ def _lowest(own: Under, other: Under, fold: Landmark, side: str, busts: tuple[Po
         lowest = points[np.argmin(points[: last + 1, 2])]
         curve = np.concatenate([curve, [busts[0] + MIRROR * (lowest - busts[1])]])
     over = fold.position[2] > busts[0][2]  # which is right only where the breast hangs over its fold
-    sure = min(fold.confidence, 0.3) if over else fold.confidence
+    # That a hand has placed the fold says nothing about the profile above it.
+    seen = max(own.sure, MISSING) if fold.by_hand else fold.confidence
+    sure = min(seen, MISSING) if over else seen
     return Landmark(f"lowest_{side}", curve[np.argmin(curve[:, 2])], sure, LOWEST, curve)
