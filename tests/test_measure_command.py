@@ -7,12 +7,13 @@ import json
 from pathlib import Path
 
 import pytest
+from pages_alike import alike
 
 from app.cli import main
 from core.design import Design, ScanSource
 from core.design_measures import OwnMeasure
 from core.document import Document
-from core.measuring.definitions import KEYS
+from core.measuring.definitions import DEFINITIONS, KEYS
 from core.project import open_project, read_scan_file, save_project
 
 GORE = OwnMeasure("Gore", "straight", ("bust_point_left", "bust_point_right"))
@@ -50,6 +51,18 @@ def test_a_project_is_measured_before_and_after(project: Path, capsys: pytest.Ca
     assert bust["difference"] < -2.0
     assert found["own:Gore"]["after"] == found["bust_point_distance"]["after"]
     assert open_project(project).design.own_measures == (GORE,)
+
+
+def test_the_page_shows_what_is_printed_and_every_definition(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = (Path(__file__).parent.parent / "docs" / "measures.md").read_text("utf-8")
+    assert main(["measure", str(project)]) == 0
+    shown = page.split("```text\n")[1].split("```")[0]
+    assert alike(shown, capsys.readouterr().out)
+    for each in DEFINITIONS.values():
+        title = f"{each.title}, left and right" if each.sided else each.title
+        assert f"| {title} | {each.unit} | {each.iso or '-'} | {each.text} |" in page
 
 
 def test_text_and_table_tell_the_same(project: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -75,7 +75,7 @@ def _line(row: dict[str, Any], solved: bool) -> str:
     values = [row["before"], *([row["after"], row["difference"]] if solved else [])]
     if all(value is None for value in values):
         return f"{title:34}{'-':>9}  {row['note']}"
-    told = [f"{'-' if value is None else format(value, '.1f'):>9}" for value in values[:2]]
+    told = [f"{'-' if value is None else format(value, 'z.1f'):>9}" for value in values[:2]]
     told += [f"{'' if value is None else format(value, '+z.1f'):>8}" for value in values[2:]]
     unsure = f" ± {row['plus_minus']:.0f}" if row["plus_minus"] >= 0.5 else ""
     note = f"{unsure}  {row['note']}" if row["estimate"] else ""
