@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import time
@@ -28,6 +29,7 @@ _ABANDONED = 600.0
 """Seconds after which nobody writes any more to a file that is not whole."""
 
 _UNSAFE = re.compile(r'[<>:"/\\|?*\x00-\x1f\ud800-\udfff]')
+_FULL = (errno.ENOSPC, errno.EDQUOT)
 _BROKEN_ARCHIVE = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError)
 
 
@@ -126,7 +128,7 @@ def whole_file(target: Path) -> Iterator[Path]:
     except OSError as problem:
         raise ProjectError(
             f"{target} cannot be written: {problem.strerror or problem}.",
-            "Choose another folder or make room.",
+            "Choose another folder or make room." if problem.errno in _FULL else "Choose another folder.",
         ) from problem
     finally:
         # Where nothing can be written nothing can be removed: the first problem is the one to tell.

@@ -194,6 +194,7 @@ TRIANGLE = "0 0 0\n1 0 0\n0 1 0\n"
 ASCII_PLY = PLY_HEADER.format(kind="ascii", n=3, m=1)
 BAD_FILES = [
     ("scan.doc", b"1 2 3", "not a scan that can be read"),
+    ("letter.txt", b"Dear Anna,\n\nhere is the scan of 12 May.\n", "is no scan: it is a text without points"),
     ("scan.ply", b"", "is empty"),
     ("scan.ply", b"hello", "not a PLY file"),
     ("scan.ply", b"ply\nformat ascii 1.0\nelement vertex", "not a PLY file, or its header is cut short"),

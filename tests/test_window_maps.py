@@ -14,6 +14,7 @@ from window_tools import Script, drag, run_main, settled
 import app.viewing.section_desk as section_module
 from app.main_window import MainWindow
 from app.seeing.material import look_of
+from core.profile import Curve, nearest
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -136,6 +137,12 @@ def answered(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
     return path
 
 
+def away_from(curves: tuple[Curve, ...], place: np.ndarray) -> float:
+    foot = nearest(curves, place)
+    assert foot is not None
+    return float(np.linalg.norm(foot.place - place))
+
+
 def test_the_section_plane_cuts_before_and_after(answered: Path) -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
@@ -156,7 +163,7 @@ def test_the_section_plane_cuts_before_and_after(answered: Path) -> None:
         assert panel.readout.text().startswith(f"Bust point left {lift:.1f} mm up, ")
         ((at_rest, lifted),) = panel.plot._drawn.marks
         assert lifted[1] - at_rest[1] == pytest.approx(lift)
-        assert np.linalg.norm(after - lifted, axis=1).min() < 0.5, "it lies on the curve"
+        assert away_from(section.curves["after"], lifted) < 0.3, "it lies on the curve"
         at = int(np.abs(after[:, 1] - bust[2] + 25.0).argmin())
         panel.plot.pointed.emit(after[at])
         gap = float(panel.plot.gap.split()[0].replace("−", "-"))

@@ -152,17 +152,15 @@ def _hint(frame: Frame) -> str:
     """Return what to do about it, or what else has to be known."""
     state, condition = state_of(frame), frame.verdict.condition
     if state == "diverging":
-        return tr("The turns run away: the body is shown as it was before. Lengthen or soften the lines.")
+        return tr("It runs away: the body is shown as it was before. Lengthen or soften the lines.")
     if state == "settled":
         if any(weak_sides(frame.stages.landmarks, kind) for kind in ESSENTIAL):
             return tr("Some landmarks are doubtful: check them in the Landmarks step.")
         return "".join(map(say, warnings(frame.stages)[:1]))  # the others stand in the notice
     what = {
         "folded": tr("The skin folds over: this is no body any more."),
-        "overstrained": tr(
-            "The skin is pressed or stretched by more than 30 % in places: no shape to sew for."
-        ),
-        "strained": tr("The skin is pressed or stretched by more than 20 % in places ({strain})."),
+        "overstrained": tr("Skin pressed or stretched by over 30 %: no shape to sew for."),
+        "strained": tr("Skin pressed or stretched by over 20 % ({strain})."),
     }.get(state, "")
     if condition is not None:
         what = what.format(strain=_strain(condition))

@@ -48,7 +48,7 @@ def read_points(name: str, data: bytes, progress: Progress) -> RawScan:
     """
     start = _first_point(data)
     if start is None:
-        raise ValueError("no points")
+        raise ScanError(f"{name} is no scan: it is a text without points.", "Choose another scan.")
     data = data[start : _last_point(data)]
     check_size(name, max(data.count(b"\n"), data.count(b"\r")))  # at once: a packed file may hold very many
     between = b" ," if has_decimal_commas(name, data) else b"  "

@@ -102,10 +102,7 @@ def read_raw(name: str, data: bytes, progress: Progress = quiet) -> RawScan:
     except (ScanError, Cancelled):
         raise
     except Exception as problem:  # a malformed file makes a reader fail in any way
-        raise ScanError(
-            f"{name} cannot be read: it is damaged or cut short.",
-            "Export the scan again, as triangles only.",
-        ) from problem
+        raise ScanError(f"{name} cannot be read: it is damaged or cut short.", AGAIN) from problem
     progress("reading", 1.0)
     return scan
 
