@@ -74,7 +74,7 @@ def test_text_and_table_tell_the_same(project: Path, capsys: pytest.CaptureFixtu
     for line, row in zip(text[1:], rows, strict=True):
         assert line.startswith(row["title"])
         if row["after"]:
-            assert f"{float(row['after']):.1f}" in line
+            assert f"{float(row['after']):z.1f}" in line
         else:
             assert row["note"] in line
 
