@@ -60,11 +60,15 @@ def _sentences(words: _Words, scale: Scale, value: float, unit: str) -> tuple[st
         if place < 0:
             return (words.below.format(told, scale.steps[0].name, plain(scale.borders[0])),)
         return (words.above.format(told, scale.steps[-1].name, plain(scale.borders[-1])),)
-    least, most = plain(step.least), plain(step.most)
-    if step.says(value):
-        return (words.inside.format(told, step.name, least, most),)
-    nearest = words.inside.format(told, step.name, *map(plain, scale.ends(place)))
+    named, point = (step.least, step.most), step.least == step.most
+    ends = named if step.says(value) and not point else scale.ends(place)
+    rule = words.inside.format(told, step.name, *map(plain, ends))
+    return (rule,) if step.says(value) else (rule, _gap(step.name, *map(plain, named)))
+
+
+def _gap(name: str, least: str, most: str) -> str:
+    """Say that a value lies in no range of the source, but next to this one, which may be a single number."""
     rest = "what lies between two steps goes to the nearest."
-    if step.least == step.most:
-        return nearest, f"The table itself names {least} for {step.name}; {rest}"
-    return nearest, f"The table itself names {least} to {most} for {step.name}; {rest}"
+    if least == most:
+        return f"The table itself names {least} for {name}; {rest}"
+    return f"The table itself names {least} to {most} for {name}; {rest}"

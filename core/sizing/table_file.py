@@ -6,7 +6,6 @@ import json
 from collections.abc import Callable, Mapping
 from itertools import pairwise
 from pathlib import Path
-from string import Formatter
 from typing import Any, TypeVar
 
 from core.errors import SizeError
@@ -129,8 +128,8 @@ def _source(what: str, values: Any) -> Source:
 
 def _label(value: Any) -> str:
     text = _text("label", value)
-    places = sorted(name for _, name, form, turn in Formatter().parse(text) if name is not None)
-    if places != ["band", "cup"] or text.count("{") != 2:
+    rest = text.replace("{band}", "", 1).replace("{cup}", "", 1)
+    if len(text) - len(rest) != len("{band}{cup}") or set(rest) & set("{}"):
         raise ValueError("label must have {band} and {cup}, each once")
     return text
 
