@@ -14,34 +14,52 @@ from core.mesh import Mesh
 from core.profile import Curve, Plane
 from core.progress import Progress, quiet
 from core.project import whole_file
+from core.space import Space, space_of
 from core.tffd import deform
 
-FORMATS = ("ply", "obj", "stl")
+FORMATS = ("ply", "obj", "stl", "glb")
 
 
-def write_mesh(path: str | os.PathLike[str], mesh: Mesh, progress: Progress = quiet) -> None:
-    """Write ``mesh`` [mm] as PLY, OBJ or STL by the name's ending.
+def write_mesh(
+    path: str | os.PathLike[str], mesh: Mesh, progress: Progress = quiet, space: Space | None = None
+) -> None:
+    """Write ``mesh`` [mm] as PLY, OBJ, STL or GLB by the name's ending, in a ``space`` or the usual one.
 
     Raises UserError for another ending, or a place that cannot be written to; Cancelled leaves no file.
     """
     target = Path(path).absolute()
-    kind = target.suffix.lower().lstrip(".")
-    if kind not in FORMATS:
-        raise UserError(f"Busk does not write .{kind} files.", f"Choose one of: {', '.join(FORMATS)}.")
+    kind = kind_of(target)
+    space = space or space_of(kind)
     import trimesh  # noqa: PLC0415 (it takes long to load, and is needed here alone)
 
-    data = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).export(file_type=kind)
+    progress("writing", 0.2)
+    shape = trimesh.Trimesh(space.places(mesh.vertices), mesh.faces, process=False)
+    options = {}
+    if kind == "glb":  # those who show it find it smooth; other readers work normals out
+        shape.vertex_normals = space.normals(mesh.vertex_normals)
+        options = {"include_normals": True}
+    data = shape.export(file_type=kind, **options)
     progress("writing", 0.8)
     with whole_file(target) as partial:
         partial.write_bytes(data.encode() if isinstance(data, str) else data)
         progress("writing", 1.0)
 
 
-def write_frame(path: str | os.PathLike[str], frame: Frame, progress: Progress = quiet) -> None:
+def kind_of(path: str | os.PathLike[str]) -> str:
+    """Return the kind of mesh file that a name ends in. Raises UserError if Busk does not write it."""
+    kind = Path(path).suffix.lower().lstrip(".")
+    if kind not in FORMATS:
+        raise UserError(f"Busk does not write .{kind} files.", f"Choose one of: {', '.join(FORMATS)}.")
+    return kind
+
+
+def write_frame(
+    path: str | os.PathLike[str], frame: Frame, progress: Progress = quiet, space: Space | None = None
+) -> None:
     """Write the whole body as a frame shows it; see ``write_mesh``. Raises UserError or Cancelled."""
     places = deform(frame.stages.binding, frame.control_points)
-    progress("writing", 0.2)
-    write_mesh(path, Mesh(places, frame.stages.body.mesh.faces), progress)
+    progress("writing", 0.1)
+    write_mesh(path, Mesh(places, frame.stages.body.mesh.faces), progress, space)
 
 
 def write_control_points(path: str | os.PathLike[str], control: ControlMesh) -> None:

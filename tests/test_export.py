@@ -8,13 +8,14 @@ from shapes import octahedron, torso
 from core.errors import UserError
 from core.export import FORMATS, write_mesh
 from core.mesh import Mesh
+from core.space import Space
 
 
 @pytest.mark.parametrize("kind", FORMATS)
 def test_another_library_reads_the_same_shape(tmp_path, kind):
     mesh = torso().mesh
     path = tmp_path / f"body.{kind}"
-    write_mesh(path, mesh)
+    write_mesh(path, mesh, space=Space())
     read = trimesh.load_mesh(path, process=False)
     corners = np.asarray(read.vertices)[np.asarray(read.faces)]
     np.testing.assert_allclose(corners, mesh.vertices[mesh.faces], atol=1e-5)
@@ -48,7 +49,7 @@ def test_the_ending_may_be_in_capitals(tmp_path):
 
 @pytest.mark.parametrize("name", ["body.step", "body", "body.ply.gz"])
 def test_other_endings_are_refused_with_a_choice(tmp_path, name):
-    with pytest.raises(UserError, match="ply, obj, stl"):
+    with pytest.raises(UserError, match="ply, obj, stl, glb"):
         write_mesh(tmp_path / name, octahedron())
     assert list(tmp_path.iterdir()) == []
 
