@@ -118,7 +118,10 @@ def sizes(underbust_mm: float, bust_mm: float, allowance_mm: float = 0.0) -> Map
 
 
 def sizes_text(answer: SizeAnswer, language: str = "en") -> dict[str, Any]:
-    """Return an answer as plain data for JSON, lengths in mm; the texts of the table in ``language``."""
+    """Return an answer as plain data for JSON, lengths in mm; the texts of the table in ``language``.
+
+    The sentences of the rule are those of the core, in English: whoever shows them says them in other words.
+    """
     table = answer.table
     return {
         "key": table.key,
@@ -203,13 +206,10 @@ def _neighbours(table: SizeTable, underbust: float, over: float | None) -> Itera
 def _next(scale: Scale, value: float) -> Iterator[tuple[bool, int, float]]:
     """Yield the steps next to a value: whether it is above, its place and how far its border is [unit]."""
     place = scale.place(value)
-    last = len(scale.steps) - 1
     if place > 0:
-        below = min(place - 1, last)
-        yield False, below, value - scale.borders[below + 1]
-    if place < last:
-        above = place + 1
-        yield True, above, scale.borders[above] - value
+        yield False, place - 1, value - scale.borders[place]
+    if place < len(scale.steps) - 1:
+        yield True, place + 1, scale.borders[place + 1] - value
 
 
 def _sisters(table: SizeTable, underbust: float, over: float | None) -> Iterator[Sister]:
