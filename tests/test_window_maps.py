@@ -163,7 +163,8 @@ def test_the_section_plane_cuts_before_and_after(answered: Path) -> None:
         assert panel.readout.text().startswith(f"Bust point left {lift:.1f} mm up, ")
         ((at_rest, lifted),) = panel.plot._drawn.marks
         assert lifted[1] - at_rest[1] == pytest.approx(lift)
-        assert away_from(section.curves["after"], lifted) < 0.3, "it lies on the curve"
+        assert away_from(section.curves["before"], at_rest) < 0.05
+        assert away_from(section.curves["after"], lifted) < 1.0, "but that it left the plane by 1.2 mm"
         at = int(np.abs(after[:, 1] - bust[2] + 25.0).argmin())
         panel.plot.pointed.emit(after[at])
         gap = float(panel.plot.gap.split()[0].replace("−", "-"))
