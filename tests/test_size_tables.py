@@ -149,6 +149,17 @@ def test_what_is_right_is_read_whole():
     assert table.cups.borders == (9.5, 14.5, 20.5)
 
 
+def test_a_shop_that_adds_four_inches_writes_its_table_as_the_page_says():
+    values = json.loads((resources.files("resources") / "sizes" / "uk.json").read_text(encoding="utf-8"))
+    values["bands"] = [[str(int(name) + 4), least, most] for name, least, most in values["bands"]]
+    values["cups"] = [[name, least + 4, most + 4] for name, least, most in values["cups"]]
+    assert ["32", 27, 29] in values["bands"]
+    assert ["A", 5, 5] in values["cups"]
+    values["examples"] = [{"underbust": 30, "bust": 36, "size": "34B", "source": "30 + 4, 36 - 34 = 2"}]
+    table = table_of("ours", json.dumps(values))
+    assert [each.name for each in table.steps(28.46, 34.29) if each] == ["32", "B"]
+
+
 def test_the_page_tells_what_the_code_does(monkeypatch):
     monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
     from sizes_page import told  # noqa: PLC0415 - a script, not a part of the program
