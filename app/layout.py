@@ -8,8 +8,10 @@ from PySide6.QtCore import QByteArray, QEvent, QObject, QSettings, QSize, Qt, QT
 from PySide6.QtWidgets import QApplication, QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
 
 from app.dress.divider import Divider
-from app.dress.focus import FocusRing, stops
+from app.dress.focus import FocusRing, next_stop, stops
+from app.dress.parts import OverCard
 from app.dress.place import put_first, put_on_screen
+from app.dress.spoken import announce
 from app.wording.words import tr
 
 if TYPE_CHECKING:
@@ -136,13 +138,42 @@ class Layout(QObject):
 
     def next_stop(self, forward: bool) -> bool:
         """Let the keyboard go on to the next field or button, through all panes; returns whether it did."""
-        order, has = self._stops(), QApplication.focusWidget()
-        if not order:
+        return next_stop(self._stops(), forward)
+
+    def enter(self) -> None:
+        """Let the keyboard begin in the inspector: Tab goes on to what its panel has.
+
+        No button has the keyboard meanwhile, so the space bar still flips the body.
+        """
+        panel = self._window.inspector.panel()
+        if panel is not None and panel.isVisible() and not self._over():
+            panel.setFocus(Qt.FocusReason.OtherFocusReason)
+
+    def go_on_in(self, step: str) -> None:
+        """Go to a step by key: the keyboard goes on there, and a ring shows where."""
+        self._window.desk.go_to(step)
+        self.enter()
+        if self._window.inspector.isVisible():
+            self._ring.show_round(self._window.inspector)
+            announce(self._window.inspector, self._window.actions_.steps[step].text())
+
+    def give_up(self) -> bool:
+        """Let Esc take away what lies over the window or in the place of it; returns whether anything did."""
+        window, over = self._window, self._over()
+        if over:
+            over[-1].given_up.emit()
+        elif window.inspector.panel() is window.model:
+            window.model.left.emit()
+        elif window.view.beside.way in ("wipe", "side"):
+            window.view.compare_by("after")
+        else:
             return False
-        at = order.index(has) if has in order else -1 if forward else 0
-        reason = Qt.FocusReason.TabFocusReason if forward else Qt.FocusReason.BacktabFocusReason
-        order[(at + (1 if forward else -1)) % len(order)].setFocus(reason)
         return True
+
+    def _over(self) -> list[OverCard]:
+        """Return the cards that lie over the whole window."""
+        cards = self._window.findChildren(OverCard, options=Qt.FindChildOption.FindDirectChildrenOnly)
+        return [card for card in cards if card.isVisible()]
 
     def _stops(self) -> list[QWidget]:
         """Return what takes the keyboard, and before strip and inspector the line that gives them room."""
@@ -156,8 +187,16 @@ class Layout(QObject):
             fixed = pane is self._window.strip and self._window.strip.is_folded()
             if line is not None and line.isVisible() and not fixed:
                 order.append(line)
-            order += stops(pane)
+            for part in self._parts(pane):
+                order += stops(part)
         return order
+
+    def _parts(self, pane: QWidget) -> list[QWidget]:
+        """Return what is read one after the other in a pane: on the view one floating panel at a time."""
+        if pane is not self._window.view:
+            return [pane]
+        parts = [each for each in pane.children() if isinstance(each, QWidget) and each.isVisible()]
+        return sorted(parts, key=lambda each: (each.y(), each.x()))
 
     def _panes(self) -> list[QWidget]:
         """Return the parts of the window in the order in which they are read."""
@@ -166,7 +205,7 @@ class Layout(QObject):
             work = [window.notices, window.view, window.strip, window.inspector]
         else:
             work = [window.notices, page]
-        return [window.top, window.rail, *work]
+        return [*self._over(), window.top, window.rail, *work]
 
     # -- sizes
 

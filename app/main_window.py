@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
-from PySide6.QtWidgets import QMainWindow, QVBoxLayout, QWidget
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QKeyEvent
+from PySide6.QtWidgets import QAbstractButton, QApplication, QMainWindow, QVBoxLayout, QWidget
 
 from app.actions import Actions
 from app.asking.housekeeping import Housekeeping
@@ -106,6 +106,7 @@ class MainWindow(QMainWindow):
         column.setSpacing(0)
         column.addWidget(self.lines, 1)
         column.addWidget(self.door)
+        lines.setFocusProxy(self.lines)
         self.inspector.add("scan", self.scan)
         self.inspector.add("landmarks", self.landmarks)
         self.inspector.add("lines", lines, tr("Lines"))
@@ -130,6 +131,14 @@ class MainWindow(QMainWindow):
     def focusNextPrevChild(self, next: bool) -> bool:  # noqa: N802
         """Lead the keyboard in the order that eyes read, whenever the parts were made."""
         return self.layout_.next_stop(next)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
+        """Press a button by Enter too; Esc takes away what lies over the work."""
+        has, key = QApplication.focusWidget(), event.key()
+        if key in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and isinstance(has, QAbstractButton):
+            has.click()
+        elif key != Qt.Key.Key_Escape or not self.layout_.give_up():
+            super().keyPressEvent(event)
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:  # noqa: N802
         """Take files that are dragged onto the window."""

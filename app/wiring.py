@@ -105,7 +105,7 @@ def _connect_panels(window: MainWindow) -> None:
     window.lines.path_asked.connect(window.line_routing.begin)
     window.lines.removed.connect(window.lines_desk.remove)
     window.door.clicked.connect(desk.show_model)
-    window.model.left.connect(lambda: desk.go_to("lines"))
+    window.model.left.connect(lambda: window.layout_.go_on_in("lines"))
     window.model.changed.connect(session.change)
     window.scan.open_asked.connect(desk.open)
     window.scan.told.connect(scan_desk.tell)
@@ -198,4 +198,4 @@ def _connect_layout(window: MainWindow) -> None:
     do.next_pane.triggered.connect(layout.next_pane)
     do.reset_layout.triggered.connect(layout.reset)
     for step, action in do.steps.items():
-        action.triggered.connect(lambda _=False, step=step: window.desk.go_to(step))
+        action.triggered.connect(lambda _=False, step=step: layout.go_on_in(step))

@@ -59,7 +59,7 @@ class Desk(QObject):
         window.notices.clear()
         self.show_title()
         self.select_line(window.view.selected_line)
-        window.view.viewport.setFocus()
+        window.layout_.enter()
         window.scan_desk.show_opened(frame.stages)
         for sentence in warnings(frame.stages):
             window.notices.show_notice("warn", sentence, lasting=True)
@@ -142,6 +142,8 @@ class Desk(QObject):
 
     def go_to(self, step: str) -> None:
         """Show a step: scan and landmarks on the body at rest, lines and result on the reshaped one."""
+        if self._window.actions_.alone.isChecked():
+            self._window.layout_.show_alone(False)
         self._window.layout_.show_work()
         self._window.rail.set_current(step)
         self._window.actions_.steps[step].setChecked(True)
@@ -155,6 +157,7 @@ class Desk(QObject):
         """Show how the model works in the place of the lines; what it does is seen beside it."""
         self.go_to("lines")
         self._window.inspector.open("model")
+        self._window.layout_.enter()
 
     def select_line(self, name: str) -> None:
         """Select a line in the list and on the body."""

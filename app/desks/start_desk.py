@@ -50,7 +50,7 @@ class StartDesk(QObject):
         """Show the work again."""
         if self._window.pages.currentWidget() is self.page:
             self._window.layout_.show_work()
-            self._window.view.viewport.setFocus()
+            self._window.layout_.enter()
 
     def show_work(self, what: str, _share: float) -> None:
         """Leave the page as soon as a body is being read: its progress is shown beside the view."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from PySide6.QtCore import QPoint, QRect, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QAbstractButton, QAbstractScrollArea, QApplication, QScrollArea, QWidget
@@ -27,6 +29,40 @@ def stops(pane: QWidget) -> list[QWidget]:
     return [each for _, line in lines for _, each in sorted(line, key=lambda at: at[0])]
 
 
+def next_stop(order: Sequence[QWidget], forward: bool) -> bool:
+    """Let the keyboard go on in an order of stops; returns whether it did.
+
+    From what takes it no longer, because it has gone, it goes to what stood nearest in the same part; from
+    a panel that has it as a whole to what stands first in it.
+    """
+    if not order:
+        return False
+    has, reason = QApplication.focusWidget(), Qt.FocusReason.TabFocusReason
+    if has in order:
+        target = order[(order.index(has) + (1 if forward else -1)) % len(order)]
+    else:
+        inside = [each for each in order if has is not None and has.isAncestorOf(each)]
+        target = (inside or order)[0 if forward else -1]
+        if not inside:
+            target = _nearest(has, order) or target
+    target.setFocus(reason if forward else Qt.FocusReason.BacktabFocusReason)
+    return True
+
+
+def _nearest(lost: QWidget | None, order: Sequence[QWidget]) -> QWidget | None:
+    """Return the stop nearest to a widget, within the smallest part round it that has one."""
+    part = lost.parentWidget() if lost is not None else None
+    while lost is not None and part is not None:
+        inside = [each for each in order if part.isAncestorOf(each)]
+        if inside:
+            place = lost.mapTo(part, lost.rect().center())
+            return min(
+                inside, key=lambda each: (each.mapTo(part, each.rect().center()) - place).manhattanLength()
+            )
+        part = part.parentWidget()
+    return None
+
+
 def _is_stop(widget: QWidget) -> bool:
     if not (widget.isVisible() and widget.isEnabled()) or widget.focusProxy() is not None:
         return False
@@ -43,7 +79,8 @@ def _is_folded_away(widget: QWidget) -> bool:
     while parent is not None and not isinstance(parent.parentWidget(), QAbstractScrollArea):
         if not parent.rect().intersects(QRect(widget.mapTo(parent, QPoint()), widget.size())):
             return True
-        parent = parent.parentWidget()
+        # A dialog lies in no part of the window that it belongs to.
+        parent = parent.parentWidget() if not parent.isWindow() else None
     return False
 
 

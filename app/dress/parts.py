@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QAction, QColor, QFont, QHelpEvent, QKeySequence, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import (
     QAbstractButton,
@@ -13,6 +13,7 @@ from PySide6.QtWidgets import (
     QFrame,
     QHBoxLayout,
     QLabel,
+    QMenu,
     QPushButton,
     QSizePolicy,
     QToolButton,
@@ -32,6 +33,7 @@ def button(text: str, kind: str = "secondary") -> QPushButton:
     result.setFont(font("button"))
     result.setProperty("kind", kind)
     result.setCursor(Qt.CursorShape.PointingHandCursor)
+    result.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a button that has the keyboard was reached by it
     return result
 
 
@@ -229,6 +231,17 @@ class Disclosure(QAbstractButton):
         painter.drawText(words, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, self.text())
 
 
+def pull_down(menu: QMenu, under: QWidget) -> None:
+    """Open a menu under a button, which is lit no longer once the menu has gone."""
+
+    def unlit() -> None:
+        under.setAttribute(Qt.WidgetAttribute.WA_UnderMouse, False)
+        under.update()
+
+    menu.aboutToHide.connect(unlit, Qt.ConnectionType.SingleShotConnection)
+    menu.popup(under.mapToGlobal(QPoint(0, under.height() + 2)))
+
+
 class FloatingPanel(QWidget):
     """A translucent rounded panel with a soft shadow, to lie on the view."""
 
@@ -244,6 +257,12 @@ class FloatingPanel(QWidget):
     def paintEvent(self, event: QPaintEvent) -> None:
         ratio, dark = self.devicePixelRatioF(), tokens_of(self).dark
         QPainter(self).drawPixmap(0, 0, floating_ground(self.width(), self.height(), ratio, dark))
+
+
+class OverCard(FloatingPanel):
+    """A card over the whole window, which waits for an answer; ``given_up`` by Esc, wherever the keyboard is."""
+
+    given_up = Signal()
 
 
 class EmptyState(QFrame):

@@ -51,7 +51,7 @@ class Tour(QObject):
         self._place = -1
         self._window.removeEventFilter(self)
         self.mark.leave()
-        self._window.view.viewport.setFocus()
+        self._window.layout_.enter()
         end_first_start()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802

@@ -31,6 +31,7 @@ class RecoveryDesk(QObject):
         self._window = window
         self._offers: list[tuple[Kept, Recovery]] = []
         self._broken: list[Path] = []
+        self._at_start = True
         self.card = RecoveryCard(window)
         self.card.restore.connect(self.restore)
         self.card.discard.connect(self.discard)
@@ -41,6 +42,8 @@ class RecoveryDesk(QObject):
 
     def look(self) -> None:
         """Look for what was left behind, at the start."""
+        # Nobody has chosen what the window opens with.
+        self._at_start = self._window.pages.currentWidget() is not self._window.start_desk.page
         self._offers, self._broken = left_behind()
         self._tell_broken()
         self._offer()
@@ -51,13 +54,21 @@ class RecoveryDesk(QObject):
             self._window.session.restore(self._offers[0][0])
 
     def show_opened(self) -> None:
-        """Go on in the folder of a document that was restored: it is safe there all the time."""
+        """Go on in the folder of a document that was restored: it is safe there all the time.
+
+        Who opens something else instead is not to have the offer in the way any longer.
+        """
         # What is opened at the start takes the notices of before away.
         self._tell_broken()
         self._broken = []
         if self._offers and self._window.session.document is self._offers[0][0].document:
             self._window.keeping_desk.adopt(self._offers.pop(0)[1])
             self._offer()
+        elif self._offers and not self._at_start:
+            self.close()
+            said = tr("What was not saved is offered again at the next start.")
+            self._window.notices.show_notice("info", said)
+        self._at_start = False
 
     def discard(self) -> None:
         """Remove what is offered, if that is meant."""

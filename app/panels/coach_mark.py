@@ -7,7 +7,7 @@ from PySide6.QtCore import QPoint, QRect, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPaintEvent, QPen, QRegion
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
-from app.dress.parts import FloatingPanel, button, sentence
+from app.dress.parts import OverCard, button, sentence
 from app.dress.theme import label, tokens_of
 from app.wording.words import tr
 
@@ -15,7 +15,7 @@ _WIDTH = 300
 _AWAY = 8
 
 
-class CoachMark(FloatingPanel):
+class CoachMark(OverCard):
     """Title, sentence and the way on; Enter or the right arrow go on, the left one back, Esc skips the rest.
 
     The space bar is left to the window: it may be what the step speaks of.
@@ -50,6 +50,7 @@ class CoachMark(FloatingPanel):
         column.addSpacing(8)
         column.addLayout(buttons)
         self.row.addLayout(column)
+        self.given_up.connect(self.skipped)
         self.ring = Ring(parent)
         self.hide()
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QEnterEvent, QMouseEvent, QPainter, QPaintEvent, QPen
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QApplication, QFrame, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.dress.parts import ToolButton, sentence
+from app.dress.spoken import speak_value
 from app.dress.theme import label, set_tag, set_tip, tokens_of
 from app.panels.length_slider import LengthSlider
 from app.panels.line_details import LineDetails
@@ -47,20 +48,30 @@ class LineRow(QFrame):
         self.set_open(False)
 
     def show_view(self, view: LineView) -> None:
-        """Show new values of the same line, without disturbing a drag or a number being typed."""
+        """Show new values of the same line, without disturbing a drag or a number being typed.
+
+        The keyboard stays in the row, however little of it can still be set.
+        """
+        has = QApplication.focusWidget()
+        kept = has is self or has in (self.slider, self.percent, self.millimetres)
         self.view = view
         self.title.setText(view.pair_title if view.apart else view.title)  # its side stands beside it
+        self._show_names(view.title)
         set_tip(self.title, f"{view.title}\n{tr('Double click or F2: another name')}")
         set_tag(self.title, "tone", "" if view.visible else "faint")
         self._side.show_side(view.apart)
         self._chip.show_line(view.color, view.width_mm, view.visible)
-        self.slider.setAccessibleName(tr("Length of {line}").format(line=view.title))
         self._show_slider(view)
         self._show_lengths(self._set_ratio())
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus if view.settable else Qt.FocusPolicy.TabFocus)
+        if kept and not view.settable:
+            self.setFocus(Qt.FocusReason.OtherFocusReason)
         for each in (self.slider, self.percent, self.millimetres):
             each.setVisible(view.constrained)
             each.setEnabled(view.settable)
             set_tip(each, locked_tip() if view.locked else self._tips[each])
+        if has is self and view.settable:
+            self.slider.setFocus(Qt.FocusReason.OtherFocusReason)
         self._measure.setVisible(not view.constrained)
         self._measure.setText(f"{number(view.reached_mm or view.rest_mm)} mm")
         still = tr("On points that do not move: measured only.")
@@ -71,6 +82,17 @@ class LineRow(QFrame):
         self._eye.show_icon("eye" if view.visible else "eye-slash")
         self._lock.show_icon("lock" if view.locked else "unlock")
         self._show_opened()
+
+    def _show_names(self, title: str) -> None:
+        """Tell ears whose row this is: several lines have the same fields."""
+        if title == self.accessibleName():
+            return
+        self.setAccessibleName(title)
+        self.slider.setAccessibleName(tr("Length of {line}").format(line=title))
+        for field in (self.percent, self.millimetres):
+            field.name_line(title)
+        for tool in (self._link, self._eye, self._lock):
+            tool.setAccessibleName(f"{title}: {tool.toolTip()}")
 
     def set_open(self, open_: bool) -> None:
         """Open or close the row."""
@@ -112,6 +134,10 @@ class LineRow(QFrame):
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(QColor(tokens.hover))
             painter.drawRoundedRect(card, 9, 9)
+        if self.hasFocus():
+            painter.setPen(QPen(QColor(tokens.accent), 2))
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawRoundedRect(card.adjusted(0.5, 0.5, -0.5, -0.5), 9, 9)
         self._paint_bracket(painter)
 
     def _paint_bracket(self, painter: QPainter) -> None:
@@ -175,6 +201,7 @@ class LineRow(QFrame):
             field.opened.connect(self.pressed)
             field.left.connect(self.slider.setFocus)
         self.title.renamed.connect(lambda title: self.decided.emit("title", title))
+        self.title.left.connect(lambda: self.take_focus(Qt.FocusReason.OtherFocusReason))
         self.details.decided.connect(self.decided)
         self.details.asked.connect(self._do)
         self._eye.clicked.connect(lambda: self.visibility_changed.emit(not self.view.visible))
@@ -210,6 +237,9 @@ class LineRow(QFrame):
         """Write a set length, which during a drag runs ahead of the view."""
         for field in (self.percent, self.millimetres):
             field.show_length(ratio, self.view.rest_mm, self.view.whole_mm)
+        spoken = f"{number(ratio * 100)} %, {number(ratio * self.view.rest_mm)} mm"
+        speak_value(self.slider, spoken)
+        self.setAccessibleDescription(self._measure.text() if not self.view.constrained else spoken)
         if self._open:
             self.details.show_lengths(self.view, ratio)
 

@@ -9,7 +9,7 @@ from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QImage, QPainter, QPainterPath, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
-from app.dress.parts import FloatingPanel, ToolButton, button, sentence
+from app.dress.parts import OverCard, ToolButton, button, sentence
 from app.dress.theme import label
 from app.wording.words import tr
 
@@ -26,7 +26,7 @@ class RecoveryView:
     more: int = 0
 
 
-class RecoveryCard(FloatingPanel):
+class RecoveryCard(OverCard):
     """Asks once, calmly; ``later`` leaves the offer to the next start."""
 
     restore = Signal()
@@ -44,6 +44,7 @@ class RecoveryCard(FloatingPanel):
         self._words.setMinimumHeight(2 * self._words.fontMetrics().lineSpacing() + 6)
         close = ToolButton("x", tr("Decide at the next start"), size=14, room=26)
         close.clicked.connect(self.later)
+        self.given_up.connect(self.later)
         self.take, self.drop = button(tr("Restore"), "primary"), button(tr("Discard"))
         self.take.clicked.connect(self.restore)
         self.drop.clicked.connect(self.discard)
@@ -76,6 +77,7 @@ class RecoveryCard(FloatingPanel):
         self.adjustSize()
         self.show()
         self.raise_()
+        self.take.setFocus(Qt.FocusReason.OtherFocusReason)
 
 
 class _Picture(QWidget):

@@ -83,7 +83,5 @@ def _is_space(event: QEvent) -> bool:
 
 
 def _button_by_keyboard() -> bool:
-    """Whether a button has the focus because somebody went there by keyboard."""
-    focused = QApplication.focusWidget()
-    by_keyboard = Qt.WidgetAttribute.WA_KeyboardFocusChange
-    return isinstance(focused, QAbstractButton) and focused.window().testAttribute(by_keyboard)
+    """Whether a button has the focus: none of them takes it from the mouse."""
+    return isinstance(QApplication.focusWidget(), QAbstractButton)
