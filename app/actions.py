@@ -123,6 +123,8 @@ class Actions(Menus):
         self.alone.setShortcutContext(Qt.ShortcutContext.WidgetShortcut)
         self.full_screen = self.add("window", tr("Full screen"), "F11", checkable=True)
         self.next_pane = self.add("window", tr("Next pane"), "F6", tr("Go on with the keyboard elsewhere"))
+        said = tr("Go through the menus with the arrow keys")
+        self.add("window", tr("Menu bar"), "F10", said, do=self.enter_bar)
         self.rule("window")
         said = tr("Give inspector and live plot their first sizes again")
         self.reset_layout = self.add("window", tr("Reset layout"), tip=said)

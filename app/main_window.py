@@ -13,6 +13,7 @@ from app.asking.session import Session
 from app.desks.desk import Desk
 from app.desks.job_desk import JobDesk
 from app.desks.landmark_desk import LandmarkDesk
+from app.desks.picture_desk import PictureDesk
 from app.desks.plot_desk import PlotDesk
 from app.desks.scan_desk import ScanDesk
 from app.desks.start_desk import StartDesk
@@ -89,6 +90,7 @@ class MainWindow(QMainWindow):
         self.measures_desk = MeasuresDesk(self, self.result)
         self.map_desk, self.section_desk = MapDesk(self), SectionDesk(self)
         self.start_desk, self.plot_desk = StartDesk(self), PlotDesk(self)
+        self.picture_desk = PictureDesk(self)
         self.lines_desk, self.line_maker = LinesDesk(self), LineMaker(self)
         self.line_drawing, self.line_routing = LineDrawing(self), LineRouting(self)
         self.preset_desk, self.band_pull = PresetDesk(self), BandPull(self)

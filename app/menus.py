@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping
 
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QAction, QActionGroup, QKeySequence
 from PySide6.QtWidgets import QMenu, QMenuBar, QWidget
 
 from app.wording.words import tr
 
 Key = str | QKeySequence.StandardKey
+
+_KEY = re.compile(r"\(&\w\)|&")
 
 
 class Menus:
@@ -27,7 +31,8 @@ class Menus:
             "window": tr("Window"),
             "help": tr("Help"),
         }
-        self.menus = {name: self.bar.addMenu(title) for name, title in titles.items()}
+        # Alt and the letter open a menu in any language: the first one of its name in English.
+        self.menus = {name: self.bar.addMenu(_with_key(title, name[0])) for name, title in titles.items()}
         for menu in self.menus.values():
             menu.setToolTipsVisible(True)
         self._ends: dict[str, QAction] = {}
@@ -95,6 +100,11 @@ class Menus:
         for action in self._of_document:
             action.setEnabled(True)
 
+    def enter_bar(self) -> None:
+        """Let the keyboard go through the menus."""
+        self.bar.setFocus(Qt.FocusReason.MenuBarFocusReason)
+        self.bar.setActiveAction(self.bar.actions()[0])
+
     def all(self) -> Iterator[tuple[str, QAction]]:
         """Give each action of the menus with the titles of the menus it stands in, as ``View, Theme``."""
         for action in self.bar.actions():
@@ -108,4 +118,11 @@ def _within(action: QAction, above: str) -> Iterator[tuple[str, QAction]]:
             yield above, action
         return
     for each in menu.actions():
-        yield from _within(each, f"{above}, {menu.title()}" if above else menu.title())
+        title = _KEY.sub("", menu.title())
+        yield from _within(each, f"{above}, {title}" if above else title)
+
+
+def _with_key(title: str, letter: str) -> str:
+    """Return the title of a menu with the letter that opens it: a letter of its own, else one behind it."""
+    first = title.lower().startswith(letter)
+    return f"&{title}" if first else f"{title}(&{letter.upper()})"

@@ -6,14 +6,16 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from PySide6.QtCore import Signal
-from PySide6.QtGui import QAction, QImage
+from PySide6.QtGui import QAction, QImage, QPainter, QRegion
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.asking.jobs import Job, Jobs
+from app.dress.parts import ToolButton
 from app.panels.busy import BusyCard
 from app.panels.question import QuestionCard
 from app.panels.view_tools import CompareTools, ViewTools
 from app.seeing.occlusion import bake_occlusion
+from app.showing.fine_picture import fine_picture
 from app.showing.floating import Floating
 from app.showing.panes import Panes
 from app.showing.viewport import Viewport
@@ -53,6 +55,7 @@ class ViewArea(QWidget):
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.panes)
         self.floating = Floating(self)
+        self._explaining: list[QWidget] = []
         for panel, corner in (
             (self.tools, "bottom"),
             (self.busy, "bottom"),
@@ -177,13 +180,33 @@ class ViewArea(QWidget):
 
     # -- places, pictures, the end
 
-    def place(self, panel: QWidget, corner: str) -> None:
-        """Let a panel float in one of ``app.showing.floating.CORNERS``, over what is there already."""
-        self.floating.place(panel, corner)
+    def place(self, panel: QWidget, corner: str, explains: bool = False) -> None:
+        """Let a panel float in one of ``app.showing.floating.CORNERS``, over what is there already.
 
-    def picture(self) -> QImage:
-        """Return what is seen."""
-        return self.panes.picture()
+        One that ``explains`` what is seen belongs to a picture of it.
+        """
+        self.floating.place(panel, corner)
+        if explains:
+            self._explaining.append(panel)
+
+    def picture(self, finer: float = 2.0) -> QImage:
+        """Return what is seen, with so many times the pixels of the screen in both directions.
+
+        Of what floats over it only that is in the picture which explains it, such as the legend of a map.
+        """
+        picture = fine_picture(self.panes, finer)
+        painter = QPainter(picture)
+        for panel in self._explaining:
+            if not panel.isHidden():
+                # What closes it is for the hand.
+                tools = [tool for tool in panel.findChildren(ToolButton) if not tool.isHidden()]
+                for tool in tools:
+                    tool.hide()
+                panel.render(painter, panel.pos(), QRegion(), QWidget.RenderFlag.DrawChildren)
+                for tool in tools:
+                    tool.show()
+        painter.end()
+        return picture
 
     def close_view(self) -> None:
         """Give everything back, before the window goes."""

@@ -143,7 +143,7 @@ def _connect_view(window: MainWindow) -> None:
     view.tools.view_chosen.connect(view.viewport.set_view)
     view.tools.fit_asked.connect(view.viewport.frame_all)
     view.tools.toggled.connect(view.set_layer)
-    view.tools.picture_asked.connect(desk.save_picture)
+    view.tools.picture_asked.connect(window.picture_desk.save)
     view.compare.way_chosen.connect(view.compare_by)
     view.compare.toggled.connect(view.set_layer)
 

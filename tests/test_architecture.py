@@ -66,7 +66,7 @@ OUTSIDE = {
     "keeping": QT,
     "viewing": QT | {"numpy"},
     "helping": QT | {"PySide6", "platformdirs"},
-    "desks": QT | {"PySide6.QtSvg"},
+    "desks": QT | {"PySide6.QtSvg", "PySide6.QtPrintSupport"},
     "lining": QT | {"numpy"},
     "roof": NUMBERS
     | {"PySide6", "pyvista", "pyvistaqt", "platformdirs", "threadpoolctl", "PySide6.QtCore", "PySide6.QtGui"}

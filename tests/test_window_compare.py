@@ -110,9 +110,9 @@ def a_wipe_shows_both_pictures_with_a_handle_between(window: MainWindow) -> None
     panes, handle = view.panes, view.panes.handle
     view.select_line("")
     view.set_after(False)
-    before = pixels(view.picture())
+    before = pixels(view.picture(1))
     view.set_after(True)
-    after = pixels(view.picture())
+    after = pixels(view.picture(1))
     view.viewport.setFocus()
     key(window, Qt.Key.Key_W)
     assert view.compare.actions_by_name["wipe"].isChecked()
@@ -125,7 +125,7 @@ def a_wipe_shows_both_pictures_with_a_handle_between(window: MainWindow) -> None
     assert handle.geometry().center().x() == pytest.approx(line, abs=1)
     assert rest.rect().width() == width
     assert rest.parentWidget().width() == line
-    seen, low = pixels(view.picture()), 100  # below the titles
+    seen, low = pixels(view.picture(1)), 100  # below the titles
     left, right = np.s_[low:, : line - REACH], np.s_[low:, line + REACH :]
     assert np.array_equal(seen[left], before[left])
     assert np.array_equal(seen[right], after[right])

@@ -5,11 +5,13 @@ from __future__ import annotations
 import logging
 import time
 import traceback
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QTimer
 
+from app.helping.folders import show_folder, shown_folder
 from app.keeping.dialogs import ask_about_changes, ask_open, ask_save
 from app.keeping.last_folders import remember_folder
 from app.keeping.loss_dialogs import ask_overwrite
@@ -23,7 +25,7 @@ from app.presenting.verdict import kept_volume, state_of, strip_verdict
 from app.wording.samples import sample_design
 from app.wording.words import tr
 from core.design import Design
-from core.errors import ProjectError, UserError
+from core.errors import UserError
 from core.export import write_frame
 from core.live import Frame
 from core.report import warnings
@@ -111,10 +113,12 @@ class Desk(QObject):
         said = tr("Something went wrong inside Busk."), tr("Your design is kept. The log tells more.")
         notices.show_notice("bad", *said, lasting=True, details=trace)
 
-    def show_written(self, about: str, sentence: str) -> None:
-        """Say that a file has been written, and no longer that it cannot be."""
-        self._window.notices.withdraw(about)
-        self._window.notices.show_notice("ok", sentence)
+    def show_written(self, about: str, sentence: str, path: str) -> None:
+        """Say that a file has been written, and where, and no longer that it cannot be."""
+        folder, notices = Path(path).absolute().parent, self._window.notices
+        notices.withdraw(about)
+        show = tr("Show folder"), partial(show_folder, folder, notices)
+        notices.show_notice("ok", sentence, shown_folder(folder), [show])
 
     def show_not_saved(self, error: Exception) -> None:
         """Say why the project could not be saved, until it can."""
@@ -215,23 +219,10 @@ class Desk(QObject):
         self._window.jobs.run(
             tr("Writing the body"),
             lambda progress: write_frame(path, frame, progress),
-            lambda _: self.show_written("body", said),
+            lambda _: self.show_written("body", said, path),
             lambda error: self.show_failure(error, "body"),
             waited=True,
         )
-
-    def save_picture(self) -> None:
-        """Ask for a place and write what the view shows."""
-        path = ask_save(
-            self._window, tr("Save a picture"), f"{self._session.name}.png", "PNG (*.png)", ".png"
-        )
-        if not path:
-            return
-        if self._window.view.picture().save(path):
-            self.show_written("picture", tr("{name} written.").format(name=Path(path).name))
-        else:
-            said = tr("The picture cannot be written there."), tr("Choose another folder.")
-            self.show_failure(ProjectError(*said), "picture")
 
     def may_leave(self) -> bool:
         """Ask about unsaved changes; returns whether the document may be left. A save is waited for."""

@@ -89,7 +89,7 @@ class PlotDesk(QObject):
         except UserError as error:
             window.desk.show_failure(error, title)
         else:
-            window.desk.show_written(title, tr("{name} written.").format(name=Path(path).name))
+            window.desk.show_written(title, tr("{name} written.").format(name=Path(path).name), path)
 
     def _last_edit(self) -> str:
         return self._window.session.undo_stack.undoText() or tr("As it was opened")

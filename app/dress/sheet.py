@@ -6,8 +6,17 @@ from collections.abc import Callable
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QFontDatabase, QShowEvent
-from PySide6.QtWidgets import QDialog, QHBoxLayout, QPlainTextEdit, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QApplication,
+    QDialog,
+    QHBoxLayout,
+    QPlainTextEdit,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
 
+from app.dress.focus import next_stop, stops
 from app.dress.parts import button, hairline
 from app.dress.theme import label
 from app.wording.words import tr
@@ -39,6 +48,7 @@ class Sheet(QDialog):
         heading.setWordWrap(True)
         self.body.addWidget(heading)
         self._size = size
+        self._before: QWidget | None = None
         if size is not None:
             self.setMinimumWidth(size[0])
             self.resize(*size)
@@ -63,7 +73,26 @@ class Sheet(QDialog):
         """Be as high as needed, where no height was wished for."""
         if self._size is not None and not self._size[1]:
             self.fit()
+        if self._before is None and not event.spontaneous():
+            self._before = QApplication.focusWidget()
+            if self._before is not None:
+                self._before.destroyed.connect(self._forget)
         super().showEvent(event)
+
+    def done(self, result: int) -> None:
+        """Go, and give the keyboard back to what had it before."""
+        super().done(result)
+        before = self._before
+        if before is not None and before.isVisible():
+            before.window().activateWindow()
+            before.setFocus(Qt.FocusReason.OtherFocusReason)
+
+    def _forget(self) -> None:
+        self._before = None
+
+    def focusNextPrevChild(self, next: bool) -> bool:  # noqa: N802
+        """Lead the keyboard in the order that eyes read, as in the window."""
+        return next_stop(stops(self), next)
 
     def add_close(self) -> QPushButton:
         """Put the button that closes the sheet at the foot."""

@@ -26,6 +26,12 @@ def folders() -> list[tuple[str, Path]]:
     ]
 
 
+def shown_folder(folder: Path) -> str:
+    """Return a folder as it is shown and copied: ``~`` in the place of the user's own, which is a name."""
+    home = Path.home()
+    return str(Path("~") / folder.relative_to(home)) if folder.is_relative_to(home) else str(folder)
+
+
 def show_folder(folder: Path, notices: NoticeBar) -> None:
     """Show a folder as the desktop does; where that does not go, say where it is."""
     if not (folder.is_dir() and QDesktopServices.openUrl(QUrl.fromLocalFile(str(folder)))):

@@ -43,4 +43,4 @@ def save_table(window: MainWindow, table: Table, title: str, ending: str) -> Non
     except UserError as error:
         window.desk.show_failure(error, about)
     else:
-        window.desk.show_written(about, tr("{name} written.").format(name=Path(path).name))
+        window.desk.show_written(about, tr("{name} written.").format(name=Path(path).name), path)

@@ -6,12 +6,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from PySide6.QtCore import QRect, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetricsF, QImage, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.dress.theme import font, tokens_of
 from app.showing.floating import GAP
-from app.showing.plane_handle import PlaneHandle
 from app.showing.viewport import Viewport
 from app.showing.wipe import WipeHandle
 
@@ -56,18 +55,6 @@ class Panes(QWidget):
     def is_wiped(self) -> bool:
         """Whether a wipe is shown."""
         return not self._wiped.isHidden()
-
-    def picture(self) -> QImage:
-        """Return all that is seen at its best, in device pixels."""
-        # A handle is there for the hand: who looks at the picture has none.
-        handles = [handle for handle in self.findChildren(PlaneHandle) if not handle.isHidden()]
-        for handle in handles:
-            handle.hide()
-        pictures = [viewport.picture() for viewport in self.viewports]
-        picture = pictures[0] if len(pictures) == 1 else self.grab().toImage()
-        for handle in handles:
-            handle.show()
-        return picture
 
     def close_views(self) -> None:
         """Give all 3D objects back."""

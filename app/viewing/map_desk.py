@@ -59,7 +59,7 @@ class MapDesk(QObject):
         self._tinted: WeakSet[Bands] = WeakSet()
         self.legend = Legend(list(self._kinds.values()), self._view)
         self.legend.hide()
-        self._view.place(self.legend, "top-right")
+        self._view.place(self.legend, "top-right", explains=True)
         self.flags = ValueFlags(self._view.viewport)
         self._connect()
 

@@ -124,7 +124,7 @@ class SectionDesk(QObject):
             self._window.desk.show_failure(problem, "curves")
         else:
             said = tr("Curves written to {name}.").format(name=Path(path).name)
-            self._window.desk.show_written("curves", said)
+            self._window.desk.show_written("curves", said, path)
 
     # -- the handle in the view
 
