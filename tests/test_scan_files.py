@@ -101,7 +101,7 @@ HOSTILE = [
     ("a.obj", b"v 1 2 3 " * 2_000_000, "damaged"),
     ("a.off", b"4OFF\n1 0 0\n", "rare kind"),
     ("a.off", b"OFF BINARY\n\0\0\0\1", "rare kind"),
-    ("a.xyz", b"some words\nabout nothing\n", "damaged"),
+    ("a.xyz", b"some words\nabout nothing\n", "is no scan: it is a text without points"),
     ("a.csv", b"1,5,2,5,3,5\n" * 3, "a comma may stand"),
     ("a.csv", b"1.200,5;2.500,0;3,5\n", "a comma may stand"),
     ("a.xyz", b"1 2 3\n1 2\n", "damaged"),
