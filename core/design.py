@@ -9,6 +9,7 @@ from functools import reduce
 from pathlib import Path
 from typing import Any
 
+from core.design_elastics import TISSUE_LIMITS, TISSUE_STIFFNESS, Elastic, check_elastics
 from core.design_lines import LineTraits, OwnLine, WornLine, partner_of
 from core.design_measures import OwnMeasure
 from core.errors import LandmarkError, LineError, UserError
@@ -52,7 +53,9 @@ class Design:
     the body itself and not that of the control mesh. For the choices of the model see ``core.mechanics``.
     ``own_lines`` are lines beside those of the template, ``traits`` how lines are treated where that is
     not as usual, ``placed`` the landmarks that were placed by hand, ``own_measures`` what is measured beside
-    the usual. ``unknown`` keeps what a later version wrote.
+    the usual, ``elastics`` those that lines are made of, with their curves, so that a project opens
+    elsewhere. ``tissue_stiffness`` [N/m] tells what the model's forces are in newtons, an estimate (see
+    docs/sewing.md). ``unknown`` keeps what a later version wrote.
     """
 
     scan: ScanSource
@@ -76,6 +79,8 @@ class Design:
     traits: tuple[LineTraits, ...] = ()
     placed: tuple[PlacedMark, ...] = ()
     own_measures: tuple[OwnMeasure, ...] = ()
+    elastics: tuple[Elastic, ...] = ()
+    tissue_stiffness: float = TISSUE_STIFFNESS
     unknown: Mapping[str, Any] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
@@ -99,6 +104,7 @@ class Design:
         twice = _twice([measure.name for measure in self.own_measures])
         if twice:
             raise UserError(f"There are two measures '{twice}'.", "Give each measure a name of its own.")
+        check_elastics(self.elastics, {each.name: each.elastic for each in self.traits if each.elastic})
 
     def _check_words(self) -> None:
         for value, choices, what in (
@@ -118,6 +124,7 @@ class Design:
             (self.line_height, 0.25, 0.75, "line height"),
             *((getattr(self, key), *limits, key.replace("_", " ")) for key, limits in RANGES.items()),
             (1.0 if self.gain is None else self.gain, 0.0, 10.0, "gain"),
+            (self.tissue_stiffness, *TISSUE_LIMITS, "tissue stiffness"),
         ):
             if not low <= number <= high:
                 raise UserError(
@@ -141,6 +148,31 @@ class Design:
         """Return the stiffness [1] of each worn line that has its own."""
         own = {each.name: each.stiffness for each in self.traits if each.name in self.worn()}
         return {name: stiffness for name, stiffness in own.items() if stiffness is not None}
+
+    def worn_elastics(self) -> dict[str, Elastic]:
+        """Return the elastic of each worn line that has one."""
+        elastics = {elastic.name: elastic for elastic in self.elastics}
+        made = {each.name: each.elastic for each in self.traits if each.elastic}
+        return {name: elastics[elastic] for name, elastic in made.items() if name in self.worn()}
+
+    def with_elastic(self, name: str, elastic: Elastic | None) -> Design:
+        """Return the design with a line made of an elastic, and as wide; of none in particular if None.
+
+        Lines that share an elastic of this name share its curve.
+        """
+        if elastic is None:
+            return self.with_traits(replace(self.traits_of(name), elastic="", width=None))
+        others = tuple(each for each in self.elastics if each.name != elastic.name)
+        design = replace(self, elastics=tuple(sorted((*others, elastic), key=lambda each: each.name)))
+        traits = replace(self.traits_of(name), elastic=elastic.name, width=elastic.width_mm)
+        return design.with_traits(traits)
+
+    def acts_as(self, other: Design) -> bool:
+        """Tell whether another design is solved alike: names, colours, locks and links do not act."""
+        mine, others = (
+            reduce(Design.with_traits, map(LineTraits.acting, each.traits), each) for each in (self, other)
+        )
+        return mine == others
 
     def with_template(self, template: str) -> Design:
         """Return the design with another template. Raises LineError if there are own lines.
@@ -177,7 +209,9 @@ class Design:
         """Return the design with a line treated in another way."""
         others = [each for each in self.traits if each.name != traits.name]
         kept = others if traits == LineTraits(traits.name) else [*others, traits]
-        return replace(self, traits=tuple(sorted(kept, key=lambda each: each.name)))
+        used = {each.elastic for each in kept}
+        elastics = tuple(each for each in self.elastics if each.name in used)
+        return replace(self, traits=tuple(sorted(kept, key=lambda each: each.name)), elastics=elastics)
 
     def linked(self, name: str) -> tuple[str, ...]:
         """Return the own line ``name`` and its partner of the other side, if they share length and lock."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from core.errors import LineError
@@ -57,7 +57,8 @@ class LineTraits:
     ``title`` and ``colour`` ("#rrggbb") are empty where the usual ones stand. A ``locked`` line keeps its
     length and cannot be removed; a ``linked`` one shares its length with its partner of the other side.
     ``stiffness`` [1] is its own in place of the design's, or None; ``width`` [mm] is that of its band as it
-    is drawn, or None for the usual one. Raises LineError for what cannot be.
+    is drawn, or None for the usual one. ``elastic`` names what it is made of among the design's elastics, and
+    gives it its stiffness; empty for nothing in particular. Raises LineError for what cannot be.
     """
 
     name: str
@@ -67,6 +68,7 @@ class LineTraits:
     linked: bool = True
     stiffness: float | None = None
     width: float | None = None
+    elastic: str = ""
 
     def __post_init__(self) -> None:
         if len(self.title) > LONGEST_TITLE or not all(letter.isprintable() for letter in self.title):
@@ -87,6 +89,10 @@ class LineTraits:
                 f"The line {self.name} cannot be {self.width:g} mm wide.",
                 f"It goes from {WIDTHS[0]:g} to {WIDTHS[1]:g}.",
             )
+
+    def acting(self) -> LineTraits:
+        """Return what of it acts on the model: a name, a colour, a lock and a link do not."""
+        return replace(self, title="", colour="", locked=False, linked=True)
 
 
 def partner_of(name: str) -> str:

@@ -8,19 +8,33 @@ from dataclasses import asdict, fields
 from typing import Any
 
 from core.design import Design, ScanSource
+from core.design_elastics import TISSUE_STIFFNESS, elastic_of
 from core.design_lines import LineTraits, OwnLine, WornLine
 from core.design_measures import OwnMeasure
 from core.errors import ProjectError, UserError
 from core.placing import PlacedMark
 
-FORMAT = 2
-"""The newest format that is read: 2 has variants beside the design; a design alone is written as 1."""
+FORMAT = 3
+"""The newest format that is read: 2 has variants beside the design, 3 elastics; all else is written as 1."""
+
+WITH_VARIANTS, WITH_ELASTICS = 2, 3
 
 
 def to_json(design: Design, written: int = 1) -> str:
     """Return the design as text, the number of the format first."""
     values = asdict(design)
     unknown = values.pop("unknown")
+    # What is not used is not written: the project stays one that every Busk reads, to the byte.
+    for traits in values["traits"]:
+        if not traits["elastic"]:
+            del traits["elastic"]
+    if design.elastics:
+        # An older program would drop the elastics of lines at its next save: it must not read this.
+        written = max(written, WITH_ELASTICS)
+    else:
+        del values["elastics"]
+    if design.tissue_stiffness == TISSUE_STIFFNESS:
+        del values["tissue_stiffness"]
     return json.dumps({"format": written, "length_unit": "mm", **unknown, **values}, indent=1)
 
 
@@ -39,6 +53,7 @@ def from_json(text: str) -> Design:
         own = tuple(_own_line(line) for line in values.pop("own_lines", ()))
         placed = tuple(_placed(mark) for mark in values.pop("placed", ()))
         traits = tuple(_traits(line) for line in values.pop("traits", ()))
+        elastics = tuple(elastic_of(each) for each in values.pop("elastics", ()))
         measures = tuple(_own_measure(each) for each in values.pop("own_measures", ()))
         known = {f.name for f in fields(Design)} - {"unknown"}
         unknown = {key: values.pop(key) for key in list(values) if key not in known}
@@ -49,6 +64,7 @@ def from_json(text: str) -> Design:
             traits=traits,
             placed=placed,
             own_measures=measures,
+            elastics=elastics,
             unknown=unknown,
             **values,
         )
@@ -88,4 +104,5 @@ def _traits(values: Mapping[str, Any]) -> LineTraits:
     stiffness, width = (
         None if number is None else float(number) for number in (values.get("stiffness"), values.get("width"))
     )
-    return LineTraits(str(values["name"]), title, colour, locked, linked, stiffness, width)
+    elastic = str(values.get("elastic", ""))
+    return LineTraits(str(values["name"]), title, colour, locked, linked, stiffness, width, elastic)

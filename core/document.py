@@ -15,7 +15,8 @@ VARIANTS = ("A", "B", "C")
 class Document:
     """The variants of a design by name, of which one is ``shown``.
 
-    All lie on one body: what is said of the scan, its landmarks and own measures is said of every variant.
+    All lie on one body: what is said of the scan, its landmarks, tissue and own measures is said of every
+    variant.
     Raises UserError if a variant has no name of ``VARIANTS`` or the shown one is not there.
     """
 
@@ -61,7 +62,7 @@ class Document:
 
 
 def _on_same_body(design: Design, model: Design) -> Design:
-    same = {key: getattr(model, key) for key in ("scan", "placed", "own_measures")}
+    same = {key: getattr(model, key) for key in ("scan", "placed", "own_measures", "tissue_stiffness")}
     if all(getattr(design, key) == value for key, value in same.items()):
         return design
     return replace(design, **same)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 
-from core.design_text import FORMAT, from_json, to_json
+from core.design_text import WITH_VARIANTS, from_json, to_json
 from core.document import Document
 from core.errors import ProjectError, UserError
 
@@ -20,7 +20,7 @@ def to_texts(document: Document) -> dict[str, str]:
         return {DESIGN: to_json(document.design)}
     # An older program would drop the variants at its next save: it must not read this.
     variants = {"shown": document.shown, "others": others}
-    return {DESIGN: to_json(document.design, FORMAT), VARIANTS: json.dumps(variants, indent=1)}
+    return {DESIGN: to_json(document.design, WITH_VARIANTS), VARIANTS: json.dumps(variants, indent=1)}
 
 
 def from_texts(texts: Mapping[str, str]) -> Document:

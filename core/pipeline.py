@@ -15,6 +15,7 @@ from core.body import Body, RefusedError, body_of
 from core.control_mesh import ControlMesh, fit_control_mesh
 from core.design import Design, ScanSource
 from core.design_lines import OwnLine
+from core.elastic_model import elastic_model
 from core.errors import FitError, LandmarkError, LineError, UserError
 from core.fitting.back_length import Back, back_of
 from core.landmark import Landmark, Landmarks
@@ -84,6 +85,18 @@ class Stages:
 
     def body_change(self, control_points: Points) -> Floats:
         """Return the volumes that the body's left and right have gained since rest, shape (2,) [mm^3]."""
+        return BodyFollows(self.binding, self.moving)(control_points)
+
+
+@dataclass(frozen=True, eq=False)
+class BodyFollows:
+    """Tells what the body's left and right have gained [mm^3], (2,), when it follows the control points."""
+
+    binding: Binding
+    moving: MovingFaces
+
+    def __call__(self, control_points: Points) -> Floats:
+        """Return it for control points, shape (n, 3) [mm]."""
         places = self.binding.operator.added(self.binding.change(control_points), self.moving.rest)
         return self.moving.side_volume_changes(places)
 
@@ -199,23 +212,14 @@ def _stages(stage: _Stager, design: Design, scan: ScanFile, body: Body) -> Stage
     backs = stage("measure bands", _backs, body, control)
     laid = stage("lay own lines", with_own_lines, control, design.own_lines)
     model = stage("build model", _model, laid, backs, design.worn(), design.mechanics, design.own_stiffness())
+    elastics = design.worn_elastics()
+    if elastics and design.line_hold == "spring":  # a held line has its length, whatever it is made of
+        change = stage("follow body", BodyFollows, binding, moving) if design.dense_volume else None
+        made = design.lines, elastics, design.tissue_stiffness, design.own_stiffness()
+        model = stage("fit elastics", elastic_model, model, *made, change)
     limit = stage("probe gain", gain_limit, model)
-    return Stages(
-        design,
-        scan,
-        body,
-        landmarks,
-        control,
-        patch,
-        binding,
-        moving,
-        watch,
-        backs,
-        model,
-        limit,
-        stage.seconds,
-        stage.memo,
-    )
+    results = scan, body, landmarks, control, patch, binding, moving, watch, backs, model, limit
+    return Stages(design, *results, stage.seconds, stage.memo)
 
 
 def targets_of(design: Design, stages: Stages) -> Targets:

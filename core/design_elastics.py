@@ -1,0 +1,152 @@
+"""Elastic: a narrow elastic fabric by its own curve of force over elongation, as a design keeps it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+from core.errors import LineError
+
+Point = tuple[float, float]
+Curve = tuple[Point, ...]
+"""Points (elongation [1], force [N]), the unstretched elastic (0, 0) first."""
+
+TISSUE_STIFFNESS = 530.0
+"""Force per width and strain of skin and tissue [N/m]; an estimate: skin of 344 kPa and 1.55 mm."""
+
+TISSUE_LIMITS = (50.0, 2000.0)
+"""The softest and the stiffest tissue [N/m]; skins alone were measured from about 160 to 1150 N/m."""
+
+LONGEST_NAME = 80
+"""Letters of the name of an elastic."""
+
+LIMITS = {"width_mm": (1.0, 200.0), "allowance_mm": (0.0, 200.0)}
+"""The least and the largest width and allowance [mm]."""
+
+MOST_POINTS, FURTHEST, STRONGEST = 2000, 5.0, 10_000.0
+"""Points of a curve, its longest elongation [1] and its largest force [N]."""
+
+
+@dataclass(frozen=True)
+class Elastic:
+    """An elastic that lines are made of.
+
+    ``curve`` goes straight between its points, and ends where nothing is known any more. ``allowance_mm`` is
+    added to each piece that is cut, both ends together. ``source`` says where the curve comes from;
+    ``estimate`` that it was not measured. Raises LineError for what no elastic can be.
+    """
+
+    name: str
+    width_mm: float
+    curve: Curve
+    allowance_mm: float = 20.0
+    source: str = ""
+    estimate: bool = True
+
+    def __post_init__(self) -> None:
+        printable = all(letter.isprintable() for letter in self.name)
+        if not self.name.strip() or len(self.name) > LONGEST_NAME or not printable:
+            raise LineError("An elastic needs a name.", f"Use up to {LONGEST_NAME} letters.")
+        for key, (low, high) in LIMITS.items():
+            number, what = getattr(self, key), key.removesuffix("_mm")
+            if not low <= number <= high:
+                raise LineError(
+                    f"The {what} {number:g} mm of {self.name} is out of range.",
+                    f"It goes from {low:g} to {high:g} mm.",
+                )
+        self._check_curve()
+
+    def _check_curve(self) -> None:
+        rows = self.curve
+        whole = all(math.isfinite(number) for row in rows for number in row)
+        if not whole or not 2 <= len(rows) <= MOST_POINTS or tuple(rows[0]) != (0.0, 0.0):
+            raise LineError(
+                f"The table of {self.name} is no curve.", "It begins with no force at no elongation."
+            )
+        for (before, weaker), (after, stronger) in pairwise(rows):
+            if not before < after or not weaker < stronger:
+                raise LineError(
+                    f"The table of {self.name} goes back after {100.0 * before:g} % and {weaker:g} N.",
+                    "Elongation and force must both rise from row to row: leave out the way back.",
+                )
+        if self.reach > FURTHEST or self.strength > STRONGEST:
+            raise LineError(
+                f"The table of {self.name} ends at {100.0 * self.reach:g} % and {self.strength:g} N.",
+                f"Look at its units: no elastic goes beyond {100.0 * FURTHEST:g} % or {STRONGEST:g} N.",
+            )
+
+    @property
+    def reach(self) -> float:
+        """The elongation at which the curve ends [1]."""
+        return self.curve[-1][0]
+
+    @property
+    def strength(self) -> float:
+        """The force at which the curve ends [N]."""
+        return self.curve[-1][1]
+
+    def force(self, elongation: float) -> float:
+        """Return the force [N] at an elongation [1], 0 for a slack one; see ``secant``."""
+        return max(elongation, 0.0) * self.secant(elongation)
+
+    def secant(self, elongation: float) -> float:
+        """Return force over elongation, EA of the Hooke line that works at the same point [N].
+
+        A slack elastic has that of its first piece; beyond its end the curve goes on as it ends, for those
+        who look at ``reach`` themselves.
+        """
+        first, rise = self.curve[1]
+        if elongation <= first:
+            return rise / first
+        (e0, f0), (e1, f1) = self._piece(lambda point: elongation <= point[0])
+        return (f0 + (elongation - e0) * (f1 - f0) / (e1 - e0)) / elongation
+
+    def elongation(self, force: float) -> float:
+        """Return the elongation [1] at a force [N], 0 at none; beyond its end as ``secant``."""
+        (e0, f0), (e1, f1) = self._piece(lambda point: force <= point[1])
+        return max(e0 + (force - f0) * (e1 - e0) / (f1 - f0), 0.0)
+
+    def _piece(self, ends: Callable[[Point], bool]) -> tuple[Point, Point]:
+        """Return the first piece of the curve at whose end the condition holds, or the last piece."""
+        pieces = list(pairwise(self.curve))
+        return next((piece for piece in pieces if ends(piece[1])), pieces[-1])
+
+    def overstretched(self, elongation: float, line: str) -> LineError:
+        """Return what to say when a line would stretch the elastic beyond its curve."""
+        return LineError(
+            f"{self.name} would be stretched by {100.0 * elongation:.0f} % as {line}; "
+            f"its table ends at {100.0 * self.reach:g} %.",
+            "Let the line be longer, or take an elastic that stretches further.",
+        )
+
+    def overpulled(self, force: float, line: str) -> LineError:
+        """Return what to say when a line would pull the elastic with more than its curve knows."""
+        return LineError(
+            f"{self.name} would be pulled with {force:.1f} N as {line}; "
+            f"its table ends at {self.strength:g} N.",
+            "Let the line be longer, or take a stronger or wider elastic.",
+        )
+
+
+def elastic_of(values: Mapping[str, Any]) -> Elastic:
+    """Return the elastic that JSON ``values`` describe. Raises KeyError, TypeError, ValueError, LineError."""
+    curve = tuple((float(elongation), float(force)) for elongation, force in values["curve"])
+    estimate = values.get("estimate", True)
+    if not isinstance(estimate, bool):
+        raise TypeError("estimate is true or false")
+    width, allowance = float(values["width_mm"]), float(values.get("allowance_mm", 20.0))
+    return Elastic(str(values["name"]), width, curve, allowance, str(values.get("source", "")), estimate)
+
+
+def check_elastics(elastics: Sequence[Elastic], made: Mapping[str, str]) -> None:
+    """Raise LineError if two elastics share a name, or a line is ``made`` of one that is not there."""
+    names = [elastic.name for elastic in elastics]
+    for name in names:
+        if names.count(name) > 1:
+            raise LineError(f"There are two elastics '{name}'.", "Give each elastic a name of its own.")
+    for line, name in made.items():
+        if name not in names:
+            raise LineError(f"The elastic {name} of the line {line} is missing.", "Choose it again.")
