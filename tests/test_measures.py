@@ -13,6 +13,8 @@ from shapes import SAMPLES
 from core.body import read_scan
 from core.design import Design, ScanSource
 from core.design_measures import OwnMeasure
+from core.finding.bust_point import ACROSS
+from core.finding.under_breast import MIRRORED
 from core.landmark import Landmarks
 from core.landmarks import find_landmarks
 from core.measure import girth_at, girths
@@ -117,6 +119,31 @@ def test_what_the_scan_does_not_show_is_missing_with_the_reason(person: tuple[Me
         assert one[key].note.endswith(".")
     assert one["bust_protrusion"].value is None
     assert one["breast_volume_right"].value == found["breast_volume_right"].value
+
+
+def test_a_side_without_a_breast_is_not_measured(person: tuple[Mesh, Landmarks]) -> None:
+    mesh, landmarks = person
+    flat = {"bust_point_right": replace(landmarks.points["bust_point_right"], rule=ACROSS)}
+    found = measures(mesh, replace(landmarks, points=MappingProxyType({**landmarks.points, **flat})))
+    for key in ("cup_depth", "cup_width", "root_length", "bust_point_to_fold", "breast_volume"):
+        assert found[f"{key}_right"].value is None, key
+        assert "No breast" in found[f"{key}_right"].note
+        assert found[f"{key}_left"].value is not None, key
+    assert found["asymmetry_height"].value is None
+    assert found["asymmetry_volume"].value is None
+
+
+def test_no_volume_is_made_of_a_fold_that_a_hole_hides(person: tuple[Mesh, Landmarks]) -> None:
+    mesh, landmarks = person
+    hidden = {"fold_left": replace(landmarks.points["fold_left"], rule=MIRRORED, confidence=0.3)}
+    found = measures(mesh, replace(landmarks, points=MappingProxyType({**landmarks.points, **hidden})))
+    assert found["breast_volume_left"].value is None
+    assert found["root_length_left"].note == found["breast_volume_left"].note
+    assert "fold" in found["root_length_left"].note
+    assert found["cup_width_left"].value is not None
+    unsure = {"fold_left": replace(landmarks.points["fold_left"], confidence=0.3)}
+    found = measures(mesh, replace(landmarks, points=MappingProxyType({**landmarks.points, **unsure})))
+    assert "uncertain" in found["breast_volume_left"].note
 
 
 def test_a_hole_at_a_level_makes_an_estimate(person: tuple[Mesh, Landmarks]) -> None:

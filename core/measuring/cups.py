@@ -12,16 +12,23 @@ from core.geodesic import shortest_way
 from core.landmark import SIDES, Landmark
 from core.measuring.breast import foremost
 from core.measuring.definitions import Measure, definition_of, missing
-from core.measuring.subject import Subject
+from core.measuring.subject import Subject, shows_breast
 from core.mesh import Mesh, Points
 from core.sections import arc_length
 
 NO_MARK = "The scan does not show the landmarks that it is taken from."
+NO_BREAST = "No breast stands out on this side."
+NO_FOLD = "The fold under the breast does not show."
+UNSURE_FOLD = "The fold under the breast is uncertain, and its volume with it: an estimate."
 NO_WAY = "There is no way over the skin between its two places."
 NO_ROOT = "The ends of the root of the breast were not found."
 OPEN_ROOT = "The skin round the root of the breast does not show far enough."
-HELD_UP = "The chest behind the breast and the top of its root do not show: an estimate."
+UNSEEN_CHEST = "The chest behind the breast and the top of its root do not show: an estimate."
 HOLED = "A hole of the scan lies on its way: an estimate."
+
+
+OF_A_CUP = ("bust_point_to_fold", "cup_depth", "cup_width", "root_length")
+"""What is measured of one cup."""
 
 
 def cup_measures(subject: Subject) -> Iterator[Measure]:
@@ -29,8 +36,11 @@ def cup_measures(subject: Subject) -> Iterator[Measure]:
     yield _between_bust_points(subject)
     yield from _heights(subject)
     for side in SIDES:
-        yield _to_fold(subject, side)
-        yield from _cup(subject, side)
+        if shows_breast(subject.landmarks, side):
+            yield _to_fold(subject, side)
+            yield from _cup(subject, side)
+        else:
+            yield from (missing(f"{name}_{side}", NO_BREAST) for name in OF_A_CUP)
         yield _volume(subject, side)
     yield from _sides(subject)
 
@@ -129,16 +139,20 @@ def _cup(subject: Subject, side: str) -> Iterator[Measure]:
             f"cup_width_{side}", _length(line), "mm", (line,), min(inner.confidence, outer.confidence)
         )
     root = subject.roots.get(side)
-    if root is None:
-        yield missing(f"root_length_{side}", NO_ROOT)
+    if root is None or not subject.fold_seen(side):
+        yield missing(f"root_length_{side}", NO_FOLD if root else NO_ROOT)
     else:
         yield Measure(f"root_length_{side}", _length(root.under), "mm", (root.under,), root.confidence)
 
 
 def _volume(subject: Subject, side: str) -> Measure:
     key, breast = f"breast_volume_{side}", subject.breasts.get(side)
+    if not shows_breast(subject.landmarks, side):
+        return missing(key, NO_BREAST)
+    if side not in subject.roots or not subject.fold_seen(side):
+        return missing(key, NO_FOLD if side in subject.roots else NO_ROOT)
     if breast is None:
-        return missing(key, OPEN_ROOT if side in subject.roots else NO_ROOT)
+        return missing(key, OPEN_ROOT)
     root = subject.roots[side]
     return Measure(
         key,
@@ -148,7 +162,7 @@ def _volume(subject: Subject, side: str) -> Measure:
         root.confidence,
         True,
         subject.spreads[side] / 1000.0,
-        HOLED if breast.holed else HELD_UP,
+        HOLED if breast.holed else UNSEEN_CHEST if subject.fold_sure(side) else UNSURE_FOLD,
     )
 
 
@@ -156,8 +170,8 @@ def _sides(subject: Subject) -> Iterator[Measure]:
     """Yield by how much the left side exceeds the right one."""
     left, right = _busts(subject)
     for axis, sign, key in ((2, 1.0, "asymmetry_height"), (1, -1.0, "asymmetry_forward")):
-        if left is None or right is None:
-            yield missing(key, NO_MARK)
+        if left is None or right is None or not all(shows_breast(subject.landmarks, each) for each in SIDES):
+            yield missing(key, NO_BREAST)
             continue
         more = sign * float(left.position[axis] - right.position[axis])
         line = np.array([left.position, right.position])
@@ -173,5 +187,5 @@ def _sides(subject: Subject) -> Iterator[Measure]:
     share = abs(values[0] - values[1]) / max(sum(values) / 2.0, 1e-9)
     # Both tops are taken by the same rule: what is unsure of the volumes is unsure of their difference.
     yield Measure(
-        "asymmetry_volume", values[0] - values[1], unit, curves, sure, True, share * unsure, HELD_UP
+        "asymmetry_volume", values[0] - values[1], unit, curves, sure, True, share * unsure, UNSEEN_CHEST
     )

@@ -7,7 +7,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
 
-from core.landmark import SIDES, Landmark, Landmarks
+from core.finding.bust_point import ACROSS
+from core.finding.under_breast import HIDDEN, UNSEEN
+from core.landmark import CERTAIN, SIDES, Landmark, Landmarks
 from core.measure import trunk_sections
 from core.measuring.breast import Breast, breast_of
 from core.measuring.riding import carried, riders
@@ -39,6 +41,16 @@ class Subject:
         """The levels of the trunk at which girths are measured, by name."""
         return MappingProxyType(trunk_sections(self.mesh, self.landmarks))
 
+    def fold_seen(self, side: str) -> bool:
+        """Tell whether the fold on a side was seen or placed, and not only estimated."""
+        fold = self.mark(f"fold_{side}")
+        return fold is not None and fold.rule not in (*HIDDEN, UNSEEN)
+
+    def fold_sure(self, side: str) -> bool:
+        """Tell whether the fold on a side needs no second look."""
+        fold = self.mark(f"fold_{side}")
+        return fold is not None and fold.confidence >= CERTAIN
+
     def mark(self, name: str) -> Landmark | None:
         """Return a landmark, or None if the scan does not show it."""
         return self.landmarks.points.get(name)
@@ -63,6 +75,12 @@ class Subject:
         return Subject(self.mesh.moved(vertices), marks, roots, self.breasts, self.spreads, gains)
 
 
+def shows_breast(landmarks: Landmarks, side: str) -> bool:
+    """Tell whether a breast stands out on a side: else its bust point only mirrors the other one."""
+    bust = landmarks.points.get(f"bust_point_{side}")
+    return bust is not None and bust.rule != ACROSS
+
+
 def subject_of(mesh: Mesh, landmarks: Landmarks) -> Subject:
     """Return a skin [mm] and its landmarks ready to be measured."""
     roots: dict[str, Root] = {}
@@ -72,6 +90,8 @@ def subject_of(mesh: Mesh, landmarks: Landmarks) -> Subject:
     if len(points):
         depth = float(points[:, 1].min()), float(points[:, 1].max())
         for name in SIDES:
+            if not shows_breast(landmarks, name):
+                continue
             side = side_of(mesh, landmarks, name, chart_of(landmarks, name, depth))
             root = root_of(side) if side else None
             if side is None or root is None:
