@@ -107,9 +107,10 @@ class Editing(QObject):
 
     def take(self, document: Document) -> None:
         """Make ``document`` the present one, as the undo stack asks."""
-        self._preview = None
+        self._preview, before = None, self.design
         self.document = document
-        self._submit(document.design, fresh=True)
+        alike = before is not None and before.acts_as(document.design)
+        self._submit(document.design, fresh=not alike)
         self.design_changed.emit(document.design)
 
     def settle_preview(self, document: Document) -> None:

@@ -61,8 +61,10 @@ class PlotDesk(QObject):
         if fresh:
             self._first = records[0]
             self._events = []
-        if design is self._window.session.design and (fresh or design is not self._marked):
-            self._marked = design
+        if design is not self._window.session.design or (design is self._marked and not fresh):
+            return
+        former, self._marked = self._marked, design
+        if fresh or former is None or not design.acts_as(former):
             self._events.append(Event(float(frame.changed_at), self._last_edit()))
             self._window.strip.set_events(self._events)
 

@@ -1,0 +1,59 @@
+"""Names, colours, locks and links of lines do not act on the model: they leave the runs alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from test_live import Built, settled, solver
+from window_tools import Script, run_main, undrawn
+from window_tools import settled as at_rest
+
+from app.main_window import MainWindow
+from core.design import Design, ScanSource
+from core.design_lines import LineTraits
+from core.live import LiveSolver
+
+__all__ = ["solver"]
+
+DESIGN = Design(ScanSource("a.ply")).with_line("mid-bust", 0.95)
+
+
+@pytest.mark.parametrize("what", [{"title": "Mine"}, {"colour": "#e5536b"}, {"locked": True}, {"linked": False}])
+def test_what_a_line_is_called_does_not_act_and_its_stiffness_does(what: dict[str, object]) -> None:
+    assert DESIGN.acts_as(DESIGN.with_traits(LineTraits("mid-bust", **what)))  # type: ignore[arg-type]
+    assert not DESIGN.acts_as(DESIGN.with_traits(LineTraits("mid-bust", stiffness=3.0)))
+    assert not DESIGN.acts_as(DESIGN.with_line("mid-bust", 0.94))
+    assert not DESIGN.acts_as(replace(DESIGN, volume="exact"))
+
+
+def test_a_run_goes_on_over_a_new_name(solver: LiveSolver, built: Built) -> None:
+    design = built("mannequin").design.with_line("mid-bust", 0.95)
+    before = settled(solver, solver.submit(design, fresh=True))
+    after = settled(solver, solver.submit(design.with_traits(LineTraits("mid-bust", "Mine"))))
+    assert after.stages.design.traits_of("mid-bust").title == "Mine"
+    for control, records in before.tracks.items():
+        assert after.tracks[control] == records, "no turn is made, and none is forgotten"
+
+
+@pytest.mark.usefixtures("empty_house")
+def test_the_plots_stay_when_a_line_is_renamed_locked_or_undone() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield at_rest(window)
+        window.lines.length_committed.emit("mid-bust", 0.9)
+        yield at_rest(window)
+        frame = window.session.frame
+        assert frame is not None
+        turns = {control: len(records) for control, records in frame.tracks.items()}
+        for trait, value in (("title", "Mine"), ("colour", "#e5536b"), ("locked", True)):
+            window.lines_desk.decide("mid-bust", trait, value)
+            yield at_rest(window)
+        window.actions_.undo.trigger()
+        yield at_rest(window)
+        frame = window.session.frame
+        assert frame is not None
+        assert {control: len(records) for control, records in frame.tracks.items()} == turns
+        assert len(window.plot_desk._events) == 1, "only what acts has a mark on the axis"
+
+    assert run_main([], script) == 0
