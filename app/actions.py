@@ -80,7 +80,6 @@ class Actions(Menus):
             "obliques": tr("Add oblique lines from the sides"),
             "rings": tr("Add closed rings round the bust points"),
         }
-        self.add_menu = self.menus["lines"]
         self.add_lines = {name: self.add("lines", title, of_document=True) for name, title in titles.items()}
         self.rule("lines")
         said = tr("Click on the body from place to place; the line snaps to the control mesh")

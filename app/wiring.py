@@ -101,6 +101,7 @@ def _connect_panels(window: MainWindow) -> None:
     window.lines.reset_all.connect(session.reset_lines)
     window.strip.control_chosen.connect(session.choose_control)
     window.lines.add_asked.connect(window.line_maker.show_menu)
+    window.lines.presets_asked.connect(window.preset_desk.show_menu)
     window.lines.draw_asked.connect(window.line_drawing.begin)
     window.lines.path_asked.connect(window.line_routing.begin)
     window.lines.removed.connect(window.lines_desk.remove)

@@ -192,6 +192,20 @@ def with_preset(design: Design, preset: Preset) -> Design:
     return after
 
 
+def is_worn(design: Design, preset: Preset) -> bool:
+    """Return whether a design wears the lines of a preset and no others, whatever their lengths are now."""
+    paths = {line.name: line.points for line in design.own_lines}
+    wanted: set[str] = set()
+    for line, own in preset.laid(read_template(design.template)):
+        there = [paths.get(each.name) for each in own]
+        # Ready-made lines may have been led elsewhere: they are the same lines.
+        if None in there or (line.places and there != [each.points for each in own]):
+            return False
+        if line.length is not None:
+            wanted.update([each.name for each in own] or [line.line])
+    return bool(wanted) and design.worn() == wanted
+
+
 def _dressed(traits: LineTraits, line: PresetLine) -> LineTraits:
     return replace(
         traits,

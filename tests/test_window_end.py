@@ -63,7 +63,7 @@ def beside(window: MainWindow) -> Script:
     yield lambda: window.view.beside.way == "variants"
     window.preferences.show()
     window.actions_.about.trigger()
-    window.actions_.add_menu.popup(window.pos())
+    window.actions_.menus["lines"].popup(window.pos())
 
 
 def in_hand(window: MainWindow) -> Script:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, QPoint
+from PySide6.QtCore import QObject
+from PySide6.QtWidgets import QMenu
 
+from app.dress.parts import pull_down
 from app.lining.line_dialog import ask_own_line
 from app.presenting.lines import LINE_COLOURS, line_title, pair_title
 from app.wording.words import tr
@@ -23,11 +25,16 @@ class LineMaker(QObject):
     def __init__(self, window: MainWindow) -> None:
         super().__init__(window)
         self._window = window
+        self.menu = QMenu(window)
 
     def show_menu(self) -> None:
-        """Offer what can be added, under the button that asks for it."""
-        button = self._window.lines.add
-        self._window.actions_.add_menu.popup(button.mapToGlobal(QPoint(0, button.height() + 2)))
+        """Offer what can be added, and no more, under the button that asks for it."""
+        do = self._window.actions_
+        if not self.menu.actions():
+            self.menu.addActions([do.draw_line, do.own_line])
+            self.menu.addSeparator()
+            self.menu.addActions(list(do.add_lines.values()))
+        pull_down(self.menu, self._window.lines.head.add)
 
     def add(self, kind: str) -> None:
         """Add a pair of ready-made lines of a kind; one that is there stays as it is, and is selected."""

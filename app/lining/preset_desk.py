@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject
 
 from app.dress.ask import ask_name
+from app.dress.parts import pull_down
 from app.presenting.lines import row_title
 from app.wording.words import say, tr
 from core.design import Design
 from core.design_lines import LONGEST_TITLE
 from core.errors import UserError
-from core.presets import Preset, built_in, own_presets, preset_from, save_preset, with_preset
+from core.presets import Preset, built_in, is_worn, own_presets, preset_from, save_preset, with_preset
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -26,10 +27,12 @@ class PresetDesk(QObject):
     def __init__(self, window: MainWindow) -> None:
         super().__init__(window)
         self._window = window
+        self._known: tuple[Preset, ...] = ()
         self._menu = window.actions_.submenu("lines", "presets", tr("Presets"))
         self._menu.aboutToShow.connect(self.fill)
         # Not at the start: a designer's files are no reason to come up late, or not at all.
-        window.session.opened.connect(lambda _: self.fill())
+        window.session.opened.connect(self._fill_and_show)
+        window.session.design_changed.connect(self.show_worn)
 
     def fill(self) -> None:
         """List our presets, one's own, those that cannot be read, and how to keep one."""
@@ -37,6 +40,7 @@ class PresetDesk(QObject):
         menu.clear()
         opened = self._window.session.design is not None
         own, problems = own_presets()
+        self._known = (*built_in(), *own)
         for group in (built_in(), own):
             for preset in group:
                 action = menu.addAction(say(preset.title), partial(self.wear, preset))
@@ -48,6 +52,21 @@ class PresetDesk(QObject):
             action.setToolTip(say(problem.hint))
             action.setEnabled(False)
         menu.addAction(tr("Save lines as preset…"), self.ask).setEnabled(opened)
+
+    def show_menu(self) -> None:
+        """Offer the presets over the list of lines."""
+        pull_down(self._menu, self._window.lines.head.presets)
+
+    def _fill_and_show(self, _: object) -> None:
+        self.fill()
+        if self._window.session.design is not None:
+            self.show_worn(self._window.session.design)
+
+    def show_worn(self, design: Design) -> None:
+        """Say over the list which preset is worn, and what it leaves out."""
+        worn = next((each for each in self._known if _goes(each, design) and is_worn(design, each)), None)
+        leaves_out = say(worn.leaves_out) if worn is not None and worn.leaves_out else ""
+        self._window.lines.head.show_preset(say(worn.title) if worn is not None else "", leaves_out)
 
     def wear(self, preset: Preset) -> None:
         """Wear the lines of a preset in place of the present ones; say what it leaves out."""
@@ -65,8 +84,6 @@ class PresetDesk(QObject):
             said = tr("Led as in the preset {name}: {lines}").format(name=title, lines=led)
             undo = tr("Undo"), partial(session.undo_stack.setIndex, step)
             self._window.notices.show_notice("info", said, say(preset.leaves_out), [undo])
-        elif preset.leaves_out:
-            self._window.notices.show_notice("info", title, say(preset.leaves_out))
 
     def ask(self) -> None:
         """Ask for a name, and keep the present lines as a preset."""
@@ -92,6 +109,10 @@ class PresetDesk(QObject):
             return
         self._window.notices.withdraw("preset")
         self._window.notices.show_notice("ok", tr("Preset {name} saved.").format(name=title), str(path))
+
+
+def _goes(preset: Preset, design: Design) -> bool:
+    return preset.template in ("", design.template)
 
 
 def _led_anew(before: Design, after: Design) -> str:

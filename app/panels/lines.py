@@ -7,9 +7,10 @@ from collections.abc import Sequence
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QKeyEvent
-from PySide6.QtWidgets import QApplication, QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QApplication, QFrame, QScrollArea, QVBoxLayout, QWidget
 
-from app.dress.parts import EmptyState, ToolButton
+from app.dress.parts import EmptyState, sentence
+from app.panels.line_head import LineHead
 from app.panels.line_row import LineRow, LineView
 from app.wording.words import tr
 
@@ -50,6 +51,7 @@ class LinesPanel(QWidget):
     path_asked = Signal(str)
     draw_asked = Signal()
     add_asked = Signal()
+    presets_asked = Signal()
     reset_all = Signal()
 
     def __init__(self) -> None:
@@ -61,7 +63,12 @@ class LinesPanel(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
-        column.addLayout(self._head())
+        self.head = LineHead()
+        self.head.reset_asked.connect(self.reset_all)
+        self.head.draw_asked.connect(self.draw_asked)
+        self.head.add_asked.connect(self.add_asked)
+        self.head.presets_asked.connect(self.presets_asked)
+        column.addWidget(self.head)
         self._empty = EmptyState(
             "lines", tr("No lines yet"), tr("They appear once the control mesh lies on the body.")
         )
@@ -86,10 +93,11 @@ class LinesPanel(QWidget):
             row.take_focus(Qt.FocusReason.OtherFocusReason)
         self._bereft = False
         self._empty.setVisible(not lines)
-        for tool in (self.add, self.draw):
+        for tool in (self.head.presets, self.head.add, self.head.draw):
             tool.setEnabled(bool(lines))
+        self._reach.setVisible(bool(lines))
         self._scroll.setVisible(bool(lines))
-        self._reset.setEnabled(any(view.settable and view.ratio != 1.0 for view in lines))
+        self.head.reset.setEnabled(any(view.settable and view.ratio != 1.0 for view in lines))
 
     def select(self, name: str | None) -> None:
         """Open the row of a line and close the others; nothing is emitted."""
@@ -128,31 +136,17 @@ class LinesPanel(QWidget):
         elif what == "remove" and view.own:
             self.removed.emit(view.name)
 
-    def _head(self) -> QHBoxLayout:
-        head = QHBoxLayout()
-        head.setContentsMargins(18, 8, 14, 4)
-        head.addStretch(1)
-        self._reset = ToolButton(
-            "arrow-counter-clockwise",
-            tr("Set all lines back to their length at rest, but for locked ones (Ctrl+R)"),
-        )
-        self.draw = ToolButton("draw-line", tr("Draw a line on the body (N)"))
-        self.add = ToolButton("plus", tr("Add lines: a preset, a pair, or through control points"))
-        for tool, signal in (
-            (self._reset, self.reset_all),
-            (self.draw, self.draw_asked),
-            (self.add, self.add_asked),
-        ):
-            tool.clicked.connect(signal)
-            head.addWidget(tool)
-        return head
-
     def _scroll_area(self) -> QScrollArea:
         inside = QWidget()
         inside.setProperty("scrolled", "true")
         self._list = QVBoxLayout(inside)
         self._list.setContentsMargins(8, 0, 8, 12)
         self._list.setSpacing(2)
+        # Lasting, and before anybody looks for a waist to lock.
+        said = tr("Lines lie on the control mesh, under-bust to armpits: waist, hip and shoulders have none.")
+        self._reach = sentence(said, "caption")
+        self._reach.setContentsMargins(10, 10, 10, 0)
+        self._list.addWidget(self._reach)
         self._list.addStretch(1)
         self._scroll = _Area()
         self._scroll.setWidgetResizable(True)

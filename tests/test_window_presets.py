@@ -1,0 +1,70 @@
+"""Presets in the window: over the list stands what is worn and, lastingly, what it leaves out."""
+
+from __future__ import annotations
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QWidget
+from window_tools import Script, run_main, settled, undrawn
+
+from app.main_window import MainWindow
+from core.design import Design, ScanSource
+from core.presets import built_in, is_worn, with_preset
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+def test_the_worn_preset_stands_over_the_list_with_what_it_leaves_out() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        undrawn(window)
+        head = window.lines.head
+        assert head.presets.text() == "Presets"
+        assert head.note.isHidden()
+        head.presets.click()
+        menu = window.actions_.menus["presets"]
+        yield menu.isVisible
+        bodysuit = next(each for each in menu.actions() if each.text().startswith("Bodysuit"))
+        assert "bust part" in bodysuit.text(), "said before it is worn"
+        bodysuit.trigger()
+        menu.close()
+        yield settled(window)
+        assert head.presets.text() == bodysuit.text()
+        assert head.note.isVisible()
+        assert "hip" in head.note.text()
+        window.lines_desk.commit_length("mid-bust", 0.93)
+        assert head.presets.text() == bodysuit.text(), "another length, the same set"
+        window.lines_desk.commit_length("mid-bust", 1.0)
+        assert head.presets.text() == "Presets"
+        assert head.note.isHidden()
+
+    run_main([], script)
+
+
+def test_the_button_that_adds_offers_only_what_adds_and_is_lit_no_longer() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        undrawn(window)
+        add, menu = window.lines.head.add, window.line_maker.menu
+        lit(add)
+        add.click()
+        yield menu.isVisible
+        asked = {action.text() for action in menu.actions()}
+        assert window.actions_.add_lines["straps"].text() in asked
+        assert not any("name" in words or "Lock" in words for words in asked)
+        menu.close()
+        assert not add.underMouse()
+
+    run_main([], script)
+
+
+def lit(button: QWidget) -> None:
+    button.setAttribute(Qt.WidgetAttribute.WA_UnderMouse, True)
+
+
+def test_each_preset_is_told_from_the_others() -> None:
+    bare = Design(ScanSource(""))
+    for preset in built_in():
+        worn = with_preset(bare, preset)
+        assert [each.title for each in built_in() if is_worn(worn, each)] == [preset.title]
+    assert not any(is_worn(bare, each) for each in built_in())
