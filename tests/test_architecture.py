@@ -54,7 +54,7 @@ OUTSIDE = {
     "mechanics": NUMBERS,
     "solving": NUMBERS | {"threadpoolctl"},
     "document": NUMBERS | {"trimesh", "threadpoolctl", "platformdirs", "potpourri3d"},
-    "tailoring": NUMBERS | {"platformdirs"},
+    "tailoring": NUMBERS | {"ezdxf", "platformdirs"},
     "seeing": NUMBERS | {"pyvista", "vtkmodules"},
     "wording": set(),
     "printing": NUMBERS | {"pyvista", "matplotlib"},

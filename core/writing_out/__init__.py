@@ -1,0 +1,1 @@
+"""Rooms of what is written for other programs: curves, strips and measures."""

@@ -1,0 +1,127 @@
+"""Lines as they are worn: smooth curves on the body, and strips as long as they are stretched there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.centre_line import NO_BACK, CentreLine, Surface, centre_line
+from core.errors import LineError
+from core.lines import Line
+from core.mesh import Floats, Points
+from core.pipeline import Stages
+from core.sections import arc_length
+from core.tffd import deform
+
+USUAL_WIDTH = 12.0
+"""Width of a band of which nothing else is said [mm]."""
+
+RIGHT, CENTRE, LEFT = "right side", "centre front", "left side"
+"""What the marks of a strip are called."""
+
+
+@dataclass(frozen=True, eq=False)
+class WornCurve:
+    """A worn line on the body: ``front`` from the subject's right to the left, ``back`` on round the back.
+
+    Shapes (k, 3) [mm]. Without a back, (0, 3), the line is its front part; a closed one ends where it begins.
+    """
+
+    name: str
+    title: str
+    front: Points
+    back: Points
+
+    @property
+    def parts(self) -> dict[str, Points]:
+        """The front by "front", the back by "back" if there is one."""
+        return {"front": self.front} | ({"back": self.back} if len(self.back) else {})
+
+
+@dataclass(frozen=True)
+class Strip:
+    """A band laid flat, as long as it is on the body and ``width`` wide [mm], without allowances.
+
+    ``marks`` are places along it by distance from its beginning [mm], with what lies there.
+    """
+
+    name: str
+    title: str
+    length: float
+    width: float
+    marks: tuple[tuple[float, str], ...] = ()
+
+
+def worn_curves(
+    stages: Stages, control_points: Points, titles: Mapping[str, str], widths: Mapping[str, float]
+) -> tuple[WornCurve, ...]:
+    """Return the worn lines on the body as ``control_points``, (n, 3) [mm], shape it, in the model's order.
+
+    ``titles`` and ``widths`` [mm] by name; a wide band lies straighter. Raises LineError if none is worn.
+    """
+    mesh = stages.body.mesh
+    surface, moves = Surface(mesh), deform(stages.binding, control_points) - mesh.vertices
+    curves = []
+    for line in _worn(stages):
+        back = stages.backs[line.name].path if line.name in stages.backs else NO_BACK
+        path = stages.control.mesh.vertices[line.path]
+        laid = centre_line(path, surface, back, widths.get(line.name, USUAL_WIDTH))
+        places = laid.points + surface.follow(laid.points) @ moves
+        curves.append(WornCurve(line.name, titles.get(line.name, line.name), *_halves(places, laid)))
+    return tuple(curves)
+
+
+def strips(
+    stages: Stages, control_points: Points, titles: Mapping[str, str], widths: Mapping[str, float]
+) -> tuple[Strip, ...]:
+    """Return the worn lines as flat strips of the lengths that the model reaches, front part and back.
+
+    Marks lie at both sides and where the front part crosses the centre. Raises LineError if none is worn.
+    """
+    middle = float(stages.control.mesh.vertices[stages.control.border, 0].mean())
+    return tuple(
+        Strip(
+            line.name,
+            titles.get(line.name, line.name),
+            line.length(control_points) + line.back_length,
+            widths.get(line.name, USUAL_WIDTH),
+            _marks(line, control_points[line.path], middle),
+        )
+        for line in _worn(stages)
+    )
+
+
+def _worn(stages: Stages) -> Sequence[Line]:
+    worn = [line for line in stages.model.lines if line.name in stages.design.worn()]
+    if not worn:
+        raise LineError("No line is worn.", "Set the length of a line first.")
+    return worn
+
+
+def _halves(places: Points, laid: CentreLine) -> tuple[Points, Points]:
+    """Return front part and back of a curve, which meet at both ends."""
+    if not laid.closed:
+        return places, NO_BACK
+    front = laid.part >= 0
+    if front.all():
+        return np.concatenate([places, places[:1]]), NO_BACK
+    first = int(np.flatnonzero(front & ~np.roll(front, 1))[0])
+    places, last = np.roll(places, -first, axis=0), int(front.sum()) - 1
+    return places[: last + 1], np.concatenate([places[last:], places[:1]])
+
+
+def _marks(line: Line, places: Points, middle: float) -> tuple[tuple[float, str], ...]:
+    s = arc_length(places)
+    marks = [(at, CENTRE) for at in _crossings(places[:, 0] - middle, s)]
+    if line.back_length > 0.0:
+        marks = [(0.0, RIGHT), *marks, (float(s[-1]), LEFT)]
+    return tuple(marks)
+
+
+def _crossings(side: Floats, s: Floats) -> list[float]:
+    """Return where ``side``, (k,), changes its sign along ``s``, (k,) [mm]."""
+    k = np.flatnonzero((side[:-1] < 0.0) != (side[1:] < 0.0))
+    share = side[k] / (side[k] - side[k + 1])
+    return [float(at) for at in s[k] + share * (s[k + 1] - s[k])]
