@@ -140,6 +140,8 @@ def test_no_volume_is_made_of_a_fold_that_a_hole_hides(person: tuple[Mesh, Landm
     assert found["breast_volume_left"].value is None
     assert found["root_length_left"].note == found["breast_volume_left"].note
     assert "fold" in found["root_length_left"].note
+    assert found["bust_point_to_fold_left"].estimate
+    assert found["bust_point_to_fold_left"].note == MIRRORED
     assert found["cup_width_left"].value is not None
     unsure = {"fold_left": replace(landmarks.points["fold_left"], confidence=0.3)}
     found = measures(mesh, replace(landmarks, points=MappingProxyType({**landmarks.points, **unsure})))

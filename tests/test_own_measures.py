@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 
 import pytest
+from PySide6.QtWidgets import QApplication
 
+from app.asking.editing import Editing
 from core.design import Design, ScanSource
 from core.design_measures import OwnMeasure, own_measure
 from core.design_text import from_json, to_json
@@ -72,3 +74,24 @@ def test_broken_measures_are_refused(broken: object) -> None:
 def test_all_variants_are_measured_alike() -> None:
     document = Document.of(PLAIN).showing("B").with_design(PLAIN.with_own_measure(GORE))
     assert [design.own_measures for _, design in document.designs] == [(GORE,), (GORE,)]
+
+
+class _Editing(Editing):
+    """Editing that solves nothing."""
+
+    def _submit(self, design: Design, fresh: bool = False) -> None:
+        pass
+
+
+def test_a_measure_is_added_and_removed_as_one_step_each(qapp: QApplication) -> None:
+    editing = _Editing()
+    editing.document = Document.of(PLAIN)
+    editing.edit(lambda design: design.with_own_measure(GORE), "Gore")
+    editing.edit(lambda design: design.without_own_measure("Gore"), "Gore removed")
+    assert editing.document == Document.of(PLAIN)
+    editing.undo_stack.undo()
+    assert editing.document.design.own_measures == (GORE,)
+    editing.undo_stack.undo()
+    assert editing.document == Document.of(PLAIN)
+    editing.undo_stack.redo()
+    assert editing.document.design.own_measures == (GORE,)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -117,8 +118,11 @@ def _heights(subject: Subject) -> Iterator[Measure]:
 
 
 def _to_fold(subject: Subject, side: str) -> Measure:
-    marks = [subject.mark(f"{name}_{side}") for name in ("bust_point", "fold")]
-    return over_skin(f"bust_point_to_fold_{side}", subject, marks)
+    bust, fold = (subject.mark(f"{name}_{side}") for name in ("bust_point", "fold"))
+    measure = over_skin(f"bust_point_to_fold_{side}", subject, [bust, fold])
+    if fold is None or measure.value is None or subject.fold_seen(side):
+        return measure
+    return replace(measure, estimate=True, note=fold.rule)
 
 
 def _cup(subject: Subject, side: str) -> Iterator[Measure]:
