@@ -51,6 +51,8 @@ def test_help_finds_keys_commands_versions_and_licences() -> None:
         assert window.palette().window().color().name().upper() == DARK.panel
         preferences.fields["autosave"].chosen.emit(2.0)
         assert (QSettings().value("theme"), QSettings().value("autosave")) == ("dark", "5")
+        preferences.fields["material"].chosen.emit("plaster")
+        assert window.view.viewport.scene.material == "plaster"
         preferences.fields["mouse"].chosen.emit("blender")
         preferences.accept()
         the_hand_of_another_program_is_understood(window)

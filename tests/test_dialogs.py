@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -13,6 +14,8 @@ from pytestqt.qtbot import QtBot
 from app.application import application
 from app.dress.ask import ask, ask_name
 from app.dress.sheet import Sheet
+from app.helping import machine
+from app.helping.folders import shown_folder
 from app.keeping.dialogs import ask_about_changes, ask_open, ask_save
 from app.keeping.last_folders import free_name, last_folder, remember_folder
 
@@ -117,6 +120,19 @@ def test_dialogs_begin_where_files_of_their_kind_were_last(
         projects / "anna 2.png",
         scans / "anna.busk",
     ]
+
+
+def test_a_folder_is_told_without_the_name_of_its_owner(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Path, "home", lambda: Path("/home/anna"))
+    assert shown_folder(Path("/home/anna/.local/share/Busk")) == "~/.local/share/Busk"
+    assert shown_folder(Path("/home/annabel")) == "/home/annabel"
+    monkeypatch.setattr(machine, "folders", lambda: [("Log", Path("/home/anna/log"))])
+    monkeypatch.setattr(sys, "executable", "/home/anna/busk/.venv/bin/python")
+    widget = QWidget()
+    text = str(machine.machine_facts(widget))
+    widget.deleteLater()
+    assert "~/log" in text
+    assert "anna" not in text
 
 
 def test_a_free_name_is_counted_on(tmp_path: Path) -> None:

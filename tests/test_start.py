@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,7 @@ from window_tools import Script, run_main, settled
 
 import app.desks.desk
 import app.desks.start_desk
-from app.keeping.recent import day_of, file_at_start, recent_files, remember_file
+from app.keeping.recent import day_of, file_at_start, project_views, recent_files, remember_file
 from app.main_window import MainWindow
 from app.panels.project_card import ProjectCard
 
@@ -68,8 +69,12 @@ def test_the_first_start_leads_through_the_sample_and_later_ones_go_on(
         assert recent_files() == [str(saved)], "samples can always be had"
         window.start_desk.show_page()
         assert at_start(window)
+        assert not window.rail.current(), "no step is open"
+        assert window.variant_desk.segment.isHidden()
         QTest.keyClick(window.start_desk.page, Qt.Key.Key_Escape)
         assert not at_start(window)
+        assert window.rail.current() == "lines"
+        assert window.variant_desk.segment.isVisible()
 
     run_main([], first)
     remember_file(str(gone))
@@ -112,6 +117,16 @@ def a_file_over_the_window_is_named_until_it_leaves(window: MainWindow) -> None:
     assert "customer.ply" in veil.accessibleName()
     QApplication.sendEvent(window, QDragLeaveEvent())
     assert not veil.isVisible()
+
+
+def test_a_card_tells_when_its_file_was_opened_here(tmp_path: Path) -> None:
+    scan = tmp_path / "anna.ply"
+    scan.touch()
+    os.utime(scan, (1_000_000_000, 1_000_000_000))
+    remember_file(str(scan))
+    assert project_views()[0].day.startswith("Today")
+    QSettings().setValue("recent_times", "no times")
+    assert project_views()[0].day == "9 Sep 2001", "of files from before it is not known"
 
 
 def test_a_day_is_said_as_people_say_it() -> None:

@@ -31,6 +31,8 @@ class StartDesk(QObject):
         self.tour = Tour(window)
         self.veil = DropVeil(window)
         window.pages.addWidget(self.page)
+        window.pages.currentChanged.connect(self._dress)
+        self._step = ""
         window.installEventFilter(self)
         said = tr("Begin with a scan, or go on with what was open before")
         window.actions_.add("file", tr("Start page"), "Ctrl+Shift+N", said, do=self.show_page)
@@ -51,6 +53,16 @@ class StartDesk(QObject):
         if self._window.pages.currentWidget() is self.page:
             self._window.layout_.show_work()
             self._window.layout_.enter()
+
+    def _dress(self) -> None:
+        """Light no step and offer no variants where the page hides what they are about."""
+        rail, at_start = self._window.rail, self._window.pages.currentWidget() is self.page
+        self._window.variant_desk.set_shown(not at_start)
+        if at_start:
+            self._step = rail.current()
+            rail.set_current("")
+        elif not rail.current():
+            rail.set_current(self._step)
 
     def show_work(self, what: str, _share: float) -> None:
         """Leave the page as soon as a body is being read: its progress is shown beside the view."""

@@ -55,10 +55,9 @@ def _nearest(lost: QWidget | None, order: Sequence[QWidget]) -> QWidget | None:
     while lost is not None and part is not None:
         inside = [each for each in order if part.isAncestorOf(each)]
         if inside:
-            place = lost.mapTo(part, lost.rect().center())
-            return min(
-                inside, key=lambda each: (each.mapTo(part, each.rect().center()) - place).manhattanLength()
-            )
+            places = [each.mapTo(part, each.rect().center()) for each in (lost, *inside)]
+            away = [(place - places[0]).manhattanLength() for place in places[1:]]
+            return inside[away.index(min(away))]
         part = part.parentWidget()
     return None
 

@@ -13,8 +13,9 @@ from app.helping.keys import keys_of_parts
 from app.helping.machine import machine_facts
 from app.helping.whats_this import explain
 from app.panels.about import AboutSheet, DiagnosticsSheet
-from app.panels.commands import Command, CommandSheet
+from app.panels.commands import Command, CommandSheet, plain
 from app.wording.licences import licences
+from app.wording.synonyms import SYNONYMS
 from app.wording.words import in_all_languages, tr
 from core import __version__
 
@@ -79,6 +80,8 @@ def _command(where: str, action: QAction) -> Command:
     native = QKeySequence.SequenceFormat.NativeText
     keys = ", ".join(key.toString(native) for key in action.shortcuts())
     title = action.text().replace("&", "")
-    words = " ".join((*in_all_languages(title), *in_all_languages(where), action.toolTip()))
+    titles, tips = in_all_languages(title), in_all_languages(action.toolTip())
+    others = (SYNONYMS.get(each, "") for each in titles)
+    words = " ".join((*titles, *in_all_languages(where), *tips, *others))
     give = action.trigger if action.isEnabled() else None
-    return Command(title.rstrip("…"), where, keys, words.casefold(), give)
+    return Command(title.rstrip("…"), where, keys, plain(words), give)

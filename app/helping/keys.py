@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from app.dress import divider
 from app.panels import landmarks, lines, project_card, typed_field
-from app.panels.commands import Command
+from app.panels.commands import Command, plain
 from app.showing import hand, plot_canvas, wipe
 from app.showing.gestures import chosen_gestures, gestures_in_words
 from app.wording.words import in_all_languages, tr
@@ -28,4 +28,4 @@ def keys_of_parts() -> Iterator[Command]:
     for where, keys in parts:
         for key, what in keys:
             words = (*in_all_languages(what), *in_all_languages(where), key)
-            yield Command(what, where, key, " ".join(words).casefold())
+            yield Command(what, where, key, plain(" ".join(words)))

@@ -5,12 +5,13 @@ from __future__ import annotations
 import platform
 import sys
 from importlib import metadata
+from pathlib import Path
 
 from PySide6.QtCore import QSysInfo, qVersion
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QWidget
 
-from app.helping.folders import folders
+from app.helping.folders import folders, shown_folder
 from app.showing.graphics import graphics_in_words, is_safe_mode
 from app.wording.words import tr
 from core import __version__
@@ -29,7 +30,7 @@ def machine_facts(window: QWidget) -> list[Group]:
             tr("Program"),
             [
                 ("Busk", __version__),
-                ("Python", f"{platform.python_version()} ({sys.executable})"),
+                ("Python", f"{platform.python_version()} ({shown_folder(Path(sys.executable))})"),
                 ("Qt", f"{qVersion()}, {QGuiApplication.platformName()}"),
                 *((name, _version_of(name)) for name in LIBRARIES),
                 (tr("System"), f"{QSysInfo.prettyProductName()}, {QSysInfo.currentCpuArchitecture()}"),
@@ -43,7 +44,7 @@ def machine_facts(window: QWidget) -> list[Group]:
                 (tr("Screen"), f"{size.width()} x {size.height()} ({scale:g}x)"),
             ],
         ),
-        (tr("Folders"), [(title, str(folder)) for title, folder in folders()]),
+        (tr("Folders"), [(title, shown_folder(folder)) for title, folder in folders()]),
     ]
 
 

@@ -55,6 +55,8 @@ class PreferencesDesk(QObject):
             self._window.notices.show_notice("info", said)
         elif key == "motion":
             self.set_motion()
+        elif key == "material":
+            self._window.view_desk.choose_material(value)
         self._show_choices()
 
     def set_motion(self) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import time
 import zipfile
 import zlib
@@ -20,7 +21,7 @@ from app.showing.verdict_chip import TONES, state_title
 from app.wording.words import tr
 from core.project import is_project
 
-_KEY = "recent"
+_KEY, _TIMES = "recent", "recent_times"
 _TOURED = "toured"
 _MOST = 12
 _LARGEST_PICTURE = 8_000_000
@@ -35,8 +36,21 @@ def recent_files() -> list[str]:
 
 def remember_file(path: str) -> None:
     """Put a file on top of the list."""
-    path = str(Path(path).absolute())
-    QSettings().setValue(_KEY, [path, *(other for other in recent_files() if other != path)][:_MOST])
+    path, settings = str(Path(path).absolute()), QSettings()
+    paths = [path, *(other for other in recent_files() if other != path)][:_MOST]
+    times = _opened() | {path: time.time()}
+    settings.setValue(_KEY, paths)
+    settings.setValue(_TIMES, json.dumps({each: times[each] for each in paths if each in times}))
+
+
+def _opened() -> dict[str, float]:
+    """Return when each of the last files was opened or saved here [s since 1970], as far as that is known."""
+    try:
+        told = json.loads(str(QSettings().value(_TIMES, "{}")))
+    except ValueError:
+        return {}
+    pairs = told.items() if isinstance(told, dict) else ()
+    return {str(path): float(then) for path, then in pairs if isinstance(then, int | float)}
 
 
 def forget_file(path: str) -> None:
@@ -86,7 +100,9 @@ def _view_of(path: Path) -> ProjectView:
     picture = picture_of(path) if is_project(path) else None
     state = picture.text(STATE) if picture is not None else ""
     look = "" if state in ("", "settled") or state not in TONES else state_title(state)
-    return ProjectView(str(path), name, day_of(changed, time.time()), picture, look=look)
+    return ProjectView(
+        str(path), name, day_of(_opened().get(str(path), changed), time.time()), picture, look=look
+    )
 
 
 def picture_of(path: Path) -> QImage | None:

@@ -56,13 +56,18 @@ class VariantDesk(QObject):
         self._session.show_variant(name)
         self.show_variants()
 
+    def set_shown(self, shown: bool) -> None:
+        """Offer variants, or not where there is nothing to be seen of them."""
+        self.segment.setVisible(shown)
+        self.show_variants()
+
     def show_variants(self) -> None:
         """Show which variants there are, and bring what is seen side by side up to date."""
         document = self._session.document
         there = document.variants if document is not None else {}
         shown = document.shown if document is not None else ""
         self.segment.setEnabled(document is not None)
-        self._button.setVisible(len(there) > 1)
+        self._button.setVisible(len(there) > 1 and not self.segment.isHidden())
         self.segment.set_choice(shown)
         for name in VARIANTS:
             button = self.segment.button(name)

@@ -3,6 +3,7 @@
 # ruff: noqa: N802 - Qt names its events and says what they are
 from __future__ import annotations
 
+import unicodedata
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -25,6 +26,20 @@ class Command:
     keys: str
     words: str
     give: Callable[[], object] | None = None
+
+
+def plain(text: str) -> str:
+    """Return text as it is compared: in small letters of one width."""
+    return unicodedata.normalize("NFKC", text).casefold()
+
+
+def _distance(command: Command, words: Sequence[str]) -> int:
+    """Return how far a command is from what is typed: its title or another word begins so."""
+    if not words:
+        return 0
+    title, word = plain(command.title), words[0]
+    ranks = title.startswith(word), word in title, f" {word}" in command.words
+    return ranks.index(True) if any(ranks) else len(ranks)
 
 
 class CommandList(QTreeWidget):
@@ -97,10 +112,9 @@ class CommandSheet(Sheet):
         self._find("")
 
     def _find(self, text: str) -> None:
-        words = text.casefold().split()
+        words = plain(text).split()
         found = [each for each in self._commands if all(word in each.words for word in words)]
-        # What begins as it is typed comes first.
-        found.sort(key=lambda each: bool(words) and not each.title.casefold().startswith(words[0]))
+        found.sort(key=lambda each: _distance(each, words))
         self.list.show_commands(found)
         self._nothing.setVisible(not found)
 

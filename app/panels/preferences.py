@@ -75,6 +75,7 @@ def _groups() -> tuple[tuple[str, tuple[Setting, ...]], ...]:
     themes = (("system", tr("As the system")), ("light", tr("Light")), ("dark", tr("Dark")))
     starts = (("page", tr("Start page")), ("last", tr("The last project")))
     hands = (("busk", "Busk"), ("cad", "CAD"), ("blender", "Blender"), ("trackpad", tr("Trackpad")))
+    materials = (("clay", tr("Clay")), ("plaster", tr("Plaster")), ("graphite", tr("Graphite")))
     motions = (("full", tr("Full")), ("reduced", tr("Reduced")))
     again = tr("In force when Busk is started again.")
     every = tr("What is not saved yet is kept aside this often, from {least} to {most} s.")
@@ -93,6 +94,7 @@ def _groups() -> tuple[tuple[str, tuple[Setting, ...]], ...]:
                 Choice(
                     "mouse", tr("Mouse"), tr("How buttons and wheel turn, move and scale the body."), hands
                 ),
+                Choice("material", tr("Material"), tr("What the body looks made of."), materials),
                 Choice("motion", tr("Motion"), tr("Reduced: the view jumps where it would glide."), motions),
             ),
         ),

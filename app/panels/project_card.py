@@ -18,6 +18,7 @@ from PySide6.QtGui import (
     QPainterPath,
     QPaintEvent,
     QPen,
+    QRadialGradient,
 )
 from PySide6.QtWidgets import QAbstractButton, QMenu
 
@@ -34,7 +35,7 @@ _RADIUS = 9.0
 
 @dataclass(frozen=True, eq=False)
 class ProjectView:
-    """What is shown of a file: its name, when it was last changed, its picture if it has one.
+    """What is shown of a file: its name, when it was opened last, its picture if it has one.
 
     ``gone`` says that it is no longer there; ``look`` in words why its result wants to be looked at, or "".
     """
@@ -139,11 +140,16 @@ class ProjectCard(QAbstractButton):
         if picture is not None and not self.view.gone:
             painter.drawImage(area, picture, _middle_of(picture, area))
             return
-        painter.fillRect(area, QColor(tokens.app))
-        drawing = "file-gone" if self.view.gone else "scan"
-        size = 28.0 if self.view.gone else 44.0
+        light = QRadialGradient(area.center(), 0.75 * area.width())
+        light.setColorAt(0.0, QColor(tokens.app if self.view.gone else tokens.raised))
+        light.setColorAt(1.0, QColor(tokens.app))
+        painter.fillRect(area, light)
+        drawing, ink = (
+            ("file-gone", tokens.text_caption) if self.view.gone else ("view-front", tokens.outline)
+        )
+        size = 28.0 if self.view.gone else 132.0
         middle = QRectF(area.center().x() - size / 2, area.center().y() - size / 2, size, size)
-        paint_icon(painter, drawing, tokens.text_caption, middle)
+        paint_icon(painter, drawing, ink, middle)
 
     def _paint_words(self, painter: QPainter) -> None:
         tokens, left = tokens_of(self), 12.0

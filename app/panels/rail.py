@@ -30,7 +30,7 @@ class Rail(QWidget):
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(4, 8, 5, 8)
         self._column.setSpacing(2)
-        group = QButtonGroup(self)
+        group = self._group = QButtonGroup(self)
         titles = (tr("Scan"), tr("Landmarks"), tr("Lines"), tr("Result"))
         self.items: dict[str, RailItem] = {}
         for number, (step, title) in enumerate(zip(STEP_ICONS, titles, strict=True), start=1):
@@ -48,8 +48,15 @@ class Rail(QWidget):
         return tool
 
     def set_current(self, step: str) -> None:
-        """Show which step the window is in; nothing is emitted."""
-        self.items[step].setChecked(True)
+        """Show which step the window is in, or with an empty name that it is in none; nothing is emitted."""
+        self._group.setExclusive(False)
+        for name, item in self.items.items():
+            item.setChecked(name == step)
+        self._group.setExclusive(True)
+
+    def current(self) -> str:
+        """Return the step that the window is in, or an empty text."""
+        return next((step for step, item in self.items.items() if item.isChecked()), "")
 
     def set_state(self, step: str, state: str, count: int = 0) -> None:
         """Show how a step stands, one of ``STATES``; ``count`` is how many things want a look."""
@@ -68,6 +75,7 @@ class RailItem(QAbstractButton):
         self._drawing, self._state, self._count = STEP_ICONS[step], "missing", 0
         self.setText(title)
         self.setCheckable(True)
+        self.setAutoExclusive(True)
         self.setToolTip(f"{title}  {key.toString(QKeySequence.SequenceFormat.NativeText)}")
         self.setAccessibleName(title)
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)

@@ -79,7 +79,7 @@ def _drawn(viewport: Viewport, finer: float) -> QImage:
     viewport.request_draw()  # the filters for smooth outlines are for the size of the screen
     scene.mark_bands()
     with _thicker(plotter, finer * samples):
-        image = _rendered(plotter, samples * size)
+        image = _rendered(plotter, size * samples)
     scene.mark_bands(*marked)
     return image.scaled(
         size, Qt.AspectRatioMode.IgnoreAspectRatio, Qt.TransformationMode.SmoothTransformation

@@ -1,0 +1,44 @@
+"""Commands are found by words of the trade, by parts of words, in both languages."""
+
+from __future__ import annotations
+
+import pytest
+from window_tools import Script, run_main, settled, undrawn
+
+from app.main_window import MainWindow
+from app.panels.commands import CommandSheet, plain
+from app.wording.synonyms import SYNONYMS
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+def test_what_a_designer_types_is_found() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        titles = {action.text().replace("&", "") for _, action in window.actions_.all()}
+        assert SYNONYMS.keys() <= titles, "each word leads somewhere"
+        window.help.find_command()
+        sheet = window.findChild(CommandSheet)
+
+        def first(typed: str) -> str:
+            sheet.search.setText(typed)
+            chosen = sheet.list.chosen()
+            return chosen.title if chosen is not None else ""
+
+        assert first("lif") == "Map on the body"
+        assert first("リフト")
+        assert first("unit") == first("インチ") == "Scan"
+        assert first("prin") == "Print the picture"
+        for typed in ("waist", "bust", "report", "cup", "ＳＴＬ", "断面", "カップ", "レポート", "symm"):
+            assert first(typed), typed
+        assert first("Lines") == "Lines", "what begins so comes first"
+        assert first("picture copy") == "Copy the picture"
+        assert not first("zzz")
+        sheet.reject()
+
+    run_main([], script)
+
+
+def test_letters_of_any_width_are_the_same() -> None:
+    assert plain("ＳＴＬ Ｆile") == "stl file"
