@@ -25,22 +25,29 @@ _NEAR = 60.0  # edges that lie further from the curve than this are not tried at
 
 @dataclass(frozen=True, eq=False)
 class Snapped:
-    """A path of control points, a closed one without its end, and how far the curve is off it [mm]."""
+    """A path of control points, a closed one without its end, and how far the curve is off it [mm].
+
+    ``pulls`` is False where no point of it can move: then the line can only be measured.
+    """
 
     path: tuple[int, ...]
     closed: bool
     off: float
+    pulls: bool
 
 
-def snap(control: ControlMesh, curve: Points, closed: bool = False) -> Snapped:
+def snap(control: ControlMesh, curve: Points, closed: bool = False, *, pulling: bool = False) -> Snapped:
     """Return the path of control points at rest that follows a curve, shape (k, 3) [mm].
 
-    A ``closed`` curve goes on from its end to its beginning. Raises LineError if the curve has no length or
-    the path turns back to where it comes from.
+    A ``closed`` curve goes on from its end to its beginning. ``pulling`` wants a path of which every piece
+    has an end that can move. Raises LineError if the curve has no length or the path turns back to where it
+    comes from.
     """
     if closed:
         curve = np.concatenate([curve, curve[:1]])
     points, edges = control.mesh.vertices, both_ways(control.mesh.faces)
+    if pulling:
+        edges = edges[~control.fixed[edges].all(axis=1)]
     samples = resampled(curve)
     near = np.linalg.norm(points[:, None] - samples, axis=2).min(axis=1) < _NEAR
     path = _best(points, edges[near[edges].all(axis=1)], samples, closed) or _best(
@@ -51,7 +58,8 @@ def snap(control: ControlMesh, curve: Points, closed: bool = False) -> Snapped:
         raise LineError(
             "The line is too short for the control mesh.", "Draw it on to the next control points."
         )
-    return Snapped(path, closed, off_by(samples, points[[*path, *path[:1]] if closed else list(path)]))
+    off = off_by(samples, points[[*path, *path[:1]] if closed else list(path)])
+    return Snapped(path, closed, off, not control.fixed[list(path)].all())
 
 
 def both_ways(faces: Indices) -> Indices:

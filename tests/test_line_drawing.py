@@ -84,6 +84,32 @@ def test_a_line_is_drawn_by_clicks_and_snaps_to_the_control_mesh_on_both_sides()
     run_main([], script)
 
 
+def test_a_line_on_the_rib_cage_is_said_to_measure_only_and_can_move_to_where_it_pulls() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.view.viewport.set_view("front")
+        drawing, card = window.line_drawing, window.line_drawing._sketching.card
+        window.actions_.draw_line.trigger()
+        yield lambda: drawing._ways is not None
+        fixed = window.session.frame.stages.control.fixed
+        row = [point for point in window.session.frame.stages.control.paths["under-bust"] if fixed[point]]
+        click(window, row[2], row[4])
+        window.view.viewport.setFocus()
+        press(window, Qt.Key.Key_Return)
+        assert not drawing._snapped.pulls
+        assert "only measured" in card._what.text()
+        card.move_.click()
+        assert drawing._snapped.pulls
+        assert "only measured" not in card._what.text()
+        assert card.move_.isHidden()
+        press(window, Qt.Key.Key_Return)
+        yield lambda: "line 1" in window.lines.rows and window.is_settled()
+        assert window.lines.rows["line 1"].view.constrained
+
+    run_main([], script)
+
+
 def led_elsewhere(window: MainWindow, path: tuple[int, ...]) -> Script:
     """Drag one point of the line to its neighbour, and take its last one out; the mirror image follows."""
     canvas = window.view.viewport.overlay.parentWidget()
@@ -112,7 +138,7 @@ def let_go_of(window: MainWindow) -> Script:
     """What is drawn ends with its control mesh or its line, and never takes the place of another line."""
     session, drawing, routing = window.session, window.line_drawing, window.line_routing
     session.edit(lambda design: design.without_own_line("line 1 left"), "one side away")
-    drawing._keep(Snapped((at(2, 2), at(3, 2)), closed=False, off=0.0))
+    drawing._keep(Snapped((at(2, 2), at(3, 2)), closed=False, off=0.0, pulls=True))
     assert [line.name for line in session.design.own_lines] == ["line 1 right", "line 2 left", "line 2 right"]
     routing.begin("line 2 right")
     assert routing._sketching.at_work

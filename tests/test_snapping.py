@@ -61,6 +61,17 @@ def test_what_lies_outside_the_control_mesh_is_told_by_the_distance() -> None:
     assert snap(CONTROL, down).off > 100.0
 
 
+def test_a_line_that_cannot_move_finds_the_nearest_path_that_can() -> None:
+    still = CONTROL.paths["under-bust"]
+    curve = wavy(tuple(still), 2.0)
+    assert not snap(CONTROL, curve).pulls
+    moved = snap(CONTROL, curve, pulling=True)
+    assert moved.pulls
+    assert not any(CONTROL.fixed[list(step)].all() for step in pairwise(moved.path))
+    strap = KNOWN["strap left"].points
+    assert snap(CONTROL, POINTS[list(strap)], pulling=True).path == strap, "what can pull stays where it is"
+
+
 def test_a_curve_that_is_too_short_is_refused() -> None:
     start = POINTS[48]
     with pytest.raises(LineError, match="no length"):

@@ -40,6 +40,7 @@ class LineDrawing(QObject):
         self._places: list[Points] = []
         self._curve: list[Points] = []
         self._snapped: Snapped | None = None
+        self._wanted: tuple[Points, bool] = (np.empty((0, 3)), False)
         hand, card = self._sketching.hand, self._sketching.card
         hand.clicked.connect(self._click)
         hand.hovered.connect(self._hover)
@@ -47,6 +48,7 @@ class LineDrawing(QObject):
         card.kept.connect(self.go_on)
         card.back.connect(self.back)
         card.left.connect(self.leave)
+        card.moved.connect(self._move)
         self._sketching.lost.connect(self.leave)
 
     @property
@@ -151,12 +153,24 @@ class LineDrawing(QObject):
             return
         last = [self._way(self._places[-1], self._places[0])] if closed else []
         curve = np.concatenate([*self._curve, *last])
+        self._wanted = curve[:-1] if closed else curve, closed
         try:
-            self._snapped = snap(frame.stages.control, curve[:-1] if closed else curve, closed)
+            self._snapped = snap(frame.stages.control, *self._wanted)
         except UserError as problem:
             self._window.session.failed.emit(problem)
         else:
             self._curve += last
+        self._show()
+
+    def _move(self) -> None:
+        """Let what was drawn snap to the nearest path that can pull."""
+        frame = self._window.session.frame
+        if frame is None or self._snapped is None:
+            return
+        try:
+            self._snapped = snap(frame.stages.control, *self._wanted, pulling=True)
+        except UserError as problem:
+            self._window.session.failed.emit(problem)
         self._show()
 
     def _keep(self, snapped: Snapped) -> None:
@@ -191,9 +205,11 @@ class LineDrawing(QObject):
         card.keep.setText(tr("Keep line") if snapped else tr("Done"))
         card.keep.setEnabled(snapped is not None or len(self._places) > 1)
         card.undo.setEnabled(bool(self._places))
+        card.move_.setVisible(snapped is not None and not snapped.pulls)
         if snapped is None:
             what = tr(
                 "Click on the body: the line follows the skin from click to click. A drag turns the body."
+                " Off the breasts a line is only measured."
             )
             keys = tr(
                 "Enter or double click: done · first point: close it · Backspace: one back · Esc: leave"
@@ -204,6 +220,8 @@ class LineDrawing(QObject):
             if snapped.off > _WIDE:
                 what = tr("It can follow the control mesh only: off what you drew by up to {mm} mm.")
             off = what.format(mm=number(snapped.off, 0))
+            if not snapped.pulls:
+                off += "\n" + tr("No point of it can move, so it is only measured and pulls nothing.")
             card.say(tr("Keep this line?"), off, tr("Enter: keep · Backspace: draw on · Esc: leave"))
         self._draw(self._curve)
 

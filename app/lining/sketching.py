@@ -39,7 +39,7 @@ class Sketching(QObject):
         assert canvas is not None
         self.hand = Hand(viewport, canvas)
         self.card = DrawCard(window.view)
-        window.view.place(self.card, "bottom")
+        window.view.place(self.card, "bottom-left")  # beside the body: lines go over its middle
         self._sketch: Sketch | None = None
         self._surface: tuple[Body, Surface] | None = None
         self._drawn: tuple[Points, Points, Points, str] | None = None

@@ -9,16 +9,17 @@ from app.dress.parts import FloatingPanel, ToolButton, button, sentence
 from app.dress.theme import font, label
 from app.wording.words import tr
 
-WIDTH = 380
+WIDTH = 232
 """Width of the sentences [px]."""
 
 
 class DrawCard(FloatingPanel):
-    """Says what to do; ``kept``, ``back`` and ``left`` at its buttons."""
+    """Says what to do; ``kept``, ``back``, ``left`` and ``moved`` at its buttons."""
 
     kept = Signal()
     back = Signal()
     left = Signal()
+    moved = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -34,10 +35,13 @@ class DrawCard(FloatingPanel):
         self._what.setFixedWidth(WIDTH)
         self.both = QCheckBox(tr("Mirror to the other side, linked"))
         self.both.setFont(font("body"))
+        self.move_ = button(tr("Move it where it can pull"))
+        self.move_.hide()
+        self.move_.clicked.connect(self.moved)
         foot = QHBoxLayout()
         foot.setSpacing(8)
         self.keep, self.undo = button(tr("Keep line"), "primary"), button(tr("One step back"), "quiet")
-        for each in (self.keep, self.undo):
+        for each in (self.keep, self.undo, self.move_):
             each.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click leaves the keys to the hand that draws
         self.keep.clicked.connect(self.kept)
         self.undo.clicked.connect(self.back)
@@ -45,7 +49,7 @@ class DrawCard(FloatingPanel):
         foot.addWidget(self.undo)
         foot.addWidget(self.keep)
         column.addLayout(head)
-        for part in (self._what, self._keys, self.both):
+        for part in (self._what, self.move_, self._keys, self.both):
             column.addWidget(part)
         column.addSpacing(4)
         column.addLayout(foot)
