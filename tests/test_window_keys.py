@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QImage
+from PySide6.QtGui import QAccessible, QImage
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from window_tools import Script, run_main, settled, undrawn
@@ -130,6 +130,25 @@ def test_the_keyboard_stays_with_a_line_whatever_is_done_to_it() -> None:
         assert row.slider.accessibleName() == "Length of Foundation"
         assert row.slider.accessibleDescription().startswith(f"{row.slider.ratio() * 100:.1f} %, ")
         assert row.percent.accessibleName() == "Foundation: length in percent"
+
+    assert run_main([], script) == 0
+
+
+def test_steps_and_tabs_are_heard_as_choices_and_sliders_as_what_they_mean() -> None:
+    def script(window: MainWindow) -> Script:
+        yield from begun(window)
+        for each in (window.rail.items["scan"], window.inspector.tabs.button("lines")):
+            assert QAccessible.queryAccessibleInterface(each).role() == QAccessible.Role.RadioButton
+        window.section_desk.set_on(True)
+        panel = window.section_desk.panel
+        assert panel.slider.accessibleDescription() == f"x = {panel.place.text()} mm"
+        window.view.compare_by("wipe")
+        assert window.view.panes.handle.accessibleDescription() == "50 %"
+        panel.plot.setFocus(Qt.FocusReason.TabFocusReason)
+        for _ in range(2):
+            press(Qt.Key.Key_Right, Qt.KeyboardModifier.ShiftModifier)
+        assert panel.plot.gap.endswith("mm")
+        assert panel.plot.accessibleDescription() == panel.plot.gap
 
     assert run_main([], script) == 0
 

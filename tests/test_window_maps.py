@@ -65,6 +65,7 @@ def test_maps_show_the_right_values_with_a_range_by_hand_and_values_pinned() -> 
         assert np.linalg.norm(flag.place - body.shown_points[most]) < 6.0
         value = moved[np.flatnonzero(moving.vertices == at)[0]]
         assert flag.text == f"{value:+.1f} mm"
+        what_is_pinned_stays_when_the_map_changes(window)
         yield from a_dragged_slider_carries_map_and_flag(window, at)
         click_on(window, maps.flags.flags[0].place)
         assert maps.flags.flags == ()  # a click on a flag takes it away
@@ -78,6 +79,19 @@ def test_maps_show_the_right_values_with_a_range_by_hand_and_values_pinned() -> 
         assert np.array_equal(colours(window), clay)
 
     run_main([], script)
+
+
+def what_is_pinned_stays_when_the_map_changes(window: MainWindow) -> None:
+    maps = window.map_desk
+    (flag,) = maps.flags.flags
+    maps.choose("strain")
+    (other,) = maps.flags.flags
+    assert np.array_equal(other.place, flag.place), "it tells the new map's value on the same spot"
+    assert other.text.endswith("%")
+    maps.choose("pull")
+    assert maps.flags.flags == (), "the skin has no pull"
+    maps.choose("displacement")
+    assert [each.text for each in maps.flags.flags] == [flag.text]
 
 
 def the_zero_of_a_map_is_the_material(window: MainWindow) -> None:

@@ -168,6 +168,7 @@ class Segment(QFrame):
         """Take in one more choice."""
         small, each = self._small, button(title, "segment")
         each.setCheckable(True)
+        each.setAutoExclusive(True)  # heard as one of several choices; the group sees to the rest
         each.setFont(font("title" if small else "name"))
         room = each.fontMetrics().horizontalAdvance(title) + (20 if small or self._wide else 24)
         each.setFixedHeight(24)
@@ -260,7 +261,7 @@ class FloatingPanel(QWidget):
 
 
 class OverCard(FloatingPanel):
-    """A card over the whole window, which waits for an answer; ``given_up`` by Esc, wherever the keyboard is."""
+    """A card over the whole window, which waits for an answer; ``given_up`` by Esc from wherever."""
 
     given_up = Signal()
 

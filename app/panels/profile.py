@@ -10,11 +10,12 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QSlider, QStyle, QStyleOptionSlider, QVBoxLayout, QWidget
 
 from app.dress.parts import FloatingPanel, ToolButton
+from app.dress.spoken import speak_value
 from app.dress.theme import font, label, tokens_of
 from app.panels.figure_field import FigureField
 from app.showing.live_plot import PullTitle, Quantity
 from app.showing.profile_plot import Drawn, ProfilePlot
-from app.wording.words import tr
+from app.wording.words import number, tr
 
 STEPS = 2
 """Steps of the slider in a millimetre."""
@@ -139,6 +140,7 @@ class ProfilePanel(FloatingPanel):
         self.title.show_quantity(self._axes[axis])
         self._axis.setText(f"{axis} =")
         self.place.show_value(at)
+        speak_value(self.slider, f"{axis} = {number(at)} mm")
         self.slider.blockSignals(True)
         self.slider.setRange(round(low * STEPS), round(high * STEPS))
         self.slider.setValue(round(at * STEPS))

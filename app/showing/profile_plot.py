@@ -12,7 +12,9 @@ import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QColor,
+    QFocusEvent,
     QFontMetricsF,
+    QKeyEvent,
     QMouseEvent,
     QPainter,
     QPainterPath,
@@ -22,8 +24,9 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QWidget
 
+from app.dress.spoken import speak_value
 from app.dress.theme import font, tokens_of
-from app.wording.words import number
+from app.wording.words import number, tr
 from core.mesh import Floats
 
 LEFT, BOTTOM, EDGE = 34.0, 18.0, 6.0
@@ -48,7 +51,8 @@ class Drawn:
 class ProfilePlot(QWidget):
     """The plot; ``pointed`` carries the place [mm] under the pointer, shape (2,), or None.
 
-    The wheel zooms to the pointer, a drag moves, a double click shows all that changed again.
+    The wheel zooms to the pointer, a drag moves, a double click shows all that changed again. With the
+    keyboard arrows go along the curve, with Shift ten times as far.
     """
 
     pointed = Signal(object)
@@ -61,6 +65,9 @@ class ProfilePlot(QWidget):
         self._moved = False
         self._last: QPointF | None = None
         self._mark: tuple[Floats, Floats, str] | None = None
+        self._at: int | None = None
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.setAccessibleName(tr("Curves of the section"))
 
     def sizeHint(self) -> QSize:
         return QSize(244, 190)
@@ -83,6 +90,7 @@ class ProfilePlot(QWidget):
     def show_gap(self, former: Floats | None, present: Floats | None = None, text: str = "") -> None:
         """Mark two places, each (2,) [mm], and write how far they are apart; None marks nothing."""
         self._mark = None if former is None or present is None else (former, present, text)
+        speak_value(self, text)
         self.update()
 
     @property
@@ -127,6 +135,10 @@ class ProfilePlot(QWidget):
         painter.setClipping(False)
         if self._mark is not None:
             self._paint_gap(painter, *self._mark)
+        if self.hasFocus():
+            painter.setPen(QPen(QColor(tokens.accent), 2.0))
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawRoundedRect(QRectF(self.rect()).adjusted(1.0, 1.0, -1.0, -1.0), 5.0, 5.0)
 
     def _paint_grid(self, painter: QPainter) -> None:
         tokens, room = tokens_of(self), self._room()
@@ -191,6 +203,26 @@ class ProfilePlot(QWidget):
         return QRectF(
             LEFT, EDGE, max(self.width() - LEFT - EDGE, 1.0), max(self.height() - BOTTOM - EDGE, 1.0)
         )
+
+    # -- the keyboard
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        step = {Qt.Key.Key_Left: -1, Qt.Key.Key_Right: 1}.get(Qt.Key(event.key()), 0)
+        curves = self._drawn.curves.get("after") or self._drawn.curves.get("before") or ()
+        if not step or not curves:
+            super().keyPressEvent(event)
+            return
+        # The longest is that of the trunk; the others go round arms.
+        places = max(curves, key=len)
+        far = 10 * step if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else step
+        start = int(places[:, 0].argmax()) if self._at is None else self._at
+        self._at = (start + far) % len(places)
+        self.pointed.emit(places[self._at])
+
+    def focusOutEvent(self, event: QFocusEvent) -> None:
+        super().focusOutEvent(event)
+        self._at = None
+        self.pointed.emit(None)
 
     # -- the pointer
 

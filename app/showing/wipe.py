@@ -8,6 +8,7 @@ from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent,
 from PySide6.QtWidgets import QAbstractSlider, QWidget
 
 from app.dress.icons import pixmap
+from app.dress.spoken import speak_value
 from app.dress.theme import tokens_of
 from app.wording.words import tr
 
@@ -42,6 +43,11 @@ class WipeHandle(QAbstractSlider):
         self.setToolTip(tr("Drag, or use the arrow keys. A double click puts it in the middle."))
         self._room = parent
         self._grip = 0.0
+        self.valueChanged.connect(lambda _: self._speak())
+        self._speak()
+
+    def _speak(self) -> None:
+        speak_value(self, f"{100.0 * self.share():.0f} %")
 
     def share(self) -> float:
         """Return where the line is: 0 at the left edge of the view, 1 at the right one."""

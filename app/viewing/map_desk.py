@@ -50,10 +50,12 @@ class MapDesk(QObject):
         self.name = ""
         self.now: BodyNow | None = None
         self.pinned: tuple[Pinned, ...] = ()
+        self._flagged: tuple[Pinned, ...] = ()
         self._by_hand: dict[str, tuple[float, float]] = {}
         self._range, self._range_of = (0.0, 1.0), ""
         self._values: Floats = np.empty(0)
         self._pulls: dict[str, Floats] = {}
+        self._others: WeakKeyDictionary[BodyView, BodyNow] = WeakKeyDictionary()
         self._laid = False
         self._painted: WeakKeyDictionary[BodyActor, tuple[str, Ramp, bool]] = WeakKeyDictionary()
         self._tinted: WeakSet[Bands] = WeakSet()
@@ -81,8 +83,8 @@ class MapDesk(QObject):
         self.choose(names[(names.index(self.name) + 1) % len(names)])
 
     def choose(self, name: str) -> None:
-        """Show a map by name, or none."""
-        self.name, self.pinned = name, ()
+        """Show a map by name, or none; what is pinned stays on its spot and tells the new map's value."""
+        self.name = name
         if name == "pull":
             self._view.set_layer("bands", True)
         if name:
@@ -113,8 +115,9 @@ class MapDesk(QObject):
         self._pin((*self.pinned, *new))
 
     def unpin(self, number: int) -> None:
-        """Take a flag away."""
-        self._pin(self.pinned[:number] + self.pinned[number + 1 :])
+        """Take a flag away that is shown: those of lines are not while a map lies on the skin."""
+        gone = self._flagged[number]
+        self._pin(tuple(each for each in self.pinned if each is not gone))
 
     def _pin(self, pinned: tuple[Pinned, ...]) -> None:
         self.pinned = pinned
@@ -133,7 +136,7 @@ class MapDesk(QObject):
     def refresh(self) -> None:
         """Bring legend, colours and flags up to date with the session's frame, and have the view drawn."""
         self.follow()
-        for body in self._view.beside.live:
+        for body in self._view.beside.bodies:
             body.viewport.request_draw()
 
     def follow(self) -> None:
@@ -148,7 +151,7 @@ class MapDesk(QObject):
             self._read(frame)
         elif not self._laid:
             return
-        for body in self._view.beside.live:
+        for body in self._view.beside.bodies:
             self._paint_skin(body)
             self._paint_bands(body)
         self._laid = shown
@@ -160,6 +163,19 @@ class MapDesk(QObject):
         else:
             self.now, self.pinned, self._painted = BodyNow(frame), (), WeakKeyDictionary()
 
+    def _now_of(self, view: BodyView) -> BodyNow | None:
+        """Return what is read off one of the bodies: the session's own, or a variant's beside it."""
+        if view in self._view.beside.live or view.frame is None:
+            return self.now
+        now = self._others.get(view)
+        if now is None or now.frame is not view.frame:
+            now = self._others[view] = BodyNow(view.frame)
+        return now
+
+    def _values_of(self, view: BodyView) -> Floats:
+        now = self._now_of(view)
+        return self._values if now is None or now is self.now else now.values(self.name)
+
     def _read(self, frame: Frame) -> None:
         """Read the values off the body and choose the range that they are shown in."""
         assert self.now is not None
@@ -169,7 +185,10 @@ class MapDesk(QObject):
             self.legend.show_note(self._kinds[self.name].note if self._pulls else silent)
         else:
             self._pulls, self._values = {}, self.now.values(self.name)
-        by_hand, (low, high) = self._by_hand.get(self.name), automatic_range(self.name, self._values)
+        # Bodies beside each other are compared: the same colour is the same value on all of them.
+        beside = [self._values] + [self._values_of(view) for view in self._view.beside.bodies[1:]]
+        values = np.concatenate(beside) if self.name != "pull" else self._values
+        by_hand, (low, high) = self._by_hand.get(self.name), automatic_range(self.name, values)
         if frame.at_work and self._range_of == self.name:  # while a body moves the colours only widen
             low, high = min(low, self._range[0]), max(high, self._range[1])
         self._range, self._range_of = by_hand or (low, high), "" if by_hand else self.name
@@ -181,7 +200,7 @@ class MapDesk(QObject):
 
     def _paint_skin(self, view: BodyView) -> None:
         """Lay the map over one body; only where it moves, if nothing else has changed."""
-        scene, now = view.viewport.scene, self.now
+        scene, now = view.viewport.scene, self._now_of(view)
         body = scene.body
         if body is None or now is None:
             return
@@ -194,18 +213,21 @@ class MapDesk(QObject):
         if fresh:
             values = now.at_rest(self.name)
             if view.after:
-                values[rows] = self._values
+                values[rows] = self._values_of(view)
             body.show_map(ramp(values))
             self._painted[body] = self.name, ramp, view.after
-        elif view.after:
+        elif view.after and now is self.now:
             body.recolour(rows, ramp(self._values))
 
     def _paint_bands(self, view: BodyView) -> None:
         """Colour the bands by how they pull, or give them their own colours back."""
-        bands = view.viewport.scene.bands
-        if self.name == "pull" and view.after:
+        bands, now = view.viewport.scene.bands, self._now_of(view)
+        # What lies on the skin is looked at: the bands, which say where the lines are, let it through.
+        bands.fade(self.name not in ("", "pull"))
+        if self.name == "pull" and view.after and now is not None:
             ramp = self._ramp(view.viewport.scene)
-            bands.paint({name: ramp(pulls) for name, pulls in self._pulls.items()}, ramp.blank)
+            found = self._pulls if now is self.now else now.pulls()
+            bands.paint({name: ramp(pulls) for name, pulls in found.items()}, ramp.blank)
             self._tinted.add(bands)
         elif bands in self._tinted:
             bands.paint(None)
@@ -216,8 +238,9 @@ class MapDesk(QObject):
         if not self.name:
             self.flags.show_flags(())
             return
-        kind, said = self._kinds[self.name], [self._value_at(pinned) for pinned in self.pinned]
-        said = [(place, value) for place, value in said if not np.isnan(value)]
+        kind, values = self._kinds[self.name], {each: self._value_at(each) for each in self.pinned}
+        self._flagged = tuple(each for each, (_, value) in values.items() if not np.isnan(value))
+        said = [values[each] for each in self._flagged]
         self.flags.show_flags(
             ValueFlag(place, f"{number(value, kind.digits, kind.both_ways)} {kind.unit}")
             for place, value in said
@@ -234,6 +257,8 @@ class MapDesk(QObject):
                 return np.zeros(3), np.nan
             part = scene.bands.parts(pinned.line)[pinned.at]
             return scene.bands.spine(pinned.line)[0][pinned.at], float(self._pulls[pinned.line][part])
+        if self.name == "pull":
+            return np.zeros(3), np.nan
         values = now.at_rest(self.name)
         if self._view.after:
             values[now.rows(self.name)] = self._values
