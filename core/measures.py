@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
 
@@ -30,7 +31,8 @@ def measures(mesh: Mesh, landmarks: Landmarks, own: Iterable[OwnMeasure] = ()) -
 
     One that the scan does not show is there with the value None and the reason.
     """
-    return _measured(subject_of(mesh, landmarks), own)
+    subject = subject_of(mesh, landmarks)
+    return _with_own(_ordered(_usual(subject)), subject, own)
 
 
 def before_after(stages: Stages, control_points: Points) -> tuple[Measures, Measures]:
@@ -38,12 +40,20 @@ def before_after(stages: Stages, control_points: Points) -> tuple[Measures, Meas
 
     The landmarks ride on the skin and the levels follow them; the lift of the apex is told after alone.
     """
-    rest = subject_of(stages.body.calm, stages.landmarks)
+    rest, before = _at_rest(stages.body.calm, stages.landmarks)
     moves = deform(stages.binding, control_points) - stages.body.mesh.vertices
     left, right = stages.body_change(control_points).tolist()
     after = rest.moved(rest.mesh.vertices + calm_moves(stages.body, moves), (left, right))
+    usual = dict(_usual(after))
+    usual["apex_lift"] = _lift(after, rest)
     own = stages.design.own_measures
-    return _measured(rest, own), _measured(after, own, rest)
+    return _with_own(before, rest, own), _with_own(_ordered(usual), after, own)
+
+
+@lru_cache(maxsize=2)  # while a line is dragged, the body at rest is one and the same
+def _at_rest(mesh: Mesh, landmarks: Landmarks) -> tuple[Subject, Measures]:
+    rest = subject_of(mesh, landmarks)
+    return rest, _ordered(_usual(rest))
 
 
 def calm_moves(body: Body, moves: Points) -> Points:
@@ -99,13 +109,16 @@ def _words(key: str) -> tuple[str, str, str, str]:
     return told.title, side, told.iso, told.text
 
 
-def _measured(subject: Subject, own: Iterable[OwnMeasure], rest: Subject | None = None) -> Measures:
-    found = {each.key: each for each in (*girth_measures(subject), *cup_measures(subject))}
-    if rest is not None:
-        found["apex_lift"] = _lift(subject, rest)
-    ordered = {key: found[key] for key in KEYS if key in found}
-    ordered |= {each.key: each for each in own_measures(subject, own)}
-    return MappingProxyType(ordered)
+def _usual(subject: Subject) -> Measures:
+    return {each.key: each for each in (*girth_measures(subject), *cup_measures(subject))}
+
+
+def _ordered(found: Measures) -> Measures:
+    return {key: found[key] for key in KEYS if key in found}
+
+
+def _with_own(found: Measures, subject: Subject, own: Iterable[OwnMeasure]) -> Measures:
+    return MappingProxyType({**found, **{each.key: each for each in own_measures(subject, own)}})
 
 
 def _lift(subject: Subject, rest: Subject) -> Measure:
@@ -113,4 +126,5 @@ def _lift(subject: Subject, rest: Subject) -> Measure:
     if now is None or before is None:
         return missing("apex_lift", NO_ROOT)
     sure = min(root.confidence for root in subject.roots.values())
-    return Measure("apex_lift", float((now - before)[:, 1].mean()), "mm", (), sure)
+    lines = tuple(np.array(pair) for pair in zip(before, now, strict=True))
+    return Measure("apex_lift", float((now - before)[:, 2].mean()), "mm", lines, sure)

@@ -59,11 +59,13 @@ def test_a_ring_goes_straight_over_what_is_missing() -> None:
 def test_landmarks_ride_on_the_skin() -> None:
     body = read_scan(SAMPLES / "mannequin.ply")
     found = find_landmarks(body)
-    still = carried(body.calm, found, np.zeros_like(body.calm.vertices))
+    places = np.array([mark.position for mark in found.points.values()])
+    bound = riders(body.calm, places)
+    still = carried(found, bound.moved(np.zeros_like(body.calm.vertices)))
     for name, mark in found.points.items():
         assert np.array_equal(mark.position, still.position(name))
     assert (still.bust_level, still.underbust_level) == (found.bust_level, found.underbust_level)
-    up = carried(body.calm, found, np.full_like(body.calm.vertices, 5.0))
+    up = carried(found, bound.moved(np.full_like(body.calm.vertices, 5.0)))
     assert up.bust_level == pytest.approx(found.bust_level + 5.0)
     assert up.underbust_level == pytest.approx(found.underbust_level + 5.0)
 

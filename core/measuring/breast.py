@@ -110,6 +110,6 @@ def _pieces(count: int, edges: Indices) -> Indices:
 
 
 def foremost(places: Points) -> Points:
-    """Return y and z of the foremost place, shape (2,) [mm]: a mean that favours what lies foremost."""
+    """Return the foremost place, shape (3,) [mm]: a mean that favours what lies foremost."""
     weight: Floats = np.exp(places[:, 1].min() - places[:, 1])
-    return np.asarray(weight @ places[:, 1:] / weight.sum())
+    return np.asarray(weight @ places / weight.sum())

@@ -78,7 +78,7 @@ def _along_border(mesh: Mesh, way: Points) -> bool:
 
 
 def foremost_places(subject: Subject) -> Points | None:
-    """Return y and z of the foremost place of each breast, shape (2, 2) [mm]; None without both."""
+    """Return the foremost place of each breast, shape (2, 3) [mm]; None without both."""
     if len(subject.breasts) < len(SIDES):
         return None
     places = subject.mesh.vertices
@@ -111,10 +111,9 @@ def _heights(subject: Subject) -> Iterator[Measure]:
     if apex is None or chest is None:
         yield missing("bust_protrusion", NO_ROOT if chest else NO_MARK)
         return
-    y, z = apex.mean(axis=0)
-    start = np.array([chest.position[0], chest.position[1], z])
-    line = np.array([start, [start[0], y, z]])
-    yield Measure("bust_protrusion", float(start[1] - y), "mm", (line,), min(sure, chest.confidence))
+    lines = tuple(np.array([[tip[0], chest.position[1], tip[2]], tip]) for tip in apex)
+    out = float(chest.position[1] - apex[:, 1].mean())
+    yield Measure("bust_protrusion", out, "mm", lines, min(sure, chest.confidence))
 
 
 def _to_fold(subject: Subject, side: str) -> Measure:

@@ -36,18 +36,13 @@ def riders(mesh: Mesh, places: Points) -> Riders:
     return Riders(places, corners, shares(mesh.vertices[corners], feet))
 
 
-def carried(mesh: Mesh, landmarks: Landmarks, moves: Points) -> Landmarks:
-    """Return ``landmarks`` of ``mesh`` after its vertices made ``moves``, shape (n, 3) [mm].
+def carried(landmarks: Landmarks, places: Points) -> Landmarks:
+    """Return ``landmarks`` at other ``places``, in their order, shape (k, 3) [mm].
 
     The levels follow the landmarks that they were taken from.
     """
-    names = list(landmarks.points)
-    places = np.array([landmarks.position(name) for name in names])
-    after = riders(mesh, places).moved(moves)
-    points = {
-        name: replace(landmarks.points[name], position=place)
-        for name, place in zip(names, after, strict=True)
-    }
+    marks = landmarks.points.items()
+    points = {name: replace(mark, position=place) for (name, mark), place in zip(marks, places, strict=True)}
     bust, under = _levels(landmarks.points, landmarks, points)
     return Landmarks(MappingProxyType(points), bust, under, landmarks.warnings)
 

@@ -7,14 +7,16 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
 
+import numpy as np
+
 from core.finding.bust_point import ACROSS
 from core.finding.under_breast import HIDDEN, UNSEEN
 from core.landmark import CERTAIN, SIDES, Landmark, Landmarks
 from core.measure import trunk_sections
 from core.measuring.breast import Breast, breast_of
-from core.measuring.riding import carried, riders
+from core.measuring.riding import Riders, carried, riders
 from core.measuring.root import Root, chart_of, root_of, side_of
-from core.mesh import Mesh, Points
+from core.mesh import Indices, Mesh, Points
 from core.trunk import Level, trunk_levels
 
 UNSURE_TOP = 15.0
@@ -66,13 +68,26 @@ class Subject:
         Landmarks and roots ride on the skin, which has gained ``gains`` [mm^3] left and right: what is pushed
         over the root is still of the breast, so both belong to it.
         """
-        moves = vertices - self.mesh.vertices
+        places = self._riders.moved(vertices - self.mesh.vertices)
+        marks, *loops = np.split(places, self._parts)
         roots = {
-            side: replace(root, loop=riders(self.mesh, root.loop).moved(moves))
-            for side, root in self.roots.items()
+            side: replace(root, loop=loop)
+            for (side, root), loop in zip(self.roots.items(), loops, strict=True)
         }
-        marks = carried(self.mesh, self.landmarks, moves)
-        return Subject(self.mesh.moved(vertices), marks, roots, self.breasts, self.spreads, gains)
+        after = carried(self.landmarks, marks)
+        return Subject(self.mesh.moved(vertices), after, roots, self.breasts, self.spreads, gains)
+
+    @cached_property
+    def _riders(self) -> Riders:
+        """All that rides on the skin: the landmarks, then the roots."""
+        marks = [mark.position for mark in self.landmarks.points.values()]
+        return riders(self.mesh, np.concatenate([marks, *(root.loop for root in self.roots.values())]))
+
+    @property
+    def _parts(self) -> Indices:
+        """Where each root begins among the riders."""
+        counts = [len(self.landmarks.points), *(len(root.loop) for root in self.roots.values())]
+        return np.cumsum(counts)[:-1]
 
 
 def shows_breast(landmarks: Landmarks, side: str) -> bool:
