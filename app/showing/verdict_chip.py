@@ -18,7 +18,7 @@ TONES = {
     "vibrating": ("warn", "wave"),
     "diverging": ("bad", "arrow-up-right"),
     "folded": ("bad", "folded"),
-    "overstrained": ("warn", "overstrained"),
+    "overstrained": ("bad", "overstrained"),
     "stale": ("plain", "clock-counter-clockwise"),
     "paused": ("plain", "pause"),
 }
