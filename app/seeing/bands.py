@@ -17,6 +17,7 @@ from core.moving import moving_faces
 
 _SHADE = np.array([0.62, 0.62, 0.86, 1.0, 1.0, 0.86, 0.62, 0.62])
 _SEAM = 0.72  # how dark the seam is where front part and back part meet
+_FAINT, _FAINT_CASING = 0.3, 0.55  # how much is seen of a faded band and of the casing round it
 _QUIET, _CLOTH = 0.45, "#F2ECE6"  # the back part keeps its length: its colour steps back towards plain cloth
 
 
@@ -123,6 +124,7 @@ class Bands:
         self._surface: Surface | None = None
         self._displacement: Points = np.zeros((0, 3))
         self._visible = True
+        self._faded = False
         self.selected = ""
         self.hovered = ""
 
@@ -175,6 +177,12 @@ class Bands:
         self._visible = visible
         self._show_what_is_asked()
 
+    def fade(self, faded: bool) -> None:
+        """Let the skin under the ribbons be seen through them, or show them as they are."""
+        if faded != self._faded:
+            self._faded = faded
+            self._show_what_is_asked()
+
     def hit(self, start: Floats, end: Floats) -> tuple[str, Floats] | None:
         """Return the first band on a segment and where it is met, or None."""
         met = {name: ribbon.sight.hit(start, end) for name, ribbon in self._ribbons.items() if self._visible}
@@ -201,6 +209,7 @@ class Bands:
     def _show_what_is_asked(self) -> None:
         for rank, (name, ribbon) in enumerate(self._ribbons.items()):
             ribbon.actor.SetVisibility(self._visible)
+            ribbon.actor.prop.opacity = _FAINT if self._faded else 1.0
             ribbon.set_rank(len(self._ribbons) + 5 if name == self.selected else rank)
         for casing in self._casings.values():
             casing.actor.SetVisibility(False)
@@ -208,7 +217,7 @@ class Bands:
             if self._visible and name in self._bands:
                 casing = self._casing(name)
                 casing.set_rank(len(self._ribbons) + 5)
-                casing.actor.prop.opacity = opacity
+                casing.actor.prop.opacity = opacity * (_FAINT_CASING if self._faded else 1.0)
                 casing.move(self._displacement)
                 casing.actor.SetVisibility(True)
 
