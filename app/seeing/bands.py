@@ -17,7 +17,7 @@ from core.moving import moving_faces
 
 _SHADE = np.array([0.62, 0.62, 0.86, 1.0, 1.0, 0.86, 0.62, 0.62])
 _SEAM = 0.72  # how dark the seam is where front part and back part meet
-_FAINT, _FAINT_CASING = 0.3, 0.55  # how much is seen of a faded band and of the casing round it
+_FAINT, _FAINT_CASING = 0.3, 0.2  # how much is seen of a faded band and of the casing round it
 _QUIET, _CLOTH = 0.45, "#F2ECE6"  # the back part keeps its length: its colour steps back towards plain cloth
 
 
