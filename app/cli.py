@@ -15,7 +15,7 @@ import scipy.linalg  # noqa: F401  its BLAS must be there to be held to one thre
 from threadpoolctl import threadpool_limits
 
 from app.commands.cli_parser import command_options, window_options
-from app.commands.settings import dressed, settings_of
+from app.commands.settings import dressed, made_of, settings_of
 from core.design import Design, ScanSource, cannot_hold
 from core.design_measures import own_measure
 from core.errors import UserError
@@ -90,7 +90,7 @@ def solve(options: argparse.Namespace) -> int:
     design = design_of(options.input, options)
     design = replace(design, volume=options.volume or design.volume)
     stages = build(design)
-    design = dressed(design, stages.model.lines, options.line or [])
+    design = made_of(dressed(design, stages.model.lines, options.line or []), options.elastic or [])
     solution = run(build(design, stages), options.turns)
     lost = ("diverging", "settling") if design.volume == "exact" else ("diverging",)
     if design.line_hold == "held" and solution.verdict.motion in lost:
@@ -169,6 +169,37 @@ def measure(options: argparse.Namespace) -> int:
     return SETTLED if found.settled else NOT_SETTLED
 
 
+def cut(options: argparse.Namespace) -> int:
+    """Print or write how long the elastic of each worn line of a project is to be cut."""
+    from app.commands.cut import cut_text, run_cut
+
+    design = design_of(options.input, options)
+    found = run_cut(design, options.line or [], options.elastic or [])
+    text = cut_text(found, "csv" if options.csv else "json" if options.json else "", options.out)
+    if text:
+        print(text, flush=True)
+    _warn(found.warnings)
+    return SETTLED if found.settled else NOT_SETTLED
+
+
+def export(options: argparse.Namespace) -> int:
+    """Write what other programs open: a body, its lines, strips, measures, a turntable."""
+    from app.commands.exported import Wishes, run_export
+    from core.pipeline import build
+
+    values = {name: getattr(options, name) for name in vars(Wishes()) if name != "unit"}
+    wishes = Wishes(
+        **{key: "" if value is None and key != "axes" else value for key, value in values.items()}
+    )
+    wishes = replace(wishes, unit=options.file_unit)
+    design = design_of(options.input, options)
+    if options.line:
+        design = dressed(design, build(design).model.lines, options.line)
+    done = run_export(design, wishes, lambda said: print(said, flush=True))
+    _warn(done.warnings)
+    return SETTLED if done.settled else NOT_SETTLED
+
+
 def picture(options: argparse.Namespace) -> int:
     """Render a scan or project to a PNG file with no display."""
     from app.commands.picture import draw_picture, draw_window
@@ -233,6 +264,8 @@ COMMANDS: dict[str, Callable[[argparse.Namespace], int]] = {
     "limits": limits,
     "detect": detect,
     "measure": measure,
+    "export": export,
+    "cut": cut,
     "picture": picture,
     "demo": demo,
     "figures": figures,

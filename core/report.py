@@ -25,7 +25,7 @@ from core.solver import Record
 from core.solving.condition import Condition
 
 _LIBRARIES = ("numpy", "scipy", "trimesh")
-_SETTINGS = ("template", "line_height", "weights", "scaled_normals", "dense_volume")
+_SETTINGS = ("template", "line_height", "weights", "scaled_normals", "dense_volume", "tissue_stiffness")
 
 
 def write_solution(solution: Solution, folder: Path) -> dict[str, Any]:

@@ -24,6 +24,7 @@ from core.design import Design, ScanSource
         (["dense-volume=on", "dense_volume=no"], {"dense_volume": False}),
         (["template=120", "line-height=0.6"], {"template": "120", "line_height": 0.6}),
         (["gain=1.2", "gain=auto"], {"gain": None}),
+        (["tissue-stiffness=300"], {"tissue_stiffness": 300.0}),
     ],
 )
 def test_settings_are_read_with_hyphens_and_underscores(pairs: list[str], fields: dict[str, object]) -> None:
@@ -33,4 +34,5 @@ def test_settings_are_read_with_hyphens_and_underscores(pairs: list[str], fields
 
 def test_every_choice_of_the_design_can_be_set() -> None:
     not_settings = {"scan", "placed", "lines", "own_lines", "own_measures", "traits", "volume", "unknown"}
+    not_settings |= {"elastics"}
     assert {*WORDS, *NUMBERS, *SWITCHES} == {field.name for field in fields(Design)} - not_settings

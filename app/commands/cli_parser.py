@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 from typing import NoReturn
 
-from app.commands.settings import help_text
+from app.commands.settings import ELASTIC_HELP, help_text
 from app.wording.scan_formats import KINDS, PACKED
 from core import __version__
 from core.design_measures import HELP as MEASURE_HELP
@@ -22,6 +22,8 @@ COMMANDS = {
     "limits": "tell how short each line can be made",
     "detect": "find the landmarks of a scan",
     "measure": "measure a scan, or a project before and after",
+    "cut": "tell how long the elastic of each worn line is to be cut",
+    "export": "write a body, its lines, strips, measures or a turntable for other programs",
     "picture": "render a scan or project to a PNG file",
     "demo": "do the sample session off-screen and write what comes out",
     "figures": "make the figures of the paper again, with their tables and a page",
@@ -31,7 +33,7 @@ COMMANDS = {
 }
 """Every command with what it does, in a few words."""
 
-_OF_A_SCAN = ("solve", "limits", "detect", "measure", "picture")
+_OF_A_SCAN = ("solve", "limits", "detect", "measure", "cut", "picture")
 
 _AXIS = "like {axis}, or a direction x,y,z of the file for a body that stands askew"
 
@@ -84,16 +86,7 @@ def _parser(command: str) -> argparse.ArgumentParser:
     parser = _Parser(prog=f"busk {command}", description=COMMANDS[command])
     if command in _OF_A_SCAN:
         _add_scan(parser)
-    if command in ("solve", "limits", "picture"):
-        parser.add_argument("--settings", action="append", metavar="KEY=VALUE", help=help_text())
-        parser.add_argument("--path", action="append", metavar="NAME=POINTS", help=LINE_HELP)
-    if command in ("solve", "limits"):
-        parser.add_argument(
-            "--line",
-            action="append",
-            metavar="NAME=LENGTH",
-            help="97%% of the rest length, -20mm shorter, 400mm absolute; of the front part, side to side",
-        )
+    _add_design(parser, command)
     if command == "solve":
         parser.add_argument("--volume", choices=CONTROLS)
         parser.add_argument(
@@ -101,12 +94,15 @@ def _parser(command: str) -> argparse.ArgumentParser:
         )
     if command == "accuracy":
         parser.add_argument("folder", metavar="DIR", help="scans with a truth.json beside them")
-    if command in ("limits", "detect", "measure", "accuracy"):
+    if command in ("solve", "cut"):
+        parser.add_argument("--elastic", action="append", metavar="LINE=ELASTIC", help=ELASTIC_HELP)
+    if command in ("limits", "detect", "measure", "cut", "accuracy"):
         parser.add_argument("--json", action="store_true", help="print JSON")
-    if command == "measure":
+    if command in ("measure", "cut"):
         parser.add_argument("--csv", action="store_true", help="print a table of comma-separated values")
-        parser.add_argument("--own", action="append", metavar="NAME=KIND:PLACES", help=MEASURE_HELP)
         parser.add_argument("--out", metavar="FILE", help="write it to a file, by its ending .json or .csv")
+    if command == "measure":
+        parser.add_argument("--own", action="append", metavar="NAME=KIND:PLACES", help=MEASURE_HELP)
     if command == "picture":
         parser.add_argument(
             "--view", default="three-quarter", help="front, left, right, back, three-quarter, top, side"
@@ -126,6 +122,20 @@ def _parser(command: str) -> argparse.ArgumentParser:
     return parser
 
 
+def _add_design(parser: argparse.ArgumentParser, command: str) -> None:
+    """Add what can be said of a design: its settings, its lines and what they are made of."""
+    if command in ("solve", "limits", "cut", "picture"):
+        parser.add_argument("--settings", action="append", metavar="KEY=VALUE", help=help_text())
+        parser.add_argument("--path", action="append", metavar="NAME=POINTS", help=LINE_HELP)
+    if command in ("solve", "limits", "cut"):
+        parser.add_argument(
+            "--line",
+            action="append",
+            metavar="NAME=LENGTH",
+            help="97%% of the rest length, -20mm shorter, 400mm absolute; of the front part, side to side",
+        )
+
+
 def _add_scan(parser: argparse.ArgumentParser) -> None:
     """Add a scan and all that can be said about it."""
     kinds = f"a scan ({KINDS}, each also packed as {PACKED}) or a project (.busk)"
@@ -138,6 +148,38 @@ def _add_scan(parser: argparse.ArgumentParser) -> None:
         "--front", metavar="AXIS", help=f"where the body faces in the scan: {_AXIS.format(axis='-y')}"
     )
     parser.add_argument("--landmark", action="append", metavar="NAME=x,y,z", help=LANDMARK_HELP)
+
+
+def _add_files(parser: argparse.ArgumentParser) -> None:
+    """Add what can be written of a design, and how."""
+    parser.add_argument(
+        "input", metavar="PROJECT", help=f"a project (.busk), or a scan ({KINDS}) with --line"
+    )
+    parser.add_argument("--body", metavar="FILE", help="the reshaped body: .glb, .obj, .ply, .stl")
+    parser.add_argument("--control", metavar="FILE", help="the reshaped control mesh: .glb, .obj, .ply, .stl")
+    parser.add_argument("--lines", metavar="FILE", help="the worn lines on the body: .dxf, .obj")
+    parser.add_argument(
+        "--flat", metavar="FILE", help="the worn lines as flat strips at their size: .svg, .dxf"
+    )
+    parser.add_argument("--measures", metavar="FILE", help="its measures: .smis, .vit, .csv, .json")
+    parser.add_argument("--turntable", metavar="FILE", help="one turn round: .gif, .webp, .png for a series")
+    parser.add_argument(
+        "--unit",
+        dest="file_unit",
+        metavar="UNIT",
+        help="mm, cm, m or in; else metres in .glb, cm in measures, mm",
+    )
+    parser.add_argument(
+        "--axes", help="z-up (faces -y), y-up (faces z) or z-up-front-y (faces y); else y-up in .glb, z-up"
+    )
+    parser.add_argument("--before", action="store_true", help="the body at rest in place of the reshaped one")
+    parser.add_argument("--frames", type=int, default=36, metavar="N", help="pictures of a turntable")
+    parser.add_argument("--seconds", type=float, default=6.0, metavar="S", help="how long one turn takes")
+    parser.add_argument(
+        "--size", type=_size, default=(640, 720), metavar="WIDTHxHEIGHT", help="of a turntable"
+    )
+    parser.add_argument("--dark", action="store_true", help="a turntable on dark ground")
+    parser.add_argument("--beside", action="store_true", help="before and after side by side in a turntable")
 
 
 def _turns(text: str) -> int:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 from core.design import TEMPLATES, WEIGHTS, Design
+from core.elastics import find_elastic, read_elastic
 from core.errors import LineError, UserError
 from core.lines import Line, length_ratio
 from core.mechanics import CHOICES, RANGES
@@ -13,7 +15,7 @@ from core.mechanics import CHOICES, RANGES
 WORDS = {**CHOICES, "weights": WEIGHTS, "template": TEMPLATES}
 """Settings that are a word, and the words that each allows."""
 
-NUMBERS = (*RANGES, "gain", "line_height")
+NUMBERS = (*RANGES, "gain", "line_height", "tissue_stiffness")
 """Settings that are a number."""
 
 SWITCHES = ("scaled_normals", "dense_volume")
@@ -50,6 +52,27 @@ def dressed(design: Design, lines: Sequence[Line], requests: Sequence[str]) -> D
             raise LineError(f"'{request}' names no line.", f"Write NAME=LENGTH; the lines are: {names}.")
         ratio = length_ratio(text, line.name, line.rest_length, line.whole_length)
         design = design.with_line(line.name, ratio)
+    return design
+
+
+ELASTIC_HELP = (
+    "what a worn line is made of: an elastic of the library, by its name or by words that only it has "
+    "('mid-bust=plush 12'), or a table of your own ('mid-bust=roll.csv'); the line's length is then that of "
+    "the elastic unstretched. A name that there is not is answered with all names"
+)
+"""What a user has to know to choose an elastic."""
+
+
+def made_of(design: Design, requests: Sequence[str]) -> Design:
+    """Return a design with lines made of elastics as requested: LINE=ELASTIC each. Raises LineError."""
+    for request in requests:
+        name, equals, elastic = (part.strip() for part in request.partition("="))
+        line = next((each for each in design.worn() if each.lower() == name.lower()), None)
+        if line is None or not equals:
+            worn = ", ".join(sorted(design.worn())) or "none"
+            raise LineError(f"'{request}' names no worn line.", f"Write LINE=ELASTIC; worn are: {worn}.")
+        chosen = read_elastic(Path(elastic)) if elastic.lower().endswith(".csv") else find_elastic(elastic)
+        design = design.with_elastic(line, chosen)
     return design
 
 

@@ -1,0 +1,153 @@
+"""The cut list: from the lengths that lines reach on the body to lengths of elastic to cut."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+from core.design_elastics import Elastic
+from core.lines import Line
+from core.mesh import Points
+from core.pipeline import Stages
+from core.sewing.tensions import LineTension, line_tensions
+from core.solving.newtons import newtons_per_unit
+
+UNEVEN = 0.1
+"""A tension that differs by more than this along a line is told [1]."""
+
+
+@dataclass(frozen=True)
+class CutRow:
+    """One piece to cut, or why there is none yet.
+
+    ``reached_front_mm`` is the front part as it is worn, ``reached_whole_mm`` the whole closed band, or the
+    same for an open line. ``cut_mm`` = whole / (1 + ``elongation``) + ``allowance_mm``. None stands for what
+    is not known, an empty ``elastic`` for a line that is made of nothing in particular. ``notes`` are
+    sentences.
+    """
+
+    line: str
+    title: str
+    elastic: str
+    width_mm: float | None
+    closed: bool
+    reached_front_mm: float
+    reached_whole_mm: float
+    elongation: float | None = None
+    tension_n: float | None = None
+    allowance_mm: float | None = None
+    cut_mm: float | None = None
+    estimate: bool = True
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class CutList:
+    """All pieces in the order of the lines; ``notes`` say what holds for all of them.
+
+    ``newtons_per_unit`` [N/mm] is one unit of the model's stiffness on tissue of ``tissue_stiffness`` [N/m].
+    """
+
+    rows: tuple[CutRow, ...]
+    tissue_stiffness: float
+    newtons_per_unit: float
+    notes: tuple[str, ...]
+
+    def as_data(self) -> dict[str, Any]:
+        """Return the list ready for JSON."""
+        return asdict(self)
+
+
+def cut_list(stages: Stages, control_points: Points) -> CutList:
+    """Return what to cut for the worn lines at ``control_points``, shape (n, 3) [mm]."""
+    design = stages.design
+    tensions = line_tensions(stages, control_points)
+    rows = tuple(
+        _row(stages, line, line.length(control_points), tensions)
+        for line in stages.model.lines
+        if line.name in design.worn()
+    )
+    unit = newtons_per_unit(stages.model, design.tissue_stiffness)
+    return CutList(rows, design.tissue_stiffness, unit, _notes(rows, design.tissue_stiffness))
+
+
+def _row(stages: Stages, line: Line, reached: float, tensions: Mapping[str, LineTension]) -> CutRow:
+    design = stages.design
+    traits, elastic = design.traits_of(line.name), design.worn_elastics().get(line.name)
+    row = CutRow(
+        line.name,
+        traits.title or line.name,
+        elastic.name if elastic else "",
+        elastic.width_mm if elastic else traits.width,
+        line.back_length > 0.0 or bool(line.path[0] == line.path[-1]),
+        reached,
+        reached + line.back_length,
+    )
+    tension = tensions.get(line.name)
+    if tension is not None:
+        row = replace(row, tension_n=tension.mean, notes=_uneven(tension))
+    if elastic is None:
+        return _noted(row, "No elastic is chosen for it: choose one to get its length to cut.")
+    if design.line_hold == "held":
+        return _held(row, elastic)
+    elongation = reached / (design.ratio(line.name) * line.rest_length) - 1.0
+    return _stretched(row, elastic, elongation, elastic.force(elongation))
+
+
+def _held(row: CutRow, elastic: Elastic) -> CutRow:
+    """Return the row of a line whose length is held: its tension tells how far its elastic is stretched."""
+    if row.tension_n is None:
+        return _noted(
+            row, "It lies on points that do not move, so its tension is not known: let lines spring back."
+        )
+    if row.tension_n > elastic.strength:
+        return _noted(row, str(elastic.overpulled(row.tension_n, row.title)))
+    if row.tension_n < 0.0:
+        return _noted(row, "It is held longer than the body would have it: no elastic can push.")
+    return _stretched(row, elastic, elastic.elongation(row.tension_n), row.tension_n)
+
+
+def _stretched(row: CutRow, elastic: Elastic, elongation: float, tension: float) -> CutRow:
+    if elongation > elastic.reach:
+        return _noted(row, str(elastic.overstretched(elongation, row.title)))
+    row = replace(
+        row,
+        elongation=elongation,
+        tension_n=tension,
+        allowance_mm=elastic.allowance_mm,
+        cut_mm=row.reached_whole_mm / (1.0 + elongation) + elastic.allowance_mm,
+        estimate=elastic.estimate,
+    )
+    if elongation < 0.0:
+        return _noted(row, "It lies slack: as long as this it does not pull.")
+    return row
+
+
+def _noted(row: CutRow, note: str) -> CutRow:
+    return replace(row, notes=(*row.notes, note))
+
+
+def _uneven(tension: LineTension) -> tuple[str, ...]:
+    low, high = float(tension.segments.min()), float(tension.segments.max())
+    if high - low <= UNEVEN * abs(tension.mean):
+        return ()
+    return (f"Its tension goes from {low:.1f} to {high:.1f} N along the line.",)
+
+
+def _notes(rows: tuple[CutRow, ...], tissue: float) -> tuple[str, ...]:
+    """Return in sentences what holds for the whole list."""
+    notes = [
+        f"Newtons are an estimate: skin and tissue are taken to answer with {tissue:.0f} N per m of width "
+        "and strain; skins alone were measured from about 160 to 1150.",
+    ]
+    guessed = sorted({row.elastic for row in rows if row.elastic and row.estimate and row.cut_mm})
+    if guessed:
+        notes.append(f"The force of {'; '.join(guessed)} is an estimate: measure your own before you cut.")
+    if any(row.closed and row.cut_mm for row in rows):
+        notes.append("The back of a band is taken to be stretched as far as its front.")
+    if any(row.cut_mm for row in rows):
+        notes.append(
+            "Lengths to cut hold the allowance for seams; hooks and eyes, rings and slides are not taken off."
+        )
+    return tuple(notes)

@@ -1,0 +1,131 @@
+"""The elastics to choose from: those that come with Busk, and a designer's own as measured tables."""
+
+from __future__ import annotations
+
+import json
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import platformdirs
+
+from core.design_elastics import Elastic
+from core.errors import LineError, UserError
+from core.project import safe_name, whole_file
+from core.sewing.elastic_csv import LARGEST, csv_of, elastic_from_csv
+
+__all__ = [
+    "Elastic",
+    "built_in",
+    "find_elastic",
+    "library",
+    "own_elastics",
+    "own_folder",
+    "read_elastic",
+    "save_elastic",
+    "write_elastic",
+]
+
+FORMAT = 1
+"""The format of the files in ``resources/elastics``."""
+
+
+def built_in() -> tuple[Elastic, ...]:
+    """Return the elastics that come with Busk, every kind in each of its widths."""
+    folder = resources.files("resources") / "elastics"
+    files = sorted((each for each in folder.iterdir() if each.name.endswith(".json")), key=lambda f: f.name)
+    return tuple(elastic for each in files for elastic in kind_of(json.loads(each.read_text("utf-8"))))
+
+
+def kind_of(values: dict[str, Any]) -> tuple[Elastic, ...]:
+    """Return the elastics of one kind: one curve [N/cm of width] in several widths."""
+    assert values["format"] == FORMAT
+    return tuple(
+        Elastic(
+            f"{values['kind']} {width:g} mm",
+            float(width),
+            tuple(
+                (e, round(newtons * width / 10.0, 6))
+                for e, newtons in values["elongation_and_newtons_per_cm"]
+            ),
+            values["allowance_mm"],
+            values["source"],
+            values["estimate"],
+        )
+        for width in values["widths_mm"]
+    )
+
+
+def own_folder() -> Path:
+    """Return where a designer's own elastics lie, as tables."""
+    return Path(platformdirs.user_data_path("Busk", appauthor=False)) / "elastics"
+
+
+def own_elastics() -> tuple[list[Elastic], list[LineError]]:
+    """Return the designer's own elastics, and why some tables cannot be read."""
+    elastics, problems = [], []
+    for path in sorted(own_folder().glob("*.csv")):
+        try:
+            elastics.append(read_elastic(path))
+        except LineError as problem:
+            problems.append(problem)
+    return elastics, problems
+
+
+def library() -> dict[str, Elastic]:
+    """Return all elastics by name; one of the designer's own takes the place of one of the same name."""
+    own, _ = own_elastics()
+    return {elastic.name: elastic for elastic in (*built_in(), *own)}
+
+
+def find_elastic(text: str) -> Elastic:
+    """Return the elastic of the library that is called so, or the only one with all these words in its name.
+
+    Raises LineError if there is none, or more than one.
+    """
+    elastics = library()
+    words = text.casefold().split()
+    exact = [each for name, each in elastics.items() if name.casefold().split() == words]
+    found = exact or [
+        each for name, each in elastics.items() if set(words) <= set(name.casefold().replace(",", "").split())
+    ]
+    if len(found) != 1 or not words:
+        names = [each.name for each in found] or list(elastics)
+        how = "Several elastics are" if found and words else "No elastic is"
+        raise LineError(f"{how} called '{text}'.", f"Choose one of: {'; '.join(names)}.")
+    return found[0]
+
+
+def read_elastic(path: Path, width_mm: float | None = None) -> Elastic:
+    """Read a table of one's own; its name is the file's unless it tells one. Raises LineError."""
+    try:
+        if path.stat().st_size > LARGEST:
+            raise LineError(f"The table {path.name} is far too large.", "Keep one row for each point.")
+        data = path.read_bytes()
+    except OSError as problem:
+        raise LineError(
+            f"The table {path.name} cannot be read: {problem.strerror}.", "Check its name and place."
+        ) from problem
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("cp932", errors="replace")  # what spreadsheets write in Japan
+    return elastic_from_csv(text, path.stem, width_mm)
+
+
+def write_elastic(path: Path, elastic: Elastic) -> None:
+    """Write an elastic as a table, whole or not at all. Raises ProjectError."""
+    with whole_file(path.absolute()) as partial:
+        partial.write_text(csv_of(elastic), encoding="utf-8")
+
+
+def save_elastic(elastic: Elastic) -> Path:
+    """Keep an elastic in the designer's own folder, over one of the same name. Raises ProjectError."""
+    folder = own_folder()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as problem:
+        raise UserError(f"The folder {folder} cannot be made.", "Make room, or make it by hand.") from problem
+    path = folder / f"{safe_name(elastic.name)}.csv"
+    write_elastic(path, elastic)
+    return path

@@ -1,0 +1,1 @@
+"""What is sewn: elastics, what they pull with, and how long they are cut."""
