@@ -29,8 +29,8 @@ class Landmark:
     """A named point of the body, shape (3,) [mm], with how sure it is (0..1) and the rule that found it.
 
     ``evidence`` is the curve on the skin that it was read from, shape (k, 3) [mm], empty if there is none.
-    ``by_hand`` tells that the designer placed it, and then ``off`` how far from where its rule surely finds
-    it [mm]: 0 where it lies near by, or where the rule is not sure.
+    ``by_hand`` tells that the designer placed it, and then ``off`` how far from where its rule finds it
+    [mm]: 0 where that is no contradiction.
     """
 
     name: str

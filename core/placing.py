@@ -21,8 +21,13 @@ HELP = (
 
 PLACED = "Placed by hand."
 
-ASTRAY = 15.0
-"""So far from where a rule that is sure of itself finds it [mm], a placed landmark contradicts the rule."""
+ASTRAY, ADRIFT = 15.0, 25.0
+"""So far from where a rule finds it [mm], a placed landmark contradicts the rule: one that is sure of itself,
+and one that is not quite.
+"""
+
+DIM = 0.2
+"""A rule with less confidence [1] is contradicted by nothing."""
 
 REACH = 30.0
 """A placed point may lie so far off the skin [mm]."""
@@ -88,7 +93,7 @@ def held_against(placed: Landmark | None, found: Landmark) -> Landmark:
     if placed is None or found.by_hand:
         return found
     off = float(np.linalg.norm(placed.position - found.position))
-    if off < ASTRAY or found.confidence < CERTAIN:
+    if found.confidence < DIM or off < (ASTRAY if found.confidence >= CERTAIN else ADRIFT):
         return placed
     return replace(placed, off=off, rule=f"Placed by hand, {off:.0f} mm from where the rule finds it.")
 

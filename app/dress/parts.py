@@ -265,6 +265,17 @@ class OverCard(FloatingPanel):
 
     given_up = Signal()
 
+    def paintEvent(self, event: QPaintEvent) -> None:
+        super().paintEvent(event)
+        # Other than a panel of tools it lies on words and tools, which must not shine through.
+        tokens, painter = tokens_of(self), QPainter(self)
+        left, top, right, bottom = self.MARGINS
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(QColor(tokens.outline))
+        painter.setBrush(QColor(tokens.raised))
+        card = QRectF(self.rect()).adjusted(left + 0.5, top + 0.5, -right - 0.5, -bottom - 0.5)
+        painter.drawRoundedRect(card, self.RADIUS, self.RADIUS)
+
 
 class EmptyState(QFrame):
     """What is missing and what to do, where nothing can be shown yet; ``asked`` at its button."""

@@ -80,17 +80,6 @@ class CoachMark(OverCard):
         self.ring.hide()
         self.hide()
 
-    def paintEvent(self, event: QPaintEvent) -> None:
-        super().paintEvent(event)
-        # Other than a panel of tools it may lie on tools, which must not shine through.
-        tokens, painter = tokens_of(self), QPainter(self)
-        left, top, right, bottom = self.MARGINS
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(QColor(tokens.outline))
-        painter.setBrush(QColor(tokens.raised))
-        card = QRectF(self.rect()).adjusted(left + 0.5, top + 0.5, -right - 0.5, -bottom - 0.5)
-        painter.drawRoundedRect(card, self.RADIUS, self.RADIUS)
-
     def keyPressEvent(self, event: QKeyEvent) -> None:
         acts = {
             Qt.Key.Key_Return: self._on,

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from PySide6.QtWidgets import QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QApplication, QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
 
 from app.dress.parts import Segment
 from app.wording.words import tr
@@ -44,10 +45,14 @@ class Inspector(QWidget):
             self.open(name)
 
     def open(self, name: str) -> None:
-        """Show the panel of this name."""
+        """Show the panel of this name; the keyboard goes over to it, and not to a button of it."""
+        has, former = QApplication.focusWidget(), self._stack.currentWidget()
+        goes_over = has is not None and former is not None and former.isAncestorOf(has)
         self._stack.setCurrentWidget(self._panels[name])
         self._head.setVisible(name in self._titled)
         self.tabs.set_choice(name)
+        if goes_over:
+            self._panels[name].setFocus(Qt.FocusReason.OtherFocusReason)
 
     def panel(self) -> QWidget | None:
         """Return the panel that is shown."""

@@ -28,7 +28,7 @@ class LandmarkView:
     """What is shown of a landmark; ``confidence`` 0..1, ``group`` bust, under or further.
 
     ``absent``: it was not found, and can be placed. ``weak``: the control mesh hangs on it and it could
-    hardly be seen, or a hand has put it ``off_mm`` from where its rule surely finds it. ``traced``: it was
+    hardly be seen, or a hand has put it ``off_mm`` from where its rule finds it. ``traced``: it was
     read from a curve on the skin. List, pins and step have ``tone`` and ``state`` from here alone.
     """
 

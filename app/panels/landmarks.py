@@ -131,13 +131,11 @@ class LandmarksPanel(QWidget):
         self.reset.clicked.connect(lambda: self.reset_asked.emit((self._selected,)))
         self.reset_all.clicked.connect(lambda: self.reset_asked.emit(self._placed()))
         # Each answer has a place of its own: none may lie where another was under the pointer a moment ago.
-        kept = self.right.sizePolicy()
-        kept.setRetainSizeWhenHidden(True)
-        self.right.setSizePolicy(kept)
         buttons = QHBoxLayout()
-        for each in (self.place, self.right, self.reset):
-            buttons.addWidget(each)
+        buttons.addWidget(self.place)
+        buttons.addWidget(self.right)
         buttons.addStretch(1)
+        buttons.addWidget(self.reset)
         rule.addWidget(hairline())
         rule.addSpacing(8)
         for part in (self._rule_title, self._rule, self._hint):

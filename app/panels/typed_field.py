@@ -44,7 +44,8 @@ class TypedField(QLineEdit):
         super().__init__()
         self._unit = unit
         self._refusal: Refusal | None = None
-        self.textEdited.connect(lambda _: self._refuse(""))
+        self._room = self.textMargins()
+        self.textEdited.connect(self._widen)
 
     def focusOutEvent(self, event: QFocusEvent) -> None:
         super().focusOutEvent(event)
@@ -68,6 +69,8 @@ class TypedField(QLineEdit):
 
     def paintEvent(self, event: QPaintEvent) -> None:
         super().paintEvent(event)
+        if self.isModified():
+            return
         painter = QPainter(self)
         painter.setFont(font("caption"))
         painter.setPen(tokens_of(self).text_caption)
@@ -94,6 +97,15 @@ class TypedField(QLineEdit):
         if self._words() != self.text():
             self.setText(self._words())
         self.setModified(False)
+        if self._room.right():
+            self.setTextMargins(self._room)
+        self._refuse("")
+
+    def _widen(self) -> None:
+        """Leave the room of the unit to what is typed, which may have one of its own."""
+        if self.textMargins().right():
+            self._room = self.textMargins()
+            self.setTextMargins(0, 0, 0, 0)
         self._refuse("")
 
     def _refuse(self, why: str) -> None:
