@@ -86,13 +86,15 @@ def find_elastic(text: str) -> Elastic:
     elastics = library()
     words = text.casefold().split()
     exact = [each for name, each in elastics.items() if name.casefold().split() == words]
-    found = exact or [
+    alike = [
         each for name, each in elastics.items() if set(words) <= set(name.casefold().replace(",", "").split())
     ]
-    if len(found) != 1 or not words:
-        names = [each.name for each in found] or list(elastics)
-        how = "Several elastics are" if found and words else "No elastic is"
-        raise LineError(f"{how} called '{text}'.", f"Choose one of: {'; '.join(names)}.")
+    found = exact or (alike if words else [])
+    if len(found) > 1:
+        names = "; ".join(each.name for each in found)
+        raise LineError(f"Several elastics are called '{text}'.", f"Choose one of: {names}.")
+    if not found:
+        raise LineError(f"No elastic is called '{text}'.", f"Choose one of: {'; '.join(elastics)}.")
     return found[0]
 
 

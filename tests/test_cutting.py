@@ -1,0 +1,212 @@
+"""The cut list: lengths to cut and tensions, for springs, held lines and lines on the rib cage."""
+
+import csv
+import io
+import json
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.cli import main
+from core.cutting import cut_list
+from core.design_elastics import Elastic
+from core.design_lines import LineTraits, OwnLine, WornLine
+from core.elastics import find_elastic, write_elastic
+from core.exact import solve_exact
+from core.pipeline import build, targets_of
+from core.sewing.tensions import line_tensions
+from core.solution import run
+from core.solver import Targets, iterate
+from core.solving.newtons import newtons_per_unit
+
+EDGE = Elastic("edge", 10.0, ((0.0, 0.0), (0.2, 0.8), (0.5, 1.8), (1.0, 4.0)), 15.0)
+HOOKE = Elastic("straight", 10.0, ((0.0, 0.0), (1.0, 6.0)), 20.0, "by hand", estimate=False)
+
+
+def stages_of(stages, lines, elastics=(), **choices):
+    design = replace(stages.design, lines=tuple(WornLine(*line) for line in lines), volume="exact", **choices)
+    for name, elastic in elastics:
+        design = design.with_elastic(name, elastic)
+    return build(design, stages)
+
+
+def listed(stages):
+    """The cut list of the exact answer, its rows by line."""
+    ratios = targets_of(stages.design, stages).ratios
+    balance = solve_exact(stages.model, ratios)
+    assert balance.found
+    points = stages.model.tensegric.expand(balance.state.moved)
+    cuts = cut_list(stages, points)
+    return cuts, {row.line: row for row in cuts.rows}, points, balance
+
+
+def line_of(stages, name):
+    return next(line for line in stages.model.lines if line.name == name)
+
+
+def test_a_straight_elastic_is_cut_as_the_formula_says(built):
+    stages = stages_of(built("mannequin"), [("mid-bust", 0.7)], [("mid-bust", HOOKE)])
+    _, rows, points, _ = listed(stages)
+    row, line = rows["mid-bust"], line_of(stages, "mid-bust")
+    front = line.length(points)
+    elongation = front / (0.7 * line.rest_length) - 1.0
+    assert (row.reached_front_mm, row.reached_whole_mm) == (front, front + line.back_length)
+    assert row.elongation == pytest.approx(elongation, rel=1e-12)
+    assert row.tension_n == pytest.approx(6.0 * elongation, rel=1e-12)
+    # The front of the piece is the natural length that was set; its back is stretched as far.
+    natural = 0.7 * line.rest_length + line.back_length / (1.0 + elongation)
+    assert row.cut_mm == pytest.approx(natural + 20.0, rel=1e-12)
+    assert row.closed
+    assert not row.estimate
+
+
+@pytest.mark.parametrize("contact", ["glued", "sliding"])
+def test_the_tension_listed_is_that_of_the_model_s_springs(built, contact):
+    stages = stages_of(built("mannequin"), [("mid-bust", 0.7)], [("mid-bust", EDGE)], line_contact=contact)
+    _, rows, points, _ = listed(stages)
+    tension = line_tensions(stages, points)["mid-bust"]
+    assert tension.mean == pytest.approx(rows["mid-bust"].tension_n, rel=1e-6)
+    assert tension.segments.min() < tension.mean < tension.segments.max()
+    assert not tension.estimate
+
+
+@pytest.mark.parametrize("contact", ["glued", "sliding"])
+@pytest.mark.parametrize("volume_of", ["each", "both"])
+def test_the_tension_of_held_lines_is_the_multiplier_of_the_exact_answer(built, contact, volume_of):
+    choices = {"line_hold": "held", "line_contact": contact, "volume_of": volume_of}
+    stages = stages_of(built("mannequin"), [("full-bust", 0.98), ("mid-bust", 0.98)], **choices)
+    _, _, points, balance = listed(stages)
+    unit = newtons_per_unit(stages.model, 530.0)
+    for at, line in enumerate(stages.model.lines):
+        if line.name in stages.design.worn():
+            tension = line_tensions(stages, points)[line.name]
+            assert tension.mean == pytest.approx(unit * balance.tensions[at], rel=1e-6)
+            assert np.ptp(tension.segments) == 0.0
+
+
+def test_turns_without_a_force_on_the_volume_balance_held_lines_alone(built):
+    stages = stages_of(built("mannequin"), [("mid-bust", 0.98)], line_hold="held")
+    stages = build(replace(stages.design, volume="none"), stages)
+    targets = Targets(targets_of(stages.design, stages).ratios, "none")
+    *_, (state, _) = iterate(stages.model, lambda: targets, turns=2000)
+    at = [line.name for line in stages.model.lines].index("mid-bust")
+    points = stages.model.tensegric.expand(state.moved)
+    told = newtons_per_unit(stages.model, 530.0) * state.tensions[at]
+    assert line_tensions(stages, points)["mid-bust"].mean == pytest.approx(told, rel=1e-4)
+
+
+def test_a_held_line_is_cut_for_its_tension(built):
+    stages = stages_of(built("mannequin"), [("mid-bust", 0.985)], [("mid-bust", EDGE)], line_hold="held")
+    _, rows, points, _ = listed(stages)
+    row = rows["mid-bust"]
+    assert row.tension_n == pytest.approx(line_tensions(stages, points)["mid-bust"].mean, rel=1e-12)
+    assert EDGE.force(row.elongation) == pytest.approx(row.tension_n, rel=1e-12)
+    assert row.cut_mm == pytest.approx(row.reached_whole_mm / (1.0 + row.elongation) + 15.0)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "note"),
+    [(0.9, "pulled with .* N as mid-bust; its table ends at 4 N"), (1.03, "no elastic can push")],
+)
+def test_a_held_line_that_no_elastic_can_hold_says_so(built, ratio, note):
+    stages = stages_of(built("mannequin"), [("mid-bust", ratio)], [("mid-bust", EDGE)], line_hold="held")
+    _, rows, _, _ = listed(stages)
+    assert rows["mid-bust"].cut_mm is None
+    assert any(re.search(note, each) for each in rows["mid-bust"].notes)
+
+
+def test_a_line_on_the_rib_cage_is_cut_for_its_own_length(built):
+    stages = stages_of(built("mannequin"), [("under-bust", 0.8)], [("under-bust", EDGE)])
+    _, rows, _, _ = listed(stages)
+    row, line = rows["under-bust"], line_of(stages, "under-bust")
+    assert not line.constrains
+    assert row.elongation == pytest.approx(0.25, rel=1e-9)
+    assert row.tension_n == pytest.approx(EDGE.force(0.25), rel=1e-9)
+    assert row.cut_mm == pytest.approx(0.8 * line.whole_length + 15.0, rel=1e-9)
+
+
+def test_an_open_line_is_its_own_whole_and_a_ring_is_closed(built):
+    path = line_of(built("mannequin"), "mid-bust").path.tolist()
+    own = (OwnLine("arc", tuple(path[2:-2])),)
+    stages = stages_of(built("mannequin"), [("arc", 0.8)], own_lines=own)
+    stages = stages_of(stages, [("arc", 0.8)], [("arc", EDGE)])
+    _, rows, _, _ = listed(stages)
+    row = rows["arc"]
+    assert not row.closed
+    assert row.reached_whole_mm == row.reached_front_mm
+    assert row.cut_mm == pytest.approx(0.8 * line_of(stages, "arc").rest_length + 15.0, rel=1e-12)
+
+
+def test_a_slack_elastic_is_listed_as_slack(built):
+    stages = stages_of(built("mannequin"), [("mid-bust", 1.05)], [("mid-bust", EDGE)])
+    _, rows, _, _ = listed(stages)
+    row = rows["mid-bust"]
+    assert row.elongation < 0.0
+    assert row.tension_n == 0.0
+    assert any("slack" in note for note in row.notes)
+
+
+def test_a_line_of_nothing_in_particular_has_a_tension_and_asks_for_an_elastic(built):
+    stages = stages_of(built("mannequin"), [("mid-bust", 0.97)])
+    traits = LineTraits("mid-bust", title="Middle")
+    cuts, rows, points, _ = listed(build(stages.design.with_traits(traits), stages))
+    row = rows["mid-bust"]
+    assert (row.title, row.elastic, row.cut_mm, row.estimate) == ("Middle", "", None, True)
+    assert row.tension_n == pytest.approx(line_tensions(stages, points)["mid-bust"].mean)
+    # A line about as stiff as a held one carries newtons, not grams and not stones.
+    assert 1.0 < row.tension_n < 20.0
+    assert any("choose one" in note for note in row.notes)
+    assert cuts.newtons_per_unit == pytest.approx(newtons_per_unit(stages.model, 530.0))
+    assert len(cuts.notes) == 1
+
+
+def test_the_list_says_what_it_rests_on(built):
+    stages = stages_of(built("mannequin"), [("mid-bust", 0.7)], [("mid-bust", EDGE)], tissue_stiffness=300.0)
+    cuts, _, _, _ = listed(stages)
+    told = " ".join(cuts.notes)
+    assert "300 N per m" in told
+    assert "edge is an estimate" in told
+    assert "back of a band" in told
+    assert json.loads(json.dumps(cuts.as_data()))["rows"][0]["elastic"] == "edge"
+
+
+COMMAND = ["--line", "mid-bust=70%", "--line", "under-bust=80%", "--elastic", "mid-bust=picot 10"]
+COMMAND += ["--settings", "tissue_stiffness=400"]
+
+
+def test_the_command_prints_what_python_says(mannequin, built, capsys, tmp_path):
+    write_elastic(tmp_path / "roll.csv", EDGE)
+    words = ["cut", str(mannequin), *COMMAND, "--elastic", f"under-bust={tmp_path / 'roll.csv'}"]
+    assert main([*words, "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    lines = [("mid-bust", 0.7), ("under-bust", 0.8)]
+    made = [("mid-bust", find_elastic("picot 10")), ("under-bust", EDGE)]
+    stages = stages_of(built("mannequin"), lines, made, tissue_stiffness=400.0)
+    stages = build(replace(stages.design, volume="adaptive"), stages)
+    by_hand = cut_list(stages, run(stages).control_points)
+    assert told["rows"] == json.loads(json.dumps(by_hand.as_data()))["rows"]
+    assert told["tissue_stiffness"] == 400.0
+    assert main([*words, "--csv", "--out", str(tmp_path / "cut.csv")]) == 0
+    rows = list(csv.DictReader(io.StringIO((tmp_path / "cut.csv").read_text())))
+    assert [row["line"] for row in rows] == [row["line"] for row in told["rows"]]
+    assert float(rows[0]["cut_mm"]) == pytest.approx(told["rows"][0]["cut_mm"], rel=1e-5)
+    assert main(words) == 0
+    plain = capsys.readouterr().out
+    assert f"{told['rows'][1]['cut_mm']:.1f}" in plain
+    assert "Newtons are an estimate" in plain
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ([], "No line is worn"),
+        (["--line", "mid-bust=70%", "--elastic", "waist=picot 10"], "names no worn line.*worn are: mid-bust"),
+        (["--line", "mid-bust=70%", "--elastic", "mid-bust=rope"], "No elastic is called 'rope'"),
+        (["--line", "mid-bust=52%", "--elastic", "mid-bust=strap 10"], "stretched by .*ends at 70 %"),
+    ],
+)
+def test_what_cannot_be_cut_is_said_in_a_sentence(mannequin, capsys, words, sentence):
+    assert main(["cut", str(mannequin), *words]) == 2
+    assert re.search(sentence, capsys.readouterr().err)
