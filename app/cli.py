@@ -185,17 +185,9 @@ def cut(options: argparse.Namespace) -> int:
 def export(options: argparse.Namespace) -> int:
     """Write what other programs open: a body, its lines, strips, measures, a turntable."""
     from app.commands.exported import Wishes, run_export
-    from core.pipeline import build
 
-    values = {name: getattr(options, name) for name in vars(Wishes()) if name != "unit"}
-    wishes = Wishes(
-        **{key: "" if value is None and key != "axes" else value for key, value in values.items()}
-    )
-    wishes = replace(wishes, unit=options.file_unit)
-    design = design_of(options.input, options)
-    if options.line:
-        design = dressed(design, build(design).model.lines, options.line)
-    done = run_export(design, wishes, lambda said: print(said, flush=True))
+    wishes = Wishes(**{name: getattr(options, name) for name in vars(Wishes())})
+    done = run_export(design_of(options.input, options), options.line or [], wishes, print)
     _warn(done.warnings)
     return SETTLED if done.settled else NOT_SETTLED
 

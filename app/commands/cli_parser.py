@@ -86,6 +86,8 @@ def _parser(command: str) -> argparse.ArgumentParser:
     parser = _Parser(prog=f"busk {command}", description=COMMANDS[command])
     if command in _OF_A_SCAN:
         _add_scan(parser)
+    if command == "export":
+        _add_files(parser)
     _add_design(parser, command)
     if command == "solve":
         parser.add_argument("--volume", choices=CONTROLS)
@@ -124,10 +126,10 @@ def _parser(command: str) -> argparse.ArgumentParser:
 
 def _add_design(parser: argparse.ArgumentParser, command: str) -> None:
     """Add what can be said of a design: its settings, its lines and what they are made of."""
-    if command in ("solve", "limits", "cut", "picture"):
+    if command in ("solve", "limits", "cut", "export", "picture"):
         parser.add_argument("--settings", action="append", metavar="KEY=VALUE", help=help_text())
         parser.add_argument("--path", action="append", metavar="NAME=POINTS", help=LINE_HELP)
-    if command in ("solve", "limits", "cut"):
+    if command in ("solve", "limits", "cut", "export"):
         parser.add_argument(
             "--line",
             action="append",
@@ -155,14 +157,22 @@ def _add_files(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "input", metavar="PROJECT", help=f"a project (.busk), or a scan ({KINDS}) with --line"
     )
-    parser.add_argument("--body", metavar="FILE", help="the reshaped body: .glb, .obj, .ply, .stl")
-    parser.add_argument("--control", metavar="FILE", help="the reshaped control mesh: .glb, .obj, .ply, .stl")
-    parser.add_argument("--lines", metavar="FILE", help="the worn lines on the body: .dxf, .obj")
     parser.add_argument(
-        "--flat", metavar="FILE", help="the worn lines as flat strips at their size: .svg, .dxf"
+        "--body", default="", metavar="FILE", help="the reshaped body: .glb, .obj, .ply, .stl"
     )
-    parser.add_argument("--measures", metavar="FILE", help="its measures: .smis, .vit, .csv, .json")
-    parser.add_argument("--turntable", metavar="FILE", help="one turn round: .gif, .webp, .png for a series")
+    parser.add_argument(
+        "--control", default="", metavar="FILE", help="the reshaped control mesh: .glb, .obj, .ply, .stl"
+    )
+    parser.add_argument("--lines", default="", metavar="FILE", help="the worn lines on the body: .dxf, .obj")
+    parser.add_argument(
+        "--flat", default="", metavar="FILE", help="the worn lines as flat strips at their size: .svg, .dxf"
+    )
+    parser.add_argument(
+        "--measures", default="", metavar="FILE", help="its measures: .smis, .vit, .csv, .json"
+    )
+    parser.add_argument(
+        "--turntable", default="", metavar="FILE", help="one turn round: .gif, .webp, .png for a series"
+    )
     parser.add_argument(
         "--unit",
         dest="file_unit",

@@ -105,7 +105,7 @@ def _as_csv(sheet: MeasuresSheet) -> str:
     writer.writerow(["measure", "title", "value", "unit"])
     for key in sheet.values:
         value, unit = sheet.in_unit(key)
-        writer.writerow([key, sheet.titles.get(key, key), f"{value:.3f}", unit])
+        writer.writerow([key, sheet.titles.get(key, key), f"{value:z.3f}", unit])
     return text.getvalue()
 
 
@@ -136,7 +136,7 @@ def _as_xml(sheet: MeasuresSheet, kind: str) -> str:
     body = Xml.SubElement(root, "body-measurements")
     for name, (value, key) in seamly_names(sheet.lengths).items():
         title = {"full_name": sheet.titles.get(key, key)} if key else {}
-        Xml.SubElement(body, "m", {"name": name, "value": f"{value:.3f}"} | title)
+        Xml.SubElement(body, "m", {"name": name, "value": f"{value:z.3f}"} | title)
     Xml.indent(root)
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{Xml.tostring(root, encoding="unicode")}\n'
 

@@ -7,16 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.centre_line import NO_BACK, CentreLine, Surface, centre_line
+from core.centre_line import NO_BACK, USUAL_WIDTH, CentreLine, Surface, centre_line
 from core.errors import LineError
 from core.lines import Line
 from core.mesh import Floats, Points
 from core.pipeline import Stages
 from core.sections import arc_length
 from core.tffd import deform
-
-USUAL_WIDTH = 12.0
-"""Width of a band of which nothing else is said [mm]."""
 
 RIGHT, CENTRE, LEFT = "right side", "centre front", "left side"
 """What the marks of a strip are called."""

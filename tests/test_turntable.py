@@ -1,0 +1,117 @@
+"""A turntable: one turn round, whole or not at all, in every kind of file that says how it moves."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import app.printing.turntable as table
+from app.presenting.frame import bands
+from app.printing.turntable import FORMATS, Turntable, draw_turntable, write_turntable
+from core.errors import UserError
+from core.progress import Cancelled
+from core.solution import run
+
+SMALL = Turntable(frames=4, size=(120, 100), seconds=2.0)
+
+
+@pytest.fixture(scope="module")
+def reshaped(built):
+    stages = built("mannequin")
+    return stages, run(stages).control_points, bands(stages, ())
+
+
+@pytest.fixture(autouse=True)
+def light_shadows(monkeypatch):
+    """Soft shadows take a second, and are another test's."""
+    monkeypatch.setattr(table, "bake_occlusion", lambda mesh: np.ones(len(mesh.vertices)))
+
+
+@pytest.mark.parametrize("kind", ["gif", "webp"])
+def test_a_moving_picture_turns_once_in_its_time_and_goes_on(tmp_path, reshaped, kind):
+    files = write_turntable(tmp_path / f"t.{kind}", *reshaped, SMALL)
+    with Image.open(files[0]) as picture:
+        assert (picture.n_frames, picture.size, picture.info["loop"]) == (4, (120, 100), 0)
+        shown = []
+        for k in range(4):
+            picture.seek(k)
+            picture.load()
+            shown.append((np.asarray(picture.convert("RGB"), dtype=float), picture.info["duration"]))
+    assert [duration for _, duration in shown] == [500] * 4
+    assert [path.name for path in tmp_path.iterdir()] == [f"t.{kind}"]
+    for (first, _), (second, _) in pairwise(shown):
+        assert np.abs(first - second).mean() > 1.0  # it has turned
+
+
+def test_a_series_has_a_numbered_picture_a_step(tmp_path, reshaped):
+    files = write_turntable(tmp_path / "t.png", *reshaped, Turntable(10, (64, 64)))
+    assert [path.name for path in files] == [f"t-{k:02}.png" for k in range(1, 11)]
+    assert sorted(tmp_path.iterdir()) == files
+    with Image.open(files[9]) as picture:
+        assert picture.size == (64, 64)
+
+
+def test_it_begins_at_the_front_and_turns_to_the_left_side(reshaped):
+    front, left, back, right = (np.asarray(each, dtype=float) for each in draw_turntable(*reshaped, SMALL))
+    assert np.abs(front - front[:, ::-1]).mean() < 3.0  # a body from in front is even
+    assert np.abs(back - back[:, ::-1]).mean() < 3.0
+    assert np.abs(left - right[:, ::-1]).mean() < 3.0
+    assert np.abs(left - left[:, ::-1]).mean() > 5.0
+    assert np.abs(front - back).mean() > 1.0
+
+
+def test_before_and_after_stand_side_by_side_and_bands_are_worn_after(reshaped):
+    wide = Turntable(2, (200, 100), beside=True)
+    picture = np.asarray(draw_turntable(*reshaped, wide)[0], dtype=float)[:80]
+    before, after = picture[:, :100], picture[:, 100:]
+    assert bright(before) == 0 < bright(after)
+    assert picture.shape[1] == 200
+
+
+def test_dark_ground_is_dark(reshaped):
+    light, dark = (
+        np.asarray(draw_turntable(*reshaped, Turntable(2, (64, 64), dark=is_dark))[0])[:4].mean()
+        for is_dark in (False, True)
+    )
+    assert dark < 0.4 * light
+
+
+@pytest.mark.parametrize("kind", FORMATS)
+@pytest.mark.parametrize("late", [False, True])
+def test_what_is_stopped_leaves_no_file(tmp_path, reshaped, kind, late):
+    def stop(what, share):
+        if share > 0.3 and (what == "writing" or not late):
+            raise Cancelled
+
+    with pytest.raises(Cancelled):
+        write_turntable(tmp_path / f"t.{kind}", *reshaped, SMALL, stop)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_progress_only_goes_on(tmp_path, reshaped):
+    heard = []
+    write_turntable(tmp_path / "t.gif", *reshaped, SMALL, lambda _, share: heard.append(share))
+    assert heard == sorted(heard)
+    assert (heard[0], heard[-1]) == (0.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "said"), [("t.mp4", "gif, webp, png"), ("missing/t.gif", "There is no folder")]
+)
+def test_other_names_are_refused(tmp_path, reshaped, name, said):
+    with pytest.raises(UserError, match=said):
+        write_turntable(tmp_path / name, *reshaped, SMALL)
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"frames": 1}, {"seconds": 0.0}, {"size": (10, 600)}, {"size": (600, 9000)}]
+)
+def test_what_cannot_be_made_is_refused_with_the_range(wrong):
+    with pytest.raises(UserError, match="It goes from"):
+        Turntable(**wrong)
+
+
+def bright(picture: np.ndarray) -> int:
+    """How many pixels are of a band's colour: skin and ground are pale."""
+    return int((np.ptp(picture, axis=2) > 110).sum())
