@@ -16,6 +16,9 @@ from core.sections import arc_length, resample
 STEP = 4.0
 """Distance between places along a centre line [mm]."""
 
+USUAL_WIDTH = 12.0
+"""Width of a band of which nothing else is said [mm]."""
+
 NO_BACK = np.empty((0, 3))
 _ASIDE = 0.4  # how far the middle of a taut band may leave its path, in widths: it still lies over it
 _PULLS = 12  # how often it is pulled straighter at most
