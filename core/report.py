@@ -170,7 +170,8 @@ def notes(stages: Stages) -> list[str]:
         *warnings(stages),
         *stages.body.repairs,
         "Lengths are those of the front part of a line, side to side; the back does not change.",
-        "Not modelled: friction between garment and skin, gravity, stiffness of real tape and real tissue.",
+        "Not modelled: friction between garment and skin, gravity, stiffness of real tissue, and of real "
+        "elastic where a line is made of none.",
     ]
 
 
