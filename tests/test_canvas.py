@@ -66,10 +66,10 @@ def test_only_what_moved_in_3d_is_drawn_anew_without_a_card(
     qtbot.waitExposed(view)
     qtbot.wait(20)
     drawn: list[str] = []
-    tag = view.scene.plotter.ren_win.AddObserver("EndEvent", lambda *_: drawn.append("drawn"))
+    draw = view._canvas._render
+    monkeypatch.setattr(view._canvas, "_render", lambda: drawn.append("drawn") or draw())
     view.overlay.repaint()
     assert drawn == []
     view.request_draw()
     qtbot.waitUntil(lambda: drawn == ["drawn"], timeout=3000)
-    view.scene.plotter.ren_win.RemoveObserver(tag)
     view.close_view()
