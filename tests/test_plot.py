@@ -131,14 +131,14 @@ def test_pointing_reads_every_curve_of_both_plots(strip: Strip, qtbot: QtBot) ->
     strip.error_plot.pointed.emit(20.3)
     assert [row[:2] for row in error.readout()] == [
         ("turn", "20"),
-        ("Adaptive", "0.20"),
-        ("Conventional", "0.10"),
-        ("Exact", "0.00"),
+        ("Adaptive", "0.20 %"),
+        ("Conventional", "0.10 %"),
+        ("Exact", "0.00 %"),
         ("Mid-bust 95.0 %", ""),
     ]
-    assert [value for _, value, _ in height.readout()] == ["20", "40.00", "20.00", "200.00", ""]
+    assert [value for _, value, _ in height.readout()] == ["20", "40.00 mm", "20.00 mm", "200.00 mm", ""]
     strip.height_plot.pointed.emit(80.0)
-    assert [value for _, value, _ in error.readout()] == ["80", "0.80", "0.25", "0.00"], (
+    assert [value for _, value, _ in error.readout()] == ["80", "0.80 %", "0.25 %", "0.00 %"], (
         "a run rests where it is"
     )
     strip.height_plot.pointed.emit(None)
@@ -169,7 +169,7 @@ def test_the_keyboard_points_and_zooms_as_the_mouse_does(strip: Strip) -> None:
     for key in (Qt.Key.Key_Right, Qt.Key.Key_Left, Qt.Key.Key_Left):
         QTest.keyClick(error, key)
     assert error.readout()[0][1] == "98"
-    assert "Adaptive 0.98" in error.accessibleDescription()
+    assert "Adaptive 0.98 %" in error.accessibleDescription()
     QTest.keyClick(error, Qt.Key.Key_Plus)
     assert error.turns()[1] - error.turns()[0] == pytest.approx(80.0)
     QTest.keyClick(error, Qt.Key.Key_Home)
@@ -183,8 +183,8 @@ def test_another_quantity_is_chosen_at_the_title(strip: Strip) -> None:
         next(each for each in plot.title.menu.actions() if not each.isChecked()).trigger()
         assert plot.quantity.name == name
         plot.pointed.emit(20.0)
-    assert strip.error_plot.canvas.readout()[1][1] == "2.00"
-    assert strip.height_plot.canvas.readout()[1][1] == "60.00"
+    assert strip.error_plot.canvas.readout()[1][1] == "2.00 ml"
+    assert strip.height_plot.canvas.readout()[1][1] == "60.00 mm"
     assert strip.error_plot.canvas.plotted.tolerance == pytest.approx(1.0), "0.1 % of a litre"
     assert tolerance_of("apex_mm", None) == 0.0
 
@@ -194,3 +194,16 @@ def test_a_run_that_begins_anew_is_shown_whole(strip: Strip) -> None:
     turns = np.arange(30.0)
     strip.set_run({"adaptive": Track(turns, turns, turns, turns, turns)}, "adaptive", None)
     assert strip.error_plot.canvas.turns() == (0.0, 29.0)
+
+
+@pytest.mark.parametrize(("width", "named"), [(1400, 3), (960, 2), (860, 1)])
+def test_the_curves_are_named_where_there_is_room(strip: Strip, width: int, named: int) -> None:
+    strip.resize(width, 172)
+    strip.show()
+    QApplication.processEvents()
+    legends = strip._legends
+    shown = [entry for legend in legends for entry in legend.entries]
+    assert len(shown) >= named
+    assert shown == strip.legend[: len(shown)]
+    for plot, legend in zip(strip.plots, legends, strict=True):
+        assert plot.title.width() + legend.width() <= plot.width()

@@ -6,8 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Protocol
 
-from PySide6.QtCore import QPoint, QSize, Qt, Signal
-from PySide6.QtGui import QResizeEvent
+from PySide6.QtCore import QEvent, QObject, QPoint, QSize, Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QMenu, QSizePolicy, QVBoxLayout, QWidget
 
 from app.dress.parts import ElidedLabel, Segment, ToolButton, sentence
@@ -15,7 +14,7 @@ from app.dress.theme import font, label
 from app.showing.live_plot import LivePlot
 from app.showing.plot_canvas import Turns
 from app.showing.plot_curves import Curve, Event
-from app.showing.plot_legend import Entry, Legend, legend_entries, run_title
+from app.showing.plot_legend import Entry, Legend, legend_entries, legend_width, run_title
 from app.showing.tracks import Exact, Track, error_quantities, height_quantities, tolerance_of
 from app.showing.verdict_chip import VerdictChip
 from app.wording.words import tr
@@ -24,7 +23,6 @@ CONTROLS = ("adaptive", "conventional", "none", "exact")
 """Ways to control the volume, as named in the run."""
 
 _HIGH, _LOW, _FOLDED = 172, 150, 36
-_LEGEND_FROM = 1100  # narrower, the legend has no room beside the titles
 
 
 class VerdictView(Protocol):
@@ -74,8 +72,12 @@ class Strip(QWidget):
             plot.quantity_chosen.connect(self._draw_anew)
             plot.quantity_chosen.connect(self.quantity_chosen)
             plot.menu_asked.connect(self._show_menu)
-        self._legend = Legend()
-        self.height_plot.head.addWidget(self._legend)
+        self._entries: list[Entry] = []
+        self._legends = Legend(), Legend()
+        for plot, legend in zip(self.plots, self._legends, strict=True):
+            plot.head.addWidget(legend)
+            plot.setMinimumWidth(120)  # a legend gives way, the plot does not
+            plot.installEventFilter(self)
         self._body, self._line = QWidget(), QWidget()
         self._build_body()
         self._build_line()
@@ -115,7 +117,7 @@ class Strip(QWidget):
     @property
     def legend(self) -> list[Entry]:
         """The names of the curves as they are drawn."""
-        return self._legend.entries
+        return self._entries
 
     def _draw_anew(self) -> None:
         self._draw(refit=True)
@@ -139,7 +141,18 @@ class Strip(QWidget):
                 events=self._events,
                 refit=refit,
             )
-        self._legend.show_entries(legend_entries(roles, exact is not None, is_main))
+        self._entries = legend_entries(roles, exact is not None, is_main)
+        self._share_legend()
+
+    def _share_legend(self) -> None:
+        """Name the curves beside the title of the first plot, those without room there beside the other."""
+        left = list(self._entries)
+        for plot, legend in zip(self.plots, self._legends, strict=True):
+            room = plot.width() - plot.title.width() - 8
+            shown: list[Entry] = []
+            while left and legend_width([*shown, left[0]]) <= room:
+                shown.append(left.pop(0))
+            legend.show_entries(shown)
 
     def set_verdict(self, verdict: VerdictView) -> None:
         """Show how the run stands; call it before ``set_run``, which takes its colour from it."""
@@ -176,9 +189,10 @@ class Strip(QWidget):
         self.updateGeometry()
         self.folded.emit(folded)
 
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self._legend.setVisible(self.width() >= _LEGEND_FROM)
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.Resize:
+            self._share_legend()
+        return False
 
     def _build_body(self) -> None:
         row = QHBoxLayout(self._body)

@@ -71,6 +71,7 @@ class LivePlot(QWidget):
         """Plot another quantity from now on; an unknown one changes nothing."""
         self.quantity = self._quantities.get(name, self.quantity)
         self.title.show_quantity(self.quantity)
+        self.canvas.unit = self.quantity.unit
         self.canvas.setAccessibleName(f"{self.quantity.title} {self.quantity.unit}")
 
     def set_curves(

@@ -59,6 +59,7 @@ class PlotCanvas(QWidget):
         self.plotted, self.smooth = Plotted(), True
         self._digits = digits
         self._values = (0.0, 1.0)
+        self.unit = ""
         self.zoom: Turns | None = None
         self._turn: float | None = None
         self._drawn: QPixmap | None = None
@@ -100,13 +101,16 @@ class PlotCanvas(QWidget):
         plotted = self.plotted
         rows = [(tr("turn"), number(self._turn, 0), "")]
         for curve, value in plotted.at(self._turn):
-            rows.append((curve.name, number(value, self._digits), ROLE_COLORS[curve.role]))
+            rows.append((curve.name, self._said(value), ROLE_COLORS[curve.role]))
         if plotted.exact is not None:
             token = "accent" if plotted.exact_is_main else "exact_curve"
-            rows.append((tr("Exact"), number(plotted.exact, self._digits), token))
+            rows.append((tr("Exact"), self._said(plotted.exact), token))
         reach = _NEAR_EVENT / self.scale().turn_width
         rows += [(event.words, "", "") for event in plotted.events if abs(event.turn - self._turn) <= reach]
         return rows
+
+    def _said(self, value: float) -> str:
+        return f"{number(value, self._digits)} {self.unit}"
 
     def sizeHint(self) -> QSize:
         return QSize(300, 120)

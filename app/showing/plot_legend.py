@@ -38,7 +38,7 @@ def legend_entries(roles: Mapping[str, str], exact: bool, exact_is_main: bool) -
 def legend_width(entries: list[Entry]) -> int:
     """Return the room that a legend takes [px]."""
     wide = QFontMetrics(font("caption"))
-    return sum(wide.horizontalAdvance(title) + 38 for title, _, _ in entries)
+    return sum(wide.horizontalAdvance(title) + 34 for title, _, _ in entries)
 
 
 def paint_legend(painter: QPainter, entries: list[Entry], at: QPointF, tokens: Tokens) -> None:
@@ -53,7 +53,7 @@ def paint_legend(painter: QPainter, entries: list[Entry], at: QPointF, tokens: T
         painter.drawLine(QPointF(x + 2, at.y()), QPointF(x + 18, at.y()))
         painter.setPen(QColor(tokens.text_quiet))
         painter.drawText(QPointF(x + 23, at.y() + 4), title)
-        x += painter.fontMetrics().horizontalAdvance(title) + 38
+        x += painter.fontMetrics().horizontalAdvance(title) + 34
 
 
 class Legend(QWidget):
