@@ -1,0 +1,276 @@
+"""Contact pressure of bands: Laplace's law on shapes with formulas, hollows, straps, balance and noise."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from band_courses import NEWTONS, STEP, arc, course, ellipse, flat, parallel, polar
+from shapes import SAMPLES
+
+from core.centre_line import Surface
+from core.design import Design, ScanSource
+from core.mesh import Mesh
+from core.pipeline import build
+from core.pressure import LEFT_OUT, LinePressure, band_pressure, mmhg, pressures
+from core.sewing.comfort import AMBER, GREEN, RED, comfort
+from core.sewing.course import Course, course_of
+from core.sewing.tensions import LineTension, line_tensions
+from core.solution import Solution, run
+from core.tffd import deform
+
+WIDTH = 15.0
+LOBED = 35.0
+
+
+def laplace(radius: float, width: float = WIDTH) -> float:
+    """T / (w R) [kPa], by hand: N/mm^2 are 1000 kPa."""
+    return 1000.0 * NEWTONS / (width * radius)
+
+
+@cache
+def solution() -> Solution:
+    design = Design(ScanSource(str(SAMPLES / "mannequin.ply")))
+    for name in ("under-bust", "mid-bust"):
+        design = design.with_line(name, 0.95)
+    traits = replace(design.traits_of("mid-bust"), width=20.0)
+    return run(build(design.with_traits(traits)))
+
+
+@pytest.mark.parametrize("radius", [30.0, 60.0, 120.0, 400.0])
+@pytest.mark.parametrize("width", [8.0, 15.0, 40.0])
+def test_a_band_round_a_cylinder_presses_with_tension_over_width_and_radius(
+    radius: float, width: float
+) -> None:
+    worn = band_pressure(polar(lambda t: np.full_like(t, radius)), width)
+    assert worn.kpa == pytest.approx(laplace(radius, width), rel=0.001)
+    assert worn.mean == pytest.approx(laplace(radius, width), rel=0.001)
+    assert worn.radius == pytest.approx(radius, rel=0.001)
+    assert worn.force == pytest.approx(2.0 * np.pi * NEWTONS, rel=0.001)
+    assert worn.notes == ()
+    assert worn.bridges == ()
+
+
+def test_the_example_of_five_newtons_in_a_band_of_fifteen_mm() -> None:
+    worn = band_pressure(polar(lambda t: np.full_like(t, 120.0)), 15.0)
+    assert worn.mean == pytest.approx(2.78, abs=0.005)
+    assert mmhg(worn.mean) == pytest.approx(2.7778 / 0.13332, abs=0.01)
+    assert mmhg(0.133322) == pytest.approx(1.0)
+    # An other way there: p [mmHg] = 4622 T [kgf] / (girth [cm] width [cm]), as bandages are reckoned.
+    assert mmhg(worn.mean) == pytest.approx(4622 * (5.0 / 9.80665) / (2.0 * np.pi * 12.0 * 1.5), rel=0.001)
+
+
+def test_round_an_ellipse_the_local_radius_is_that_of_the_formula() -> None:
+    a, b = 160.0, 110.0
+    band = ellipse(a, b)
+    worn = band_pressure(band, WIDTH)
+    x, y = band.points[:, 0] / a, band.points[:, 1] / b
+    radius = (a**2 * y**2 + b**2 * x**2) ** 1.5 / (a * b)
+    assert worn.radius == pytest.approx(radius, rel=0.02)
+    assert worn.largest == pytest.approx(laplace(b**2 / a), rel=0.02)
+    assert abs(worn.places[worn.peak]) == pytest.approx([a, 0.0, 0.0], abs=4.0)
+
+
+@pytest.mark.parametrize("latitude", [0.0, 0.5, -0.9])
+def test_on_a_ball_the_radius_is_that_of_the_ball_wherever_the_band_lies(latitude: float) -> None:
+    worn = band_pressure(parallel(100.0, latitude), WIDTH)
+    # Meusnier: the circle is smaller, but the skin's normal is inclined against its plane.
+    assert worn.kpa == pytest.approx(laplace(100.0), rel=0.01)
+
+
+def test_over_a_hollow_the_band_goes_straight_and_does_not_press() -> None:
+    band = polar(lambda t: 100.0 + LOBED * np.cos(2.0 * t))
+    worn = band_pressure(band, WIDTH)
+    assert len(worn.bridges) == 2
+    over = worn.off > 0.5
+    assert over.any()
+    assert (worn.kpa[over] == 0.0).all()
+    assert np.isinf(worn.radius[over]).all()
+    # y = r sin t is largest where sin^2 t = 135/210; the hollow is deepest at t = 90 degrees.
+    highest = (135.0 - 70.0 * 135.0 / 210.0) * np.sqrt(135.0 / 210.0)
+    assert worn.places[over, 1] == pytest.approx(highest * np.sign(worn.places[over, 1]), abs=0.1)
+    assert [each.height for each in worn.bridges] == pytest.approx([highest - 65.0] * 2, abs=0.1)
+    assert worn.notes == (
+        f"It goes straight over hollows for {worn.bridged_length:.0f} mm, "
+        "up to 7 mm off the skin: it does not press there.",
+    )
+    span = np.cos(np.arcsin(np.sqrt(135.0 / 210.0))) * 90.0
+    assert worn.bridged_length == pytest.approx(4.0 * span, abs=10.0)
+    # What the hollow does not bear, the rest does: all turns together go once round.
+    assert worn.force == pytest.approx(2.0 * np.pi * NEWTONS, rel=0.001)
+
+
+def test_a_hollow_at_the_seam_of_a_closed_band_is_one_hollow() -> None:
+    worn = band_pressure(polar(lambda t: 100.0 - LOBED * np.cos(2.0 * t)), WIDTH)
+    assert [each.length for each in worn.bridges] == pytest.approx([104.0] * 2, abs=STEP)
+
+
+def test_a_hollow_that_hardly_shows_is_not_told_and_counts_as_skin() -> None:
+    worn = band_pressure(polar(lambda t: 100.0 + 25.0 * np.cos(2.0 * t)), WIDTH)
+    assert 0.0 < worn.off.max() < 1.5
+    assert worn.bridges == ()
+    assert worn.mean == pytest.approx(1000.0 * worn.force / (WIDTH * worn.step * len(worn.kpa)))
+
+
+@pytest.mark.parametrize(
+    "band",
+    [
+        ellipse(160.0, 90.0),
+        polar(lambda t: 100.0 + 8.0 * np.cos(t) + 4.0 * np.sin(3.0 * t)),
+        polar(lambda t: 100.0 + LOBED * np.cos(2.0 * t) + 5.0 * np.sin(t)),
+        parallel(80.0, 0.0),
+    ],
+)
+def test_the_forces_of_a_closed_level_band_are_in_balance(band: Course) -> None:
+    worn = band_pressure(band, WIDTH)
+    area = worn.width * worn.step
+    force = -(worn.kpa[:, None] * worn.normals).sum(axis=0) * area / 1000.0
+    assert worn.resultant == pytest.approx(force)
+    assert np.linalg.norm(worn.resultant) < 0.002 * worn.force
+    assert worn.force == pytest.approx(worn.kpa.sum() * area / 1000.0)
+
+
+def test_a_strap_presses_as_its_ends_pull() -> None:
+    worn = band_pressure(arc(60.0, np.pi), WIDTH)
+    assert not worn.closed
+    assert worn.kpa[6:-6] == pytest.approx(laplace(60.0), rel=0.01)
+    assert worn.kpa[1:-1] == pytest.approx(laplace(60.0), rel=0.05)
+    # Both ends pull straight down with T; the last half steps lie beyond the outer places.
+    assert worn.resultant == pytest.approx([0.0, 0.0, -2.0 * NEWTONS], abs=0.02 * NEWTONS)
+
+
+def test_a_strap_bridges_the_hollow_above_a_breast() -> None:
+    k = 2.0 * np.pi / 200.0
+
+    def wave(t: np.ndarray) -> np.ndarray:
+        return np.stack([np.zeros_like(t), -20.0 * np.cos(k * t), -t], axis=1)
+
+    def out(t: np.ndarray) -> np.ndarray:
+        return np.stack([np.zeros_like(t), -np.ones_like(t), -20.0 * k * np.sin(k * t)], axis=1)
+
+    band = course(wave, out, 240.0, closed=False)
+    worn = band_pressure(band, WIDTH)
+    assert len(worn.bridges) == 1
+    assert worn.bridges[0].height == pytest.approx(40.0, abs=1.0)
+    hollow = (worn.places[:, 2] < -40.0) & (worn.places[:, 2] > -160.0)
+    assert worn.places[hollow, 1] == pytest.approx(-20.0, abs=1.0)
+    assert (worn.kpa[hollow] == 0.0).all()
+    assert worn.places[worn.peak, 2] == pytest.approx(-200.0, abs=15.0)
+
+
+def test_a_slack_band_does_not_press_and_says_so() -> None:
+    band = ellipse(160.0, 110.0)
+    slack = band_pressure(replace(band, tension=-band.tension), WIDTH)
+    assert slack.kpa.max() == slack.force == slack.mean == 0.0
+    assert slack.notes == ("It is slack: it does not press.",)
+    half = band_pressure(replace(band, tension=np.where(band.points[:, 1] < 0.0, NEWTONS, -1.0)), WIDTH)
+    assert half.notes == ("Part of it is slack: it does not press there.",)
+    assert (half.kpa[band.points[:, 1] > 1.0] == 0.0).all()
+
+
+def test_pressure_is_of_the_tension_at_each_place() -> None:
+    band = ellipse(160.0, 110.0)
+    front = band.points[:, 1] < 0.0
+    twice = band_pressure(replace(band, tension=np.where(front, 2.0, 1.0) * NEWTONS), WIDTH)
+    assert twice.kpa == pytest.approx(np.where(front, 2.0, 1.0) * band_pressure(band, WIDTH).kpa)
+
+
+def cylinder(radius: float, noise: float = 0.0) -> Mesh:
+    """A scan of a standing cylinder, points about 4 mm apart that do not lie exactly on it."""
+    count, rows = round(2.0 * np.pi * radius / 4.0), 31
+    turn, level = np.meshgrid(np.arange(count), np.arange(rows))
+    angle = (2.0 * np.pi * turn / count).ravel()
+    reach = radius + np.random.default_rng(1).normal(0.0, noise, count * rows)
+    points = np.stack([reach * np.cos(angle), reach * np.sin(angle), 4.0 * level.ravel() - 60.0], axis=1)
+    a = (np.arange(rows - 1)[:, None] * count + np.arange(count)).ravel()
+    b = (np.arange(rows - 1)[:, None] * count + (np.arange(count) + 1) % count).ravel()
+    lower, upper = np.stack([a, b, b + count], axis=1), np.stack([a, b + count, a + count], axis=1)
+    return Mesh(points, np.concatenate([lower, upper]))
+
+
+def round_cylinder(radius: float, noise: float = 0.0) -> LinePressure:
+    mesh, t = cylinder(radius, noise), np.linspace(0.0, 2.0 * np.pi, 25)
+    ring = radius * flat(np.cos(t), np.sin(t))
+    tension = LineTension(np.full(12, NEWTONS), NEWTONS, estimate=False)
+    band = course_of(ring[:13], tension, Surface(mesh), mesh.vertices, WIDTH, ring[12:])
+    return band_pressure(band, WIDTH)
+
+
+def test_a_band_that_is_laid_on_a_scan_of_a_cylinder_presses_as_on_the_cylinder() -> None:
+    worn = round_cylinder(110.0)
+    assert worn.closed
+    assert worn.mean == pytest.approx(laplace(110.0), rel=0.01)
+    assert worn.kpa == pytest.approx(laplace(110.0), rel=0.05)
+    assert 0.4 < worn.front.mean() < 0.6
+
+
+def test_noise_of_a_scan_hardly_changes_the_mean() -> None:
+    assert round_cylinder(110.0, noise=0.5).mean == pytest.approx(laplace(110.0), rel=0.02)
+
+
+@pytest.mark.parametrize("name", ["under-bust", "mid-bust"])
+def test_noise_hardly_changes_the_mean_on_a_real_body(name: str) -> None:
+    stages, points = solution().stages, solution().control_points
+    mesh, moved = stages.body.mesh, deform(stages.binding, points)
+    line = next(each for each in stages.model.lines if each.name == name)
+    even = LineTension(np.full(len(line.pairs), NEWTONS), NEWTONS, estimate=False)
+    path, back = stages.control.mesh.vertices[line.path], stages.backs[name].path
+
+    def worn(noise: np.ndarray) -> LinePressure:
+        skin = Surface(mesh.moved(mesh.vertices + noise))
+        return band_pressure(course_of(path, even, skin, moved + noise, WIDTH, back), WIDTH)
+
+    along = np.random.default_rng(7).normal(0.0, 0.5, (len(moved), 1))
+    calm, rough = worn(np.zeros((1, 3))), worn(along * mesh.vertex_normals)
+    assert not np.array_equal(calm.kpa, rough.kpa)
+    assert rough.mean == pytest.approx(calm.mean, rel=0.03)
+
+
+def test_worn_lines_press_with_their_tensions_on_the_reshaped_body() -> None:
+    stages, points = solution().stages, solution().control_points
+    told, tensions = pressures(stages, points), line_tensions(stages, points)
+    assert (
+        list(told) == list(tensions) == ["mid-bust"]
+    )  # the under-bust line has no tension without an elastic
+    worn, tension = told["mid-bust"], tensions["mid-bust"]
+    assert worn.width == 20.0
+    assert (~worn.front).any()
+    assert worn.tension[~worn.front] == pytest.approx(tension.mean)
+    assert set(worn.tension[worn.front].round(9)) <= set(np.maximum(tension.segments, 0.0).round(9))
+    assert worn.notes[0] == "Its tension follows from the stiffness of tissue alone, an estimate."
+    touching = worn.places[worn.off == 0.0]
+    far = np.linalg.norm(solution().body.vertices[:, None] - touching[None, ::9], axis=2).min(axis=0)
+    assert far.max() < 6.0
+    assert worn.largest > worn.mean > 0.0
+
+
+def test_a_band_of_no_told_width_is_taken_as_wide_as_it_is_drawn() -> None:
+    stages = solution().stages
+    plain = replace(
+        stages, design=stages.design.with_traits(replace(stages.design.traits_of("mid-bust"), width=None))
+    )
+    worn = pressures(plain, solution().control_points)["mid-bust"]
+    assert worn.width == 12.0
+    assert "It is taken to be 12 mm wide: no width was told." in worn.notes
+
+
+def test_the_light_goes_by_the_largest_pressure() -> None:
+    limits = comfort()
+    lights = {kpa: limits.light(kpa) for kpa in (0.0, 1.99, 2.0, 3.99, 4.0, 12.0)}
+    assert list(lights.values()) == [GREEN, GREEN, AMBER, AMBER, RED, RED]
+    band = ellipse(160.0, 60.0)  # mean 2.8 kPa, 15 kPa at the narrow ends
+    assert band_pressure(band, WIDTH).light == RED
+    assert band_pressure(band, WIDTH).mean < limits.red_kpa
+    assert band_pressure(band, 200.0).light == GREEN
+
+
+def test_the_limits_are_told_with_sources_and_doubts_in_both_languages() -> None:
+    limits = comfort()
+    assert 0.0 < limits.amber_kpa < limits.red_kpa < 35.0 * 0.133322  # where wearers complained
+    texts = [*limits.lights.values(), *limits.doubts, *(source.words for source in limits.sources)]
+    assert len(limits.sources) >= 4
+    assert all(words.en.endswith(".") and words.ja.endswith("。") for words in texts)
+    assert "estimate" in limits.doubts[0].en
+    assert any("42 %" in sentence for sentence in LEFT_OUT)
