@@ -187,7 +187,8 @@ def export(options: argparse.Namespace) -> int:
     from app.commands.exported import Wishes, run_export
 
     wishes = Wishes(**{name: getattr(options, name) for name in vars(Wishes())})
-    done = run_export(design_of(options.input, options), options.line or [], wishes, print)
+    design = design_of(options.input, options)
+    done = run_export(design, options.line or [], options.elastic or [], wishes, print)
     _warn(done.warnings)
     return SETTLED if done.settled else NOT_SETTLED
 

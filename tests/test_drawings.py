@@ -1,5 +1,6 @@
 """Worn lines for pattern programs: read back by other libraries, at their length."""
 
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import ezdxf
@@ -9,14 +10,16 @@ import pyvista as pv
 from conftest import SAMPLES
 from PySide6.QtSvg import QSvgRenderer
 
+from core.cutting import cut_list
 from core.design import Design, ScanSource
+from core.elastics import find_elastic
 from core.errors import LineError, UserError
 from core.pipeline import build
 from core.sections import arc_length
 from core.solution import run
 from core.space import UNITS, Space
 from core.writing_out.drawing import SCALE_BAR, told, write_curves, write_strips
-from core.writing_out.worn import Strip, strips, worn_curves
+from core.writing_out.worn import AS_WORN, Strip, strips, worn_curves
 
 SVG = {"s": "http://www.w3.org/2000/svg"}
 ODD = (Strip("a/b", 'Sling <left> & "ours"', 312.345, 12.0), Strip("A_b", "斜めの帯", 87.5, 6.5))
@@ -96,6 +99,27 @@ def test_a_strip_is_as_long_as_the_program_says_everywhere_else(solution, flat):
         assert (right, left) == ((0.0, "right side"), (pytest.approx(reached), "left side"))
         assert centre == (pytest.approx(reached / 2.0, rel=0.02), "centre front")
     assert {strip.name: strip.width for strip in flat} == {"mid-bust": 12.0, "under-bust": 22.0}
+
+
+def test_a_strip_of_elastic_is_as_long_as_it_is_to_be_cut(solution):
+    stages = solution.stages
+    elastic = replace(find_elastic("plush 12"), allowance_mm=30.0)
+    design = stages.design.with_line("mid-bust", 0.75).with_elastic("mid-bust", elastic)
+    stretched = run(build(design, stages))
+    points = stretched.control_points
+    row = next(row for row in cut_list(stretched.stages, points).rows if row.line == "mid-bust")
+    flat = strips(stretched.stages, points, {}, {})
+    cut, worn = (next(s for s in flat if s.name == name) for name in ("mid-bust", "under-bust"))
+    assert cut.length == row.cut_mm
+    assert cut.length < 0.9 * row.reached_whole_mm
+    assert (worn.length, worn.note) == (flat_length(stretched, "under-bust"), AS_WORN)
+    (right, centre, left, seam) = cut.marks
+    assert (right, seam) == ((15.0, "right side"), (pytest.approx(cut.length - 15.0), "seam"))
+    # Between its seams the strip is the band, relaxed as a whole.
+    share = (left[0] - 15.0) / (cut.length - 30.0)
+    assert share == pytest.approx(row.reached_front_mm / row.reached_whole_mm)
+    assert 15.0 < centre[0] < left[0]
+    assert "stretched by" in told(cut)
 
 
 def test_an_svg_is_at_its_size_in_millimetres(tmp_path, flat):
@@ -178,6 +202,11 @@ def test_a_design_without_worn_lines_is_refused(solution):
     stages = build(Design(solution.stages.design.scan), solution.stages)
     with pytest.raises(LineError, match="No line is worn"):
         worn_curves(stages, solution.control_points, {}, {})
+
+
+def flat_length(solution, name):
+    line = next(line for line in solution.stages.model.lines if line.name == name)
+    return line.length(solution.control_points) + line.back_length
 
 
 def worn_lines(solution):

@@ -96,7 +96,7 @@ def _parser(command: str) -> argparse.ArgumentParser:
         )
     if command == "accuracy":
         parser.add_argument("folder", metavar="DIR", help="scans with a truth.json beside them")
-    if command in ("solve", "cut"):
+    if command in ("solve", "cut", "export"):
         parser.add_argument("--elastic", action="append", metavar="LINE=ELASTIC", help=ELASTIC_HELP)
     if command in ("limits", "detect", "measure", "cut", "accuracy"):
         parser.add_argument("--json", action="store_true", help="print JSON")
@@ -165,7 +165,10 @@ def _add_files(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--lines", default="", metavar="FILE", help="the worn lines on the body: .dxf, .obj")
     parser.add_argument(
-        "--flat", default="", metavar="FILE", help="the worn lines as flat strips at their size: .svg, .dxf"
+        "--flat",
+        default="",
+        metavar="FILE",
+        help="the worn lines as flat strips to cut, at their size: .svg, .dxf",
     )
     parser.add_argument(
         "--measures", default="", metavar="FILE", help="its measures: .smis, .vit, .csv, .json"
@@ -182,7 +185,11 @@ def _add_files(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--axes", help="z-up (faces -y), y-up (faces z) or z-up-front-y (faces y); else y-up in .glb, z-up"
     )
-    parser.add_argument("--before", action="store_true", help="the body at rest in place of the reshaped one")
+    parser.add_argument(
+        "--before",
+        action="store_true",
+        help="the body at rest in place of the reshaped one; strips stay as they are",
+    )
     parser.add_argument("--frames", type=int, default=36, metavar="N", help="pictures of a turntable")
     parser.add_argument("--seconds", type=float, default=6.0, metavar="S", help="how long one turn takes")
     parser.add_argument(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.commands.settings import dressed
+from app.commands.settings import dressed, made_of
 from core import __version__
 from core.design import Design
 from core.errors import UserError
@@ -35,7 +35,8 @@ class Wishes:
     """What is to be written: file names, empty where nothing is wished, and how.
 
     ``file_unit`` and ``axes`` are None where the usual ones will do; ``before`` takes the body at rest in
-    place of the reshaped one; ``frames``, ``size``, ``seconds``, ``dark``, ``beside`` are of a turntable.
+    place of the reshaped one, but for strips; ``frames``, ``size``, ``seconds``, ``dark`` and ``beside`` are
+    those of a turntable.
     """
 
     body: str = ""
@@ -69,16 +70,21 @@ class Exported:
 
 
 def run_export(
-    design: Design, lengths: Sequence[str], wishes: Wishes, say: Callable[[str], None]
+    design: Design,
+    lengths: Sequence[str],
+    elastics: Sequence[str],
+    wishes: Wishes,
+    say: Callable[[str], None],
 ) -> Exported:
-    """Solve a design, its lines worn as ``lengths`` say (NAME=LENGTH), and write what is wished of it.
+    """Solve a design with ``lengths``, NAME=LENGTH, and ``elastics``, LINE=ELASTIC, and write what is wished.
 
     Each file is written whole or not at all; ``say`` hears a sentence of each. Raises UserError, before
     anything is solved if a name cannot be.
     """
     _check(wishes)
     stages = build(design)
-    solution = run(build(dressed(design, stages.model.lines, lengths), stages))
+    design = made_of(dressed(design, stages.model.lines, lengths), elastics)
+    solution = run(build(design, stages))
     points = solution.stages.control.mesh.vertices if wishes.before else solution.control_points
     for write, name in _jobs(solution, points, wishes):
         if name:
@@ -115,7 +121,7 @@ def _jobs(solution: Solution, points: Points, wishes: Wishes) -> Iterator[tuple[
     yield lambda name: _mesh(name, body, wishes), wishes.body
     yield lambda name: _mesh(name, control, wishes), wishes.control
     yield lambda name: _lines(name, solution, points, wishes), wishes.lines
-    yield lambda name: _flat(name, solution, points), wishes.flat
+    yield lambda name: _flat(name, solution), wishes.flat
     yield lambda name: _measures(name, solution, wishes), wishes.measures
     yield lambda name: _turntable(name, solution, points, wishes), wishes.turntable
 
@@ -142,10 +148,10 @@ def _lines(name: str, solution: Solution, points: Points, wishes: Wishes) -> str
     return f"{name}: {', '.join(curve.title for curve in curves)}, in {space.unit}, {space.axes}"
 
 
-def _flat(name: str, solution: Solution, points: Points) -> str:
+def _flat(name: str, solution: Solution) -> str:
     stages = solution.stages
     looks = _looks(stages.design, [line.name for line in stages.model.lines])
-    drawn = strips(stages, points, *looks)
+    drawn = strips(stages, solution.control_points, *looks)
     write_strips(name, drawn, f"Busk {__version__}, {stages.design.scan.name}")
     return f"{name}: {', '.join(f'{each.title} {each.length:.1f} mm' for each in drawn)}, 1:1"
 

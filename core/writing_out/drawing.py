@@ -71,7 +71,8 @@ def drawing_kind(path: str | os.PathLike[str], formats: Sequence[str]) -> str:
 
 def told(strip: Strip) -> str:
     """Return what stands beside a strip."""
-    return f"{strip.title}: {strip.length:.1f} mm long, {strip.width:g} mm wide"
+    size = f"{strip.title}: {strip.length:.1f} mm long, {strip.width:g} mm wide"
+    return f"{size}; {strip.note}" if strip.note else size
 
 
 def _obj_lines(parts: Iterable[tuple[str, str, Points]], space: Space) -> Iterable[str]:
@@ -85,7 +86,8 @@ def _obj_lines(parts: Iterable[tuple[str, str, Points]], space: Space) -> Iterab
 
 
 def _svg(strips: Sequence[Strip], heading: str) -> Xml.Element:
-    width = 2 * _MARGIN + max([SCALE_BAR, *(strip.length for strip in strips)])
+    words = [0.6 * _LETTER * len(text) for text in (heading, *map(told, strips))]
+    width = 2 * _MARGIN + max([1.3 * SCALE_BAR, *words, *(strip.length for strip in strips)])
     tops = _tops(strips)
     size = {
         "width": f"{width:.3f}mm",
@@ -95,7 +97,7 @@ def _svg(strips: Sequence[Strip], heading: str) -> Xml.Element:
     root = Xml.Element("svg", {"xmlns": "http://www.w3.org/2000/svg", "version": "1.1", **size})
     style = {"fill": "none", "stroke": _INK[0], "stroke-width": "0.2", "font-family": "sans-serif"}
     page = Xml.SubElement(root, "g", {**style, "font-size": f"{_LETTER:g}"})
-    _svg_text(page, _MARGIN, _MARGIN, f"{heading}  " * bool(heading) + "1:1, mm, no allowances")
+    _svg_text(page, _MARGIN, _MARGIN, f"{heading}  " * bool(heading) + "1:1, mm")
     bar = Xml.SubElement(page, "g", {"id": "scale-bar"})
     for (x0, y0), (x1, y1) in _bar(_MARGIN, _MARGIN + 6.0):
         _svg_line(bar, (x0, y0), (x1, y1))
@@ -135,7 +137,7 @@ def _strips_dxf(strips: Sequence[Strip], heading: str) -> Any:
     drawing.layers.add("scale bar", color=8)
     for start, end in _bar(0.0, 0.0):
         space.add_line(start, end, dxfattribs={"layer": "scale bar"})
-    note = f"{SCALE_BAR:g} mm, 1:1, no allowances  {heading}".strip()
+    note = f"{SCALE_BAR:g} mm, 1:1  {heading}".strip()
     space.add_text(note, height=_LETTER, dxfattribs={"layer": "scale bar", "insert": (SCALE_BAR + 5.0, 0.0)})
     for k, (strip, layer) in enumerate(zip(strips, _layers([s.name for s in strips]), strict=True)):
         on, y = {"layer": layer}, _HEAD - tops[k] - strip.width

@@ -1,13 +1,14 @@
-"""Lines as they are worn: smooth curves on the body, and strips as long as they are stretched there."""
+"""Lines as they are worn: smooth curves on the body, and flat strips to be cut."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from core.centre_line import NO_BACK, USUAL_WIDTH, CentreLine, Surface, centre_line
+from core.cutting import CutRow, cut_list
 from core.errors import LineError
 from core.lines import Line
 from core.mesh import Floats, Points
@@ -15,8 +16,11 @@ from core.pipeline import Stages
 from core.sections import arc_length
 from core.tffd import deform
 
-RIGHT, CENTRE, LEFT = "right side", "centre front", "left side"
+RIGHT, CENTRE, LEFT, SEAM = "right side", "centre front", "left side", "seam"
 """What the marks of a strip are called."""
+
+AS_WORN = "as worn: an elastic is cut shorter"
+"""What is said of a strip of which no elastic is chosen."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +43,7 @@ class WornCurve:
 
 @dataclass(frozen=True)
 class Strip:
-    """A band laid flat, as long as it is on the body and ``width`` wide [mm], without allowances.
+    """A band laid flat, ``length`` by ``width`` [mm], to be cut or as it is worn: ``note`` says which.
 
     ``marks`` are places along it by distance from its beginning [mm], with what lies there.
     """
@@ -49,6 +53,7 @@ class Strip:
     length: float
     width: float
     marks: tuple[tuple[float, str], ...] = ()
+    note: str = ""
 
 
 def worn_curves(
@@ -73,21 +78,41 @@ def worn_curves(
 def strips(
     stages: Stages, control_points: Points, titles: Mapping[str, str], widths: Mapping[str, float]
 ) -> tuple[Strip, ...]:
-    """Return the worn lines as flat strips of the lengths that the model reaches, front part and back.
+    """Return the worn lines as flat strips: as they are to be cut, or as worn where no elastic is chosen.
 
-    Marks lie at both sides and where the front part crosses the centre. Raises LineError if none is worn.
+    Marks lie at both sides, where the front part crosses the centre, and where seams begin. Raises LineError
+    if none is worn.
     """
     middle = float(stages.control.mesh.vertices[stages.control.border, 0].mean())
-    return tuple(
-        Strip(
+    cuts = {row.line: row for row in cut_list(stages, control_points).rows}
+    flat = []
+    for line in _worn(stages):
+        worn = Strip(
             line.name,
             titles.get(line.name, line.name),
             line.length(control_points) + line.back_length,
             widths.get(line.name, USUAL_WIDTH),
             _marks(line, control_points[line.path], middle),
+            AS_WORN,
         )
-        for line in _worn(stages)
+        flat.append(_cut(worn, cuts[line.name]))
+    return tuple(flat)
+
+
+def _cut(worn: Strip, row: CutRow) -> Strip:
+    """Return a strip as it is to be cut, marks where they lie unstretched; as worn if that is not known."""
+    if row.cut_mm is None or row.elongation is None or row.allowance_mm is None:
+        return worn
+    seam, shrunk = 0.5 * row.allowance_mm, 1.0 / (1.0 + row.elongation)
+    marks = [(seam + at * shrunk, what) for at, what in worn.marks]
+    if seam > 0.0:
+        marks += [(at, SEAM) for at in (seam, row.cut_mm - seam) if all(abs(at - k) > 1e-6 for k, _ in marks)]
+    note = (
+        f"to cut from {row.elastic}, {row.allowance_mm:g} mm of it for seams; "
+        f"worn {worn.length:.1f} mm, stretched by {100.0 * row.elongation:.0f} %"
     )
+    width = row.width_mm or worn.width
+    return replace(worn, length=row.cut_mm, width=width, marks=tuple(sorted(marks)), note=note)
 
 
 def _worn(stages: Stages) -> Sequence[Line]:
