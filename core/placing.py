@@ -21,7 +21,7 @@ HELP = (
 
 PLACED = "Placed by hand."
 
-ASTRAY, ADRIFT = 15.0, 25.0
+ASTRAY, ADRIFT = 15.0, 20.0
 """So far from where a rule finds it [mm], a placed landmark contradicts the rule: one that is sure of itself,
 and one that is not quite.
 """
