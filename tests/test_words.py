@@ -86,7 +86,7 @@ def test_every_sentence_of_the_core_is_translated(code: str) -> None:
 def test_a_message_is_translated_with_what_is_filled_in() -> None:
     use_language("ja")
     assert say("scan.ply has no sound triangles.") == "scan.ply に正しい三角形がありません。"
-    assert say("mid-bust cannot be held at 80.0 % of its rest length.").startswith("バストライン を")
+    assert say("mid-bust cannot be held at 80.0 % of its rest length.").startswith("バスト下部を")
     assert say("Dropped 1,204 vertices outside any face.") == "面に属さない頂点 1,204 個を除きました。"
     assert say("It is odd. Choose another scan.") == "It is odd.別のスキャンを選んでください。"
     unit, axes = "so the unit is mm (889 mm).", "That +z is up and -y is front was told."
