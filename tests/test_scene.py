@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -84,11 +82,6 @@ def distance_to(mesh: Mesh, points: np.ndarray) -> np.ndarray:
     return np.linalg.norm(points - nearest, axis=1)
 
 
-def test_the_scene_needs_no_qt() -> None:
-    code = "import sys, app.seeing.scene; sys.exit(any('PySide' in m or 'qtpy' in m for m in sys.modules))"
-    assert subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=False).returncode == 0
-
-
 # -- lines
 
 
@@ -146,9 +139,8 @@ def test_ribbons_stay_on_a_body_that_swells(scene: Scene, mannequin: Mesh) -> No
 
 
 def drawn(scene: Scene) -> np.ndarray:
-    """Return where each vertex of the body is drawn, (n, 3)."""
-    skin, parts = np.zeros((len(scene.body._skin.source), 3)), scene.body._parts
-    for part in parts:
+    skin = np.zeros((len(scene.body._skin.source), 3))
+    for part in scene.body._parts:
         skin[part.rows] = part.actor.mapper.dataset.points
     return skin
 

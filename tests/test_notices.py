@@ -1,0 +1,69 @@
+"""The notice bar: what is said when, what waits, and what takes it away."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from PySide6.QtWidgets import QApplication, QLabel, QPushButton
+from pytestqt.qtbot import QtBot
+
+from app.dress.theme import apply_theme
+from app.panels.notice import NoticeBar
+
+
+@pytest.fixture(autouse=True)
+def dressed(qapp: QApplication) -> Iterator[None]:
+    apply_theme(qapp, dark=False)
+    yield
+    qapp.setStyleSheet("")
+
+
+def test_notices_wait_for_each_other(qtbot: QtBot) -> None:
+    bar, acted = NoticeBar(), []
+    qtbot.addWidget(bar)
+    bar.show_notice("warn", "First.", "Do this.", [("Do", lambda: acted.append("done"))], lasting=True)
+    bar.show_notice("warn", "Second <b>.", lasting=True)
+    bar.show_notice("warn", "Second <b>.", lasting=True)
+    assert bar.notice().sentence == "First."
+    assert bar.more.text() == "1 more"
+    next(each for each in bar.findChildren(QPushButton) if each.text() == "Do").click()
+    assert acted == ["done"]
+    assert bar.notice().sentence == "Second <b>."
+    assert any("&lt;b&gt;" in label.text() for label in bar.findChildren(QLabel)), "names are not markup"
+    bar.close_notice()
+    assert bar.notice() is None
+    assert bar.isHidden()
+
+
+def test_what_goes_wrong_now_is_said_now_and_the_others_can_be_looked_at(qtbot: QtBot) -> None:
+    bar = NoticeBar()
+    qtbot.addWidget(bar)
+    bar.show_notice("warn", "Look at this.", lasting=True)
+    bar.show_notice("bad", "Not read.", lasting=True)
+    bar.show_notice("bad", "Not written.", lasting=True)
+    assert bar.notice().sentence == "Not written."
+    bar.show_notice("ok", "Written.")
+    bar.show_notice("ok", "Copied.")
+    assert bar.notice().sentence == "Copied.", "what goes by itself waits for nothing"
+    bar.close_notice()
+    seen = []
+    for _ in range(4):
+        seen.append((bar.notice().sentence, bar.more.text()))
+        bar.more.click()
+    assert [said for said, _ in seen] == ["Not written.", "Not read.", "Look at this.", "Not written."]
+    assert {more for _, more in seen} == {"2 more"}
+
+
+def test_only_what_a_notice_is_about_takes_it_away(qtbot: QtBot) -> None:
+    bar = NoticeBar()
+    qtbot.addWidget(bar)
+    for sentence, about in (("Refused.", "refused"), ("Not written.", "files"), ("Open twice.", "")):
+        bar.show_notice("bad", sentence, lasting=True, about=about)
+    bar.withdraw("files")
+    assert bar.notice().sentence == "Open twice."
+    bar.close_notice()
+    assert bar.notice().sentence == "Refused."
+    bar.withdraw("files")
+    bar.withdraw("refused")
+    assert bar.notice() is None
