@@ -14,6 +14,13 @@ from app.wording.words import LANGUAGES, tr
 
 CONTROLS = ("adaptive", "conventional", "accumulating", "exact", "none")
 
+_VIEW_MENUS = {
+    "compare": ("ghost", "wipe", "side"),
+    "looks": ("front", "left", "right", "back", "three-quarter", "top", "perspective"),
+    "layers": ("control-mesh", "landmarks", "bands", "section"),
+}
+"""What stands in a menu of its own within that of the view; the rest stands in that itself."""
+
 _KEYS = QKeySequence.StandardKey
 
 
@@ -62,9 +69,12 @@ class Actions(Menus):
     def _fill_view(self, view: Mapping[str, QAction]) -> None:
         said = tr("Show the body at rest, or reshaped")
         self.flip = self.add("view", tr("Before / after"), "Space", said, of_document=True)
+        self.submenu("view", "compare", tr("Compare"))
+        self.submenu("view", "looks", tr("Look from"))
+        self.submenu("view", "layers", tr("Show"))
         self.rule("view")
-        for action in view.values():
-            self.place("view", action)
+        for name, action in view.items():
+            self.place(next((menu for menu, held in _VIEW_MENUS.items() if name in held), "view"), action)
         self.rule("view")
         self.submenu("view", "theme", tr("Theme"))
         titles = {"system": tr("As the system"), "light": tr("Light"), "dark": tr("Dark")}

@@ -123,6 +123,7 @@ class CompareTools(Toolbar):
     def set_way(self, way: str) -> None:
         """Show how the bodies are looked at; nothing is emitted."""
         self._segment.set_choice(way)
+        self.actions_by_name["ghost"].setEnabled(way != "before")  # there it has nothing to go behind
         for name in ("wipe", "side"):
             self.set_shown(name, way == name)
 
