@@ -151,8 +151,7 @@ def band_pressure(course: Course, width: float) -> LinePressure:
     """
     smooth = course.smoothed(max(width, LEAST_OVER))
     turns, touched = taut(smooth.points, smooth.normals, course.closed)
-    places = straight(course.points, touched)
-    off = np.where(touched, 0.0, np.linalg.norm(places - course.points, axis=1))
+    places, off = straight(course.points, smooth.normals, touched, course.closed)
     tension = np.maximum(course.tension, 0.0)  # a band cannot push
     front, step, closed = course.front, course.step, course.closed
     return LinePressure(places, smooth.normals, tension, turns, off, front, width, step, closed)

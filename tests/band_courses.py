@@ -64,3 +64,16 @@ def _out(radius: Curve, t: np.ndarray) -> Points:
     slope = (radius(t + h) - radius(t - h)) / (2.0 * h)
     r = radius(t)
     return flat(r * np.cos(t) + slope * np.sin(t), r * np.sin(t) - slope * np.cos(t))
+
+
+def winding(waist: float, wave: float) -> Course:
+    """A band round a cylinder with two hollows that swings up and down by ``wave`` [mm] as it goes."""
+
+    def radius(t: np.ndarray) -> np.ndarray:
+        return np.asarray(100.0 + waist * np.cos(2.0 * t))
+
+    def swinging(t: np.ndarray) -> Points:
+        level = flat(radius(t) * np.cos(t), radius(t) * np.sin(t))
+        return np.asarray(level + wave * np.sin(4.0 * t + 0.7)[:, None] * np.array([0.0, 0.0, 1.0]))
+
+    return course(swinging, lambda t: _out(radius, t))

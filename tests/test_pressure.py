@@ -7,12 +7,12 @@ from functools import cache
 
 import numpy as np
 import pytest
-from band_courses import NEWTONS, STEP, arc, course, ellipse, flat, parallel, polar
+from band_courses import NEWTONS, STEP, arc, course, ellipse, flat, parallel, polar, winding
 from shapes import SAMPLES
 
 from core.centre_line import Surface
 from core.design import Design, ScanSource
-from core.mesh import Mesh
+from core.mesh import Mesh, unit
 from core.pipeline import build
 from core.pressure import LEFT_OUT, LinePressure, band_pressure, mmhg, pressures
 from core.sewing.comfort import AMBER, GREEN, RED, comfort
@@ -100,6 +100,18 @@ def test_over_a_hollow_the_band_goes_straight_and_does_not_press() -> None:
     assert worn.bridged_length == pytest.approx(4.0 * span, abs=10.0)
     # What the hollow does not bear, the rest does: all turns together go once round.
     assert worn.force == pytest.approx(2.0 * np.pi * NEWTONS, rel=0.001)
+
+
+@pytest.mark.parametrize("wave", [0.0, 10.0, 25.0])
+def test_a_band_that_also_swings_sideways_comes_down_smoothly_beside_a_hollow(wave: float) -> None:
+    band = winding(LOBED, wave)
+    worn, smooth = band_pressure(band, WIDTH), band.smoothed(20.0)
+    ways = unit(np.roll(smooth.points, -1, axis=0) - smooth.points)
+    bend = np.einsum("kx,kx->k", np.roll(ways, 1, axis=0) - ways, smooth.normals)
+    assert len(worn.bridges) == 2
+    assert (worn.turns <= np.maximum(bend, 0.0) + 1e-9).all()
+    # Off the skin or on it, the turns towards it go round as often.
+    assert worn.turns.sum() == pytest.approx(bend.sum(), rel=1e-6)
 
 
 def test_a_hollow_at_the_seam_of_a_closed_band_is_one_hollow() -> None:

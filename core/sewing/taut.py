@@ -5,8 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
-from core.mesh import Flags, Floats, Indices, Points
+from core.mesh import Flags, Floats, Indices, Points, unit
+
+Outline = npt.NDArray[np.complex128]
+"""Places of a plane curve, (k,) [mm]."""
 
 STANDS_OFF = 1.5
 """A taut band that stands off the skin by less than this lies on it [mm]."""
@@ -30,57 +34,69 @@ def taut(points: Points, normals: Points, closed: bool) -> tuple[Floats, Flags]:
     """Pull a band taut over places of a skin and its outward normals, both (k, 3).
 
     Returns by how much it turns towards the skin at each place [rad], the force on it over the tension, and
-    which places it touches; between them it goes straight. Across the normals it stays where it is sewn.
+    which places it touches; between them it goes straight. It comes off along the normals alone: what it
+    turns sideways is sewn into it.
     """
     count = len(points)
     turns, touched = np.zeros(count), np.ones(count, dtype=np.bool_)
     if count > 2:
-        order = _order(points, closed)
-        kept = _pressing(points[order], normals[order])
-        turns[order[kept]] = _turns(points[order], normals[order], kept, closed)
-        touched[:] = False
-        touched[order[kept]] = True
+        rounds = 3 if closed else 1  # where the first round begins may be in a hollow: the second is taken
+        flat = _rolled_out(points, normals, closed, rounds)
+        kept = _pressing(flat)
+        ways = np.diff(flat[kept])
+        found = np.zeros(len(flat))
+        found[kept[1:-1]] = np.angle(ways[1:] / ways[:-1])
+        first = count * (rounds // 2)
+        turns = np.maximum(found[first : first + count], 0.0)
+        touched = np.isin(np.arange(first, first + count), kept)
     return turns, touched
 
 
-def straight(points: Points, touched: Flags) -> Points:
-    """Return where a band is that goes straight from one ``touched`` (k,) place to the next, (k, 3) [mm]."""
-    at, kept = np.arange(len(points)), np.flatnonzero(touched)
-    columns = (np.interp(at, kept, axis[kept], period=len(points)) for axis in points.T)
-    return np.stack(list(columns), axis=1)
+def straight(points: Points, normals: Points, touched: Flags, closed: bool) -> tuple[Points, Floats]:
+    """Return where a band is that goes straight from one ``touched`` (k,) place to the next, and how far off.
+
+    Places (k, 3) and distances from the skin (k,) [mm], both along the band and its normals alone.
+    """
+    at, kept, count = np.arange(len(points)), np.flatnonzero(touched), len(points)
+    period = count if closed else None
+    places = np.stack([np.interp(at, kept, axis[kept], period=period) for axis in points.T], axis=1)
+    ahead = (
+        np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0) if closed else np.gradient(points, axis=0)
+    )
+    side, apart = unit(np.cross(normals, ahead)), places - points
+    apart -= np.einsum("kx,kx->k", apart, side)[:, None] * side
+    off = np.linalg.norm(apart, axis=1)
+    off[touched] = 0.0
+    return points + apart, off
 
 
-def _order(points: Points, closed: bool) -> Indices:
-    """Return the places in turn; round a closed band from one that surely touches, and back to it."""
-    first = int(np.linalg.norm(points - points.mean(axis=0), axis=1).argmax()) if closed else 0
-    return (np.arange(first, first + len(points) + closed)) % len(points)
+def _rolled_out(points: Points, normals: Points, closed: bool, rounds: int) -> Outline:
+    """Return the strip that stands on the course along the normals, rolled out flat: its foot, (k,) [mm].
+
+    Every turn towards the skin is kept, and every length; what it turns sideways is lost.
+    """
+    ways = np.diff(np.concatenate([points, points[:1]]) if closed else points, axis=0)
+    lengths = np.linalg.norm(ways, axis=1)
+    ways = ways / lengths[:, None]
+    turns = np.einsum("kx,kx->k", np.roll(ways, 1, axis=0) - ways, normals[: len(ways)])
+    if not closed:
+        turns[0] = 0.0
+    steps = np.tile(lengths, rounds) * np.exp(1j * np.cumsum(np.tile(turns, rounds)))
+    return np.concatenate([[0.0], np.cumsum(steps)])
 
 
-def _pressing(points: Points, normals: Points) -> Indices:
+def _pressing(foot: Outline) -> Indices:
     """Return which places are touched, ends included: each that would be pulled off the skin is left out."""
     kept: list[int] = []
-    for at in range(len(points)):
-        while (
-            len(kept) > 1 and _turn(points[kept[-2]], points[kept[-1]], points[at], normals[kept[-1]]) < 0.0
-        ):
+    here = foot.tolist()
+    for at, place in enumerate(here):
+        while len(kept) > 1:
+            before, last = here[kept[-2]], here[kept[-1]]
+            if ((place - last) * (last - before).conjugate()).imag >= 0.0:
+                break
             kept.pop()
         kept.append(at)
     return np.array(kept)
-
-
-def _turn(before: Floats, here: Floats, after: Floats, normal: Floats) -> float:
-    """Return the turn towards the skin at ``here`` [rad]; negative where a band would be pulled off it."""
-    come, go = here - before, after - here
-    return float((come / np.linalg.norm(come) - go / np.linalg.norm(go)) @ normal)
-
-
-def _turns(points: Points, normals: Points, kept: Indices, closed: bool) -> Floats:
-    """Return the turn at each kept place; open ends have none, the last of a closed one is its first."""
-    ways = np.diff(points[kept], axis=0)
-    ways /= np.linalg.norm(ways, axis=1)[:, None]
-    inner = np.einsum("kx,kx->k", ways[:-1] - ways[1:], normals[kept[1:-1]])
-    end = float((ways[-1] - ways[0]) @ normals[kept[0]]) if closed else 0.0
-    return np.asarray(np.maximum(np.concatenate([[end], inner, [end]]), 0.0))
 
 
 def bridges(off: Floats, step: float, closed: bool) -> tuple[Bridge, ...]:
