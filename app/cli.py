@@ -174,7 +174,7 @@ def cut(options: argparse.Namespace) -> int:
     from app.commands.cut import cut_text, run_cut
 
     design = design_of(options.input, options)
-    found = run_cut(design, options.line or [], options.elastic or [])
+    found = run_cut(design, options.line or [], options.elastic or [], options.as_worn)
     text = cut_text(found, "csv" if options.csv else "json" if options.json else "", options.out)
     if text:
         print(text, flush=True)

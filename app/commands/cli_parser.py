@@ -96,8 +96,6 @@ def _parser(command: str) -> argparse.ArgumentParser:
         )
     if command == "accuracy":
         parser.add_argument("folder", metavar="DIR", help="scans with a truth.json beside them")
-    if command in ("solve", "cut", "export"):
-        parser.add_argument("--elastic", action="append", metavar="LINE=ELASTIC", help=ELASTIC_HELP)
     if command in ("limits", "detect", "measure", "cut", "accuracy"):
         parser.add_argument("--json", action="store_true", help="print JSON")
     if command in ("measure", "cut"):
@@ -136,6 +134,11 @@ def _add_design(parser: argparse.ArgumentParser, command: str) -> None:
             metavar="NAME=LENGTH",
             help="97%% of the rest length, -20mm shorter, 400mm absolute; of the front part, side to side",
         )
+    if command in ("solve", "cut", "export"):
+        parser.add_argument("--elastic", action="append", metavar="LINE=ELASTIC", help=ELASTIC_HELP)
+    if command == "cut":
+        same = "let lines of elastic reach what they reach without it: lengths are then those on the body"
+        parser.add_argument("--as-worn", action="store_true", help=same)
 
 
 def _add_scan(parser: argparse.ArgumentParser) -> None:

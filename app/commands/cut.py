@@ -7,6 +7,7 @@ import io
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from functools import reduce
 from pathlib import Path
 
 from app.commands.settings import dressed, made_of
@@ -17,6 +18,7 @@ from core.errors import LineError, UserError
 from core.pipeline import build
 from core.project import whole_file
 from core.report import shape_warnings
+from core.sewing.as_worn import as_worn
 from core.solution import run
 
 COLUMNS = tuple(field.name for field in fields(CutRow))
@@ -31,10 +33,19 @@ class Cut:
     warnings: list[str]
 
 
-def run_cut(design: Design, lines: Sequence[str], elastics: Sequence[str]) -> Cut:
-    """Solve a design with lines and elastics as requested, and make its cut list. Raises UserError."""
+def run_cut(design: Design, lines: Sequence[str], elastics: Sequence[str], same: bool = False) -> Cut:
+    """Solve a design with lines and elastics as requested, and make its cut list. Raises UserError.
+
+    If ``same`` lines made of elastics reach what they reach without them.
+    """
     stages = build(design)
-    design = made_of(dressed(design, stages.model.lines, lines), elastics)
+    design = dressed(design, stages.model.lines, lines)
+    if same:
+        bare = build(reduce(lambda bare, name: bare.with_elastic(name, None), design.worn_elastics(), design))
+        made = made_of(design, elastics).worn_elastics()
+        design = as_worn(bare, run(bare).control_points, made)
+    else:
+        design = made_of(design, elastics)
     if not design.lines:
         raise LineError("No line is worn.", "Set one: --line mid-bust=75% --elastic 'mid-bust=plush 12'.")
     solution = run(build(design, stages))
@@ -44,9 +55,7 @@ def run_cut(design: Design, lines: Sequence[str], elastics: Sequence[str]) -> Cu
     settled = motion == "settled" and solution.verdict.state != "folded"
     warnings = shape_warnings(solution)
     if motion != "settled":
-        warnings.append(
-            "The turns have not come to rest: lengths to cut may still change."
-        )
+        warnings.append("The turns have not come to rest: lengths to cut may still change.")
     return Cut(cut_list(solution.stages, solution.control_points), settled, warnings)
 
 

@@ -1,0 +1,90 @@
+"""From lines as they are worn to lines of elastic that reach the same."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.cli import main
+from core.cutting import cut_list
+from core.design_elastics import Elastic
+from core.design_lines import WornLine
+from core.elastics import find_elastic
+from core.errors import LineError
+from core.exact import solve_exact
+from core.pipeline import build, targets_of
+from core.sewing.as_worn import as_worn
+from core.sewing.tensions import line_tensions
+
+STRAP, BAND = find_elastic("strap 15"), find_elastic("plush 12")
+
+
+def worn_at(stages, lines, **choices):
+    return build(
+        replace(stages.design, lines=tuple(WornLine(*line) for line in lines), volume="exact", **choices),
+        stages,
+    )
+
+
+def points_of(stages):
+    balance = solve_exact(stages.model, targets_of(stages.design, stages).ratios)
+    assert balance.found
+    return stages.model.tensegric.expand(balance.state.moved)
+
+
+@pytest.mark.parametrize("contact", ["glued", "sliding"])
+def test_lines_of_elastic_reach_what_the_lines_reached(built, contact):
+    lines = [("full-bust", 0.985), ("mid-bust", 0.97), ("under-bust", 0.9)]
+    stages = worn_at(built("mannequin"), lines, line_contact=contact)
+    before = points_of(stages)
+    design = as_worn(stages, before, {"mid-bust": STRAP, "full-bust": BAND})
+    after = points_of(build(design, stages))
+    for line in stages.model.lines:
+        if line.constrains:
+            assert line.length(after) == pytest.approx(line.length(before), rel=2e-5)
+    assert design.ratio("under-bust") == 0.9
+    assert design.ratio("mid-bust") < 0.75
+    assert np.abs(after - before).max() < (0.5 if contact == "glued" else 2.0)
+
+
+def test_the_elastic_pulls_as_the_line_did(built):
+    stages = worn_at(built("mannequin"), [("mid-bust", 0.97)])
+    before = points_of(stages)
+    told = line_tensions(stages, before)["mid-bust"].mean
+    made = build(as_worn(stages, before, {"mid-bust": STRAP}), stages)
+    row = cut_list(made, points_of(made)).rows[0]
+    assert row.tension_n == pytest.approx(told, rel=0.05)
+
+
+def test_lines_that_cannot_move_or_are_held_keep_their_lengths(built):
+    ribs = worn_at(built("mannequin"), [("under-bust", 0.8)])
+    assert as_worn(ribs, points_of(ribs), {"under-bust": BAND}) == ribs.design.with_elastic(
+        "under-bust", BAND
+    )
+    held = worn_at(built("mannequin"), [("mid-bust", 0.98)], line_hold="held")
+    assert as_worn(held, points_of(held), {"mid-bust": BAND}).lines == held.design.lines
+
+
+@pytest.mark.parametrize(
+    ("curve", "sentence"),
+    [
+        (((0.0, 0.0), (0.3, 0.5)), "weak would be stretched by .* as mid-bust; its table ends at 30 %"),
+        (((0.0, 0.0), (3.0, 6.0)), "mid-bust would have to be cut to .* % of its length"),
+    ],
+)
+def test_an_elastic_that_cannot_do_it_is_refused(built, curve, sentence):
+    stages = worn_at(built("mannequin"), [("mid-bust", 0.95)])
+    with pytest.raises(LineError, match=sentence):
+        as_worn(stages, points_of(stages), {"mid-bust": Elastic("weak", 10.0, curve)})
+
+
+def test_the_command_cuts_for_the_shape_that_is_there(mannequin, capsys):
+    words = ["cut", str(mannequin), "--line", "mid-bust=97%", "--json"]
+    assert main(words) == 0
+    bare = json.loads(capsys.readouterr().out)["rows"][0]
+    assert main([*words, "--elastic", "mid-bust=strap 15", "--as-worn"]) == 0
+    row = json.loads(capsys.readouterr().out)["rows"][0]
+    assert bare["cut_mm"] is None
+    assert row["reached_front_mm"] == pytest.approx(bare["reached_front_mm"], rel=1e-4)
+    assert row["cut_mm"] < 0.8 * row["reached_whole_mm"]
