@@ -56,6 +56,8 @@ def test_the_selected_band_is_pulled_shorter_and_longer() -> None:
         yield from escape_brings_the_band_back(window)
         a_press_selects_and_drags_beside_or_across_turn(window)
         yield from shift_pulls_finely(window)
+        another_button_leaves_the_band_in_the_hand(window)
+        yield settled(window)
 
     run_main([], script)
 
@@ -145,6 +147,19 @@ def shift_pulls_finely(window: MainWindow) -> Script:
     assert ratio_of(window) == pytest.approx(ratio + 0.1 * 24 * STEP)
     assert window.view.viewport.scene.view == seen
     yield settled(window)
+
+
+def another_button_leaves_the_band_in_the_hand(window: MainWindow) -> None:
+    start, ratio, other = on_band(window, "mid-bust"), ratio_of(window), Qt.MouseButton.RightButton
+    seen = window.view.viewport.scene.view
+    pull(window, start, QPoint(0, -20))
+    QTest.mousePress(canvas_of(window), other, PLAIN, start)
+    QTest.mouseRelease(canvas_of(window), other, PLAIN, start)
+    move(canvas_of(window), start + QPoint(0, -30))
+    release(canvas_of(window), start + QPoint(0, -30))
+    assert not window.band_pull.carries
+    assert ratio_of(window) == pytest.approx(ratio - 30 * STEP, abs=STEP)  # in whole tenths of a percent
+    assert window.view.viewport.scene.view == seen
 
 
 def test_a_pulled_band_minds_links_locks_and_limits() -> None:

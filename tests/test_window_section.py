@@ -46,7 +46,7 @@ def test_the_section_plane_is_dragged_in_every_view() -> None:
         for way in ("wipe", "side"):
             window.view.compare_by(way)
             the_hand_on_one_side_cuts_both(window)
-        section.set_on(False)
+        a_plane_that_is_taken_away_is_in_no_hand(window)
         assert handle_of(window.view.viewport).isHidden()
 
     run_main([], script)
@@ -163,6 +163,16 @@ def the_hand_on_one_side_cuts_both(window: MainWindow) -> None:
     for viewport in (main, rest):
         assert viewport.scene.section.curve[:, 0].mean() == pytest.approx(now, abs=0.06)
     assert handle_of(main)._plane == handle._plane
+
+
+def a_plane_that_is_taken_away_is_in_no_hand(window: MainWindow) -> None:
+    section, handle = window.section_desk, handle_of(window.view.viewport)
+    drag_handle(handle, np.array([20.0, 0.0]))
+    assert section.carries
+    section.set_on(False)
+    assert not section.carries
+    assert not window.actions_.cancel.isEnabled()
+    assert handle.cursor().shape() == Qt.CursorShape.OpenHandCursor
 
 
 def test_the_section_panel_leaves_the_bust_free_in_the_smallest_window() -> None:

@@ -79,8 +79,8 @@ class Hand(QObject):
         return False
 
     def _mouse(self, event: QMouseEvent) -> bool:
-        left = event.button() == Qt.MouseButton.LeftButton and not event.modifiers()
-        kind = event.type()
+        kind, of_left = event.type(), event.button() == Qt.MouseButton.LeftButton
+        left = of_left and not event.modifiers()
         if kind == QEvent.Type.MouseButtonDblClick and left:
             self.asked.emit("keep")
             return True
@@ -90,7 +90,7 @@ class Hand(QObject):
             return True
         if kind == QEvent.Type.MouseMove:
             return self._move(event)
-        if kind == QEvent.Type.MouseButtonRelease and self._pressed is not None:
+        if kind == QEvent.Type.MouseButtonRelease and of_left and self._pressed is not None:
             self._pressed = None
             (self.dropped if self._holds else self.clicked).emit(event.position())
             self._holds = False

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 from PySide6.QtCore import QEvent, QObject, QPointF, Qt, Signal
-from PySide6.QtGui import QColor, QEnterEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QPolygonF
+from PySide6.QtGui import QColor, QEnterEvent, QHideEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QWidget
 
 from app.dress.theme import tokens_of
@@ -152,6 +152,12 @@ class PlaneHandle(QWidget):
         self._last = None
         self._stand()
         self.dropped.emit()
+
+    def hideEvent(self, event: QHideEvent) -> None:
+        if self._last is not None:  # the hand will open over something else
+            self._last = None
+            self._show_cursor()
+            self.dropped.emit()
 
     def enterEvent(self, event: QEnterEvent) -> None:
         self._hovered = True

@@ -85,6 +85,8 @@ class Pointer(QObject):
         return True
 
     def _press(self, event: QMouseEvent) -> None:
+        if self._is_other(event):
+            return
         self._pressed = self._last = event.position()
         self._drags = chosen_gestures().of_drag(event.button(), event.modifiers())
         left, held = event.button() == Qt.MouseButton.LeftButton, event.modifiers() & _HELD
@@ -122,6 +124,8 @@ class Pointer(QObject):
             self._zoom(-step.y() / NOTCH_PIXELS, at)
 
     def _release(self, event: QMouseEvent) -> None:
+        if self._is_other(event):
+            return
         if self._grip == "click":
             name = self._band_at(event.position())
             if name:
@@ -131,6 +135,10 @@ class Pointer(QObject):
         if self._grip == "band":
             self.band_grip.dropped.emit()
         self._grip = self._pin = ""
+
+    def _is_other(self, event: QMouseEvent) -> bool:
+        """Tell whether this is not the button of the hand that holds a pin or a band: it would lose it."""
+        return self._grip in ("pin", "band") and event.button() != Qt.MouseButton.LeftButton
 
     def _centre(self, event: QMouseEvent) -> None:
         """Make the place under the pointer the centre of turning."""
