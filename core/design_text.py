@@ -35,6 +35,8 @@ def to_json(design: Design, written: int = 1) -> str:
         del values["elastics"]
     if design.tissue_stiffness == TISSUE_STIFFNESS:
         del values["tissue_stiffness"]
+    if not design.own_measures:
+        del values["own_measures"]
     return json.dumps({"format": written, "length_unit": "mm", **unknown, **values}, indent=1)
 
 
