@@ -97,10 +97,6 @@ class Editing(QObject):
         """Add lines of the designer's own."""
         self.edit(lambda design: reduce(Design.with_own_line, lines, design), text)
 
-    def remove_own_line(self, name: str, title: str) -> None:
-        """Remove a line of the designer's own."""
-        self.edit(lambda design: design.without_own_line(name), tr("{line} removed").format(line=title))
-
     def reset_landmarks(self, names: Sequence[str], text: str) -> None:
         """Let landmarks that were placed by hand be found again, as one undo step."""
         self.edit(lambda design: reduce(lambda d, name: d.with_placed(name, None), names, design), text)
