@@ -25,10 +25,11 @@ from PySide6.QtWidgets import (
 from app.dress.theme import apply_theme, tokens_of
 from app.panels.landmarks import LandmarksPanel, LandmarkView
 from app.panels.lines import LinesPanel, LineView
+from app.panels.measure_table import MeasureView
 from app.panels.model import ModelPanel
 from app.panels.notice import NoticeBar
 from app.panels.rail import Rail
-from app.panels.result import MeasureView, ResultPanel
+from app.panels.result import ResultPanel
 from app.panels.scan import ScanPanel, ScanView
 from app.panels.status import StatusBar
 from app.panels.top_bar import TopBar

@@ -2,32 +2,38 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from PySide6.QtCore import QObject
 
+from app.asking.jobs import Job
 from app.keeping.tables import copy_table, save_table
 from app.panels.result import ResultPanel
-from app.presenting.measures import as_table, measure_views
+from app.presenting.measures import as_table, measure_views, measured_views
 from app.presenting.verdict import doubt_of
 from app.wording.words import tr
+from core.body import Body
 from core.live import Frame
+from core.measures import Measures, before_after
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
 
 
 class MeasuresDesk(QObject):
-    """Fills the panel of measures."""
+    """Fills the panel of measures: what the model says with every frame, the body once the run rests."""
 
     def __init__(self, window: MainWindow, panel: ResultPanel) -> None:
         super().__init__(window)
         self._window, self._panel = window, panel
         self._frame: Frame | None = None
+        self._asked: Frame | None = None
+        self._body: Body | None = None
+        self._job: Job | None = None
         panel.opened.connect(self.refresh)
-        panel.copy_asked.connect(lambda: copy_table(window, as_table(panel.rows)))
+        panel.copy_asked.connect(lambda: copy_table(window, self._as_table()))
         panel.table_asked.connect(
-            lambda: save_table(window, as_table(panel.rows), tr("Save the table of measures"), "measures")
+            lambda: save_table(window, self._as_table(), tr("Save the table of measures"), "measures")
         )
 
     def show_frame(self, frame: Frame) -> None:
@@ -39,3 +45,31 @@ class MeasuresDesk(QObject):
         """Bring the table up to date, if it is seen; unseen it would cost each frame the same."""
         if self._frame is not None and self._panel.isVisible():
             self._panel.set_rows(measure_views(self._frame), doubt_of(self._frame))
+            self._measure(self._frame)
+
+    def _measure(self, frame: Frame) -> None:
+        """Measure the body of a frame beside the window, once it rests."""
+        window = self._window
+        if self._asked is frame:
+            return
+        window.jobs.cancel(self._job)
+        self._job = self._asked = None
+        if not self._panel.measured or self._body is not frame.stages.body:
+            self._body = frame.stages.body
+            self._panel.set_measured([], tr("The body is measured as soon as the run rests."))
+        self._panel.set_stale(True)
+        if window.is_settled():
+            self._asked = frame
+            self._job = window.jobs.run(
+                tr("Measuring the body"),
+                lambda progress: before_after(frame.stages, frame.control_points),
+                self._show_measured,
+            )
+
+    def _show_measured(self, found: object) -> None:
+        self._panel.set_measured(measured_views(*cast(tuple[Measures, Measures], found)))
+
+    def _as_table(self) -> list[list[str]]:
+        # What was measured on a former body is no measure of this one.
+        measured = () if self._panel.stale else self._panel.measured
+        return as_table([*measured, *self._panel.rows])

@@ -1,30 +1,71 @@
-"""The table of measures before and after: what each is counted from, and the table as plain cells."""
+"""The table of measures before and after: those of the body, those of the model, and all as plain cells."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any
 
-from app.panels.result import MeasureView
+from app.panels.measure_table import MeasureView
 from app.presenting.lines import line_title
-from app.wording.words import tr
+from app.wording.words import say, tr
 from core.live import Frame
+from core.measures import Measures, measure_rows
+from core.measuring.definitions import definition_of
+from core.measuring.own import OWN
 from core.solver import Marks
 
 
 def measure_views(frame: Frame) -> list[MeasureView]:
-    """Return the rows of the table, the bust points first."""
-    return [*_bust_rows(frame), *_volume_rows(frame), *_line_rows(frame)]
+    """Return what the model says of itself with every frame, the bust points first."""
+    group = tr("Followed while it solves")
+    rows = (*_bust_rows(frame), *_volume_rows(frame), *_line_rows(frame))
+    return [replace(row, group=group) for row in rows]
+
+
+def measured_views(before: Measures, after: Measures) -> list[MeasureView]:
+    """Return what was measured on the body at rest and reshaped, group by group."""
+    views = [_measured(row) for row in measure_rows(before, after)]
+    groups = list(dict.fromkeys(view.group for view in views))
+    return sorted(views, key=lambda view: groups.index(view.group))
+
+
+def _measured(row: dict[str, Any]) -> MeasureView:
+    own, key = row["key"].startswith(OWN), row["key"]
+    sides = {"left": tr("{what}, left"), "right": tr("{what}, right")}
+    title = row["title"] if own else say(row["title"])
+    return MeasureView(
+        sides.get(row["side"], "{what}").format(what=title),
+        row["unit"].replace("2", "\N{SUPERSCRIPT TWO}"),
+        row["before"],
+        row["after"],
+        key=key,
+        group=tr("Your own") if own else say(definition_of(key)[0].group),
+        note=say(row["note"]),
+        plus_minus=row["plus_minus"],
+        estimate=row["estimate"],
+        tip=say(row["definition"]),
+    )
 
 
 def as_table(views: Sequence[MeasureView]) -> list[list[str]]:
     """Return the table as plain cells, with a heading."""
-    heading = [tr("Measure"), tr("Counted from"), tr("Unit"), tr("Before"), tr("After"), tr("Change")]
+    heading = [
+        tr("Measure"),
+        tr("Counted from"),
+        tr("Unit"),
+        tr("Before"),
+        tr("After"),
+        tr("Change"),
+        tr("Note"),
+    ]
     rows = [
         [
             view.label,
-            view.reference,
+            view.reference or view.tip,
             view.unit,
             *("" if each is None else f"{each:.1f}" for each in (view.before, view.after, view.change)),
+            "" if view.caption == view.reference else view.caption,
         ]
         for view in views
     ]
