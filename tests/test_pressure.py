@@ -14,8 +14,8 @@ from core.centre_line import Surface
 from core.design import Design, ScanSource
 from core.mesh import Mesh, unit
 from core.pipeline import build
-from core.pressure import LEFT_OUT, LinePressure, band_pressure, mmhg, pressures
-from core.sewing.comfort import AMBER, GREEN, RED, comfort
+from core.pressure import LinePressure, band_pressure, mmhg, pressures
+from core.sections import arc_length, chains, cut, hull_perimeter, resample
 from core.sewing.course import Course, course_of
 from core.sewing.tensions import LineTension, line_tensions
 from core.solution import Solution, run
@@ -112,6 +112,25 @@ def test_a_band_that_also_swings_sideways_comes_down_smoothly_beside_a_hollow(wa
     assert (worn.turns <= np.maximum(bend, 0.0) + 1e-9).all()
     # Off the skin or on it, the turns towards it go round as often.
     assert worn.turns.sum() == pytest.approx(bend.sum(), rel=1e-6)
+
+
+@pytest.mark.parametrize("share", [0.6, 0.7, 0.75])
+def test_a_level_band_round_a_body_goes_as_the_hull_of_its_section(share: float) -> None:
+    mesh = solution().body
+    low, high = mesh.vertices[:, 2].min(), mesh.vertices[:, 2].max()
+    outline = max(
+        chains(cut(mesh, [0.0, 0.0, low + share * (high - low)], [0.0, 0.0, 1.0])), key=lambda c: len(c[0])
+    )
+    points = resample(outline[0], STEP)[:-1]
+    ahead = np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0)
+    normals = unit(np.cross(ahead, [0.0, 0.0, 1.0]))
+    normals *= np.sign(np.einsum("kx,kx->k", normals, points - points.mean(axis=0)).sum())
+    even = np.ones(len(points))
+    worn = band_pressure(Course(points, normals, NEWTONS * even, even > 0.0, closed=True), WIDTH)
+    ring = np.concatenate([worn.places, worn.places[:1]])
+    assert arc_length(ring)[-1] == pytest.approx(hull_perimeter(points), rel=0.0005)
+    assert worn.force == pytest.approx(2.0 * np.pi * NEWTONS, rel=0.002)
+    assert np.linalg.norm(worn.resultant) < 0.002 * worn.force
 
 
 def test_a_hollow_at_the_seam_of_a_closed_band_is_one_hollow() -> None:
@@ -266,23 +285,3 @@ def test_a_band_of_no_told_width_is_taken_as_wide_as_it_is_drawn() -> None:
     worn = pressures(plain, solution().control_points)["mid-bust"]
     assert worn.width == 12.0
     assert "It is taken to be 12 mm wide: no width was told." in worn.notes
-
-
-def test_the_light_goes_by_the_largest_pressure() -> None:
-    limits = comfort()
-    lights = {kpa: limits.light(kpa) for kpa in (0.0, 1.99, 2.0, 3.99, 4.0, 12.0)}
-    assert list(lights.values()) == [GREEN, GREEN, AMBER, AMBER, RED, RED]
-    band = ellipse(160.0, 60.0)  # mean 2.8 kPa, 15 kPa at the narrow ends
-    assert band_pressure(band, WIDTH).light == RED
-    assert band_pressure(band, WIDTH).mean < limits.red_kpa
-    assert band_pressure(band, 200.0).light == GREEN
-
-
-def test_the_limits_are_told_with_sources_and_doubts_in_both_languages() -> None:
-    limits = comfort()
-    assert 0.0 < limits.amber_kpa < limits.red_kpa < 35.0 * 0.133322  # where wearers complained
-    texts = [*limits.lights.values(), *limits.doubts, *(source.words for source in limits.sources)]
-    assert len(limits.sources) >= 4
-    assert all(words.en.endswith(".") and words.ja.endswith("。") for words in texts)
-    assert "estimate" in limits.doubts[0].en
-    assert any("42 %" in sentence for sentence in LEFT_OUT)
