@@ -133,7 +133,7 @@ def test_a_direction_that_is_none_is_refused(words):
 
 def test_a_girth_that_fits_two_units_is_said_not_to_be_sure():
     vertices, faces = torso()
-    girth = float(find_pose(vertices, faces).reason.split("(")[1].split(" ")[0])
+    girth = float(find_pose(vertices, faces).reason.split("trunk is ")[1].split(" ")[0])
     slim = find_pose(vertices * 62.0 / girth, faces)
     assert slim.unit == "cm"
     assert not slim.sure

@@ -89,9 +89,10 @@ def test_a_message_is_translated_with_what_is_filled_in() -> None:
     assert say("mid-bust cannot be held at 80.0 % of its rest length.").startswith("バスト下部を")
     assert say("Dropped 1,204 vertices outside any face.") == "面に属さない頂点 1,204 個を除きました。"
     assert say("It is odd. Choose another scan.") == "It is odd.別のスキャンを選んでください。"
-    unit, axes = "so the unit is mm (889 mm).", "That +z is up and -y is front was told."
-    translated = "胴囲は 889.2 です。単位の判断：mm（889 mm）。上 +z、前 -y は指定によります。"
-    assert say(f"The trunk measures 889.2 round, {unit} {axes}") == translated
+    unit = "Read in mm, the trunk is 889 mm round, which is the size of a body."
+    axes = "That +z is up and -y is front was told."
+    translated = "mm で読むと胴囲は 889 mm で、上半身の大きさです。上 +z、前 -y は指定によります。"
+    assert say(f"{unit} {axes}") == translated
     assert say("a cloud of {curly} words") == "a cloud of {curly} words"
     use_language("en")
     assert say("scan.ply has no sound triangles.") == "scan.ply has no sound triangles."

@@ -207,6 +207,9 @@ class LegendBar(QWidget):
         painter.drawRoundedRect(BAR.adjusted(0.5, 0.5, -0.5, -0.5), 3.0, 3.0)
         painter.setFont(font("caption", tabular=True))
         low, high = self.range_
+        digits = self._digits
+        if any(abs(value - round(value, digits)) > 1e-6 for value in np.linspace(low, high, TICKS)):
+            digits += 1  # rounded they would look uneven
         left = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
         for value in np.linspace(low, high, TICKS):
             y = self.y_of(float(value))
@@ -214,9 +217,7 @@ class LegendBar(QWidget):
             painter.drawLine(QPointF(BAR.right() + 1, y), QPointF(BAR.right() + 4, y))
             if low < value < high:
                 painter.setPen(QColor(tokens.text_quiet))
-                painter.drawText(
-                    QRectF(27, y - 10, 60, 20), left, number(float(value), self._digits, self._signed)
-                )
+                painter.drawText(QRectF(27, y - 10, 60, 20), left, number(float(value), digits, self._signed))
         if self._value is not None:
             self._paint_value(painter, self._value)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
@@ -83,7 +84,7 @@ class ScanPanel(QWidget):
         self.fronts.set_choice(view.front)
         for axis in AXES:
             self.fronts.button(axis).setEnabled(axis[1] != view.up[1])
-        self._reason.setText(say(view.reason))
+        self._reason.setText(re.sub(r"(?<!\S)-(?=[xyz])", "\N{MINUS SIGN}", say(view.reason)))
         set_tag(self._reason, "tone", "" if view.sure else "warn")
         self._forget.setVisible(bool(view.told))
         self._notes.setText("\n".join(view.notes))
@@ -110,8 +111,9 @@ class ScanPanel(QWidget):
         for each in (self._file, self._triangles, self._notes):
             column.addWidget(each)
         self._group(column, tr("Unit of the file"), self.units)
+        self._group(column, tr("How the body stands in the file"), self._ways())
         self._group(column, tr("Axis of the file that points up"), self.ups)
-        self._group(column, tr("Axis of the file that the chest faces"), self.fronts, self._ways())
+        self._group(column, tr("Axis of the file that the chest faces"), self.fronts)
         self._group(column, tr("Why"), self._reason)
         self._group(column, tr("Holes that stay open"), self._holes)
         self._group(column, tr("Repairs"), self._repairs)

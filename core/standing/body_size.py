@@ -35,9 +35,7 @@ def find_unit(girth: float, told: str | None = None) -> Size:
     if told is not None:
         mm = girth * MILLIMETRES[told]
         if TOLD_GIRTHS[0] < mm < TOLD_GIRTHS[1]:
-            reason = (
-                f"The trunk measures {girth:.4g} round, and the unit was told to be {told} ({mm:.0f} mm)."
-            )
+            reason = f"The unit was told to be {told}: with it the trunk is {mm:.0f} mm round."
             return Size(told, True, reason)
         raise ScanError(
             f"In {told} the trunk would measure {_plain(mm)} mm round, which is not the size of a body.",
@@ -49,13 +47,12 @@ def find_unit(girth: float, told: str | None = None) -> Size:
     )
     if not rare:
         raise ScanError(
-            f"The trunk measures {_plain(girth)} round, which is the size of a body in no unit.",
+            f"The trunk measures {_plain(girth)} round in the file, which is the size of a body in no unit.",
             "Check that the scan holds an upper body, or say in which unit it is.",
         )
     unit = (usual or rare)[0]
-    reason = (
-        f"The trunk measures {girth:.4g} round, so the unit is {unit} ({girth * MILLIMETRES[unit]:.0f} mm)."
-    )
+    mm = girth * MILLIMETRES[unit]
+    reason = f"Read in {unit}, the trunk is {mm:.0f} mm round, which is the size of a body."
     for other in rare:
         if other != unit:
             reason += f" It might also be {other} ({girth * MILLIMETRES[other]:.0f} mm): please check it."
