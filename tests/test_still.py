@@ -76,6 +76,15 @@ def test_a_picture_over_what_was_kept_equals_one_drawn_anew(scene: Scene) -> Non
     assert counts == [2, 0, 0, 0], "body and floor are drawn once, then no more"
 
 
+def test_the_outermost_pixels_are_kept_too(scene: Scene) -> None:
+    scene.look_from(replace(scene.view.named("front"), distance=250.0))  # the body reaches over all edges
+    still, last = StillPicture(scene.plotter), np.empty(0)
+    for by in (0.02, 0.05, 0.3, 0.45, 0.1):
+        press(scene, by)
+        last, _ = drawn_with(scene, still)  # no whole picture in between: it would mend what was left out
+    assert np.array_equal(last, drawn_whole(scene))
+
+
 def side(scene: Scene) -> np.ndarray:
     return np.flatnonzero(scene.body.rest.vertices[:, 0] > 70.0)
 

@@ -99,7 +99,7 @@ class StillPicture:
 
     def _copy(self, source: vtkOpenGLFramebufferObject, target: vtkOpenGLFramebufferObject) -> None:
         state, (width, height) = self._plotter.ren_win.GetState(), self._size
-        everywhere = (0, width - 1, 0, height - 1)
+        everywhere = (0, width, 0, height)  # up to, and without
         state.PushFramebufferBindings()
         source.Bind(source.GetReadMode())
         source.ActivateReadBuffer(0)
