@@ -83,8 +83,8 @@ class LinePressure:
 
     @cached_property
     def bridges(self) -> tuple[Bridge, ...]:
-        """Where it goes straight over a hollow so that it shows."""
-        return bridges(self.off, self.step, self.closed)
+        """Where it goes straight over a hollow so that it shows; a slack band does not."""
+        return bridges(self.off, self.step, self.closed) if self.tension.any() else ()
 
     @property
     def bridged_length(self) -> float:

@@ -14,6 +14,7 @@ from core.centre_line import Surface
 from core.design import Design, ScanSource
 from core.mesh import Mesh, unit
 from core.pipeline import build
+from core.presets import built_in, with_preset
 from core.pressure import LinePressure, band_pressure, mmhg, pressures
 from core.sections import arc_length, chains, cut, hull_perimeter, resample
 from core.sewing.course import Course, course_of
@@ -192,10 +193,11 @@ def test_a_strap_bridges_the_hollow_above_a_breast() -> None:
 
 
 def test_a_slack_band_does_not_press_and_says_so() -> None:
-    band = ellipse(160.0, 110.0)
+    band = polar(lambda t: 100.0 + LOBED * np.cos(2.0 * t))
     slack = band_pressure(replace(band, tension=-band.tension), WIDTH)
     assert slack.kpa.max() == slack.force == slack.mean == 0.0
     assert slack.notes == ("It is slack: it does not press.",)
+    band = ellipse(160.0, 110.0)
     half = band_pressure(replace(band, tension=np.where(band.points[:, 1] < 0.0, NEWTONS, -1.0)), WIDTH)
     assert half.notes == ("Part of it is slack: it does not press there.",)
     assert (half.kpa[band.points[:, 1] > 1.0] == 0.0).all()
@@ -285,3 +287,14 @@ def test_a_band_of_no_told_width_is_taken_as_wide_as_it_is_drawn() -> None:
     worn = pressures(plain, solution().control_points)["mid-bust"]
     assert worn.width == 12.0
     assert "It is taken to be 12 mm wide: no width was told." in worn.notes
+
+
+def test_straps_of_a_preset_are_open_and_press_below_the_shoulder() -> None:
+    design = with_preset(solution().stages.design, built_in()[0])
+    solved = run(build(design, solution().stages))
+    told = pressures(solved.stages, solved.control_points)
+    straps = [worn for name, worn in told.items() if "strap" in name]
+    assert [worn.closed for worn in straps] == [False, False]
+    assert all(worn.front.all() and worn.mean > 0.0 for worn in straps)
+    right, left = sorted(worn.mean for worn in straps)
+    assert more == pytest.approx(less, rel=0.05)  # the mannequin is even
