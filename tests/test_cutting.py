@@ -127,6 +127,14 @@ def test_a_line_on_the_rib_cage_is_cut_for_its_own_length(built):
     assert row.cut_mm == pytest.approx(0.8 * line.whole_length + 15.0, rel=1e-9)
 
 
+def test_a_held_line_on_the_rib_cage_is_not_refused_and_has_no_known_tension(built):
+    short = Elastic("short", 10.0, ((0.0, 0.0), (0.3, 2.0)))
+    stages = stages_of(built("mannequin"), [("under-bust", 0.6)], [("under-bust", short)], line_hold="held")
+    _, rows, _, _ = listed(stages)
+    assert (rows["under-bust"].tension_n, rows["under-bust"].cut_mm) == (None, None)
+    assert any("not known" in note for note in rows["under-bust"].notes)
+
+
 def test_an_open_line_is_its_own_whole_and_a_ring_is_closed(built):
     path = line_of(built("mannequin"), "mid-bust").path.tolist()
     own = (OwnLine("arc", tuple(path[2:-2])),)

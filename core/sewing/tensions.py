@@ -75,12 +75,11 @@ def _held(stages: Stages, points: Points) -> dict[str, LineTension]:
     forces, slopes = place.gradient, place.slopes
     if design.line_contact == "sliding" and len(model.owner):
         forces, slopes = Skin(model).projected(place)
-    # Without a force on the volume there are no pressures to look for.
-    first = len(potential.sides) if design.volume == "none" else 0
-    multipliers = np.linalg.lstsq(slopes[first:].T, forces, rcond=1e-12)[0]
+    # First the pressures, which come out as nothing where the volume is not held.
+    multipliers = np.linalg.lstsq(slopes.T, forces, rcond=1e-12)[0]
     unit = newtons_per_unit(model, design.tissue_stiffness)
     tensions = {}
-    for index, multiplier in zip(model.pulling, multipliers[len(potential.sides) - first :], strict=True):
+    for index, multiplier in zip(model.pulling, multipliers[len(potential.sides) :], strict=True):
         line = model.lines[index]
         force = -unit * float(multiplier)
         tensions[line.name] = LineTension(np.full(len(line.pairs), force), force, estimate=True)
