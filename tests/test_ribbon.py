@@ -12,8 +12,9 @@ from scipy.spatial import cKDTree
 
 from app.presenting.frame import bands
 from app.seeing.bands import RibbonActor
-from app.seeing.ribbon import CASING, NO_BACK, Surface, build_casing, build_ribbon, centre_line
+from app.seeing.ribbon import CASING, Surface, build_casing, build_ribbon
 from app.seeing.sight import Sight
+from core.centre_line import NO_BACK, centre_line
 from core.mesh import Mesh, unit
 from core.pipeline import Stages
 from core.sections import arc_length

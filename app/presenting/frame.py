@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from app.presenting.lines import band_width, line_colours, line_title
 from app.presenting.verdict import state_of
 from app.seeing.bands import Band
-from app.seeing.ribbon import NO_BACK
 from app.showing.verdict_chip import state_title
 from app.wording.words import number, tr
+from core.centre_line import NO_BACK
 from core.design import Design
 from core.live import Frame
 from core.pipeline import Stages

@@ -9,9 +9,10 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from app.seeing.ribbon import ACROSS, NO_BACK, Ribbon, Surface, build_casing, build_ribbon
+from app.seeing.ribbon import ACROSS, Ribbon, Surface, build_casing, build_ribbon
 from app.seeing.sight import Sight
 from app.seeing.stage import rgb
+from core.centre_line import NO_BACK
 from core.mesh import Flags, Floats, Indices, Points, unit
 from core.moving import moving_faces
 
