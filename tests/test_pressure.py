@@ -296,5 +296,5 @@ def test_straps_of_a_preset_are_open_and_press_below_the_shoulder() -> None:
     straps = [worn for name, worn in told.items() if "strap" in name]
     assert [worn.closed for worn in straps] == [False, False]
     assert all(worn.front.all() and worn.mean > 0.0 for worn in straps)
-    right, left = sorted(worn.mean for worn in straps)
+    less, more = sorted(worn.mean for worn in straps)
     assert more == pytest.approx(less, rel=0.05)  # the mannequin is even
