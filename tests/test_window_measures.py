@@ -5,10 +5,15 @@ from __future__ import annotations
 from itertools import groupby
 
 import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QLineEdit
 
+from app.dress.wishes import wish
 from app.main_window import MainWindow
 from app.presenting.measures import as_table
 from core.measures import before_after
+from core.sizes import sizes
 from tests.window_tools import Script, run_main, settled, undrawn
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -63,3 +68,38 @@ def former_measures_fade_until_the_run_rests(window: MainWindow) -> Script:
     assert former[0].label not in told
     yield lambda: measured(window)
     assert window.result.measured != former
+
+
+def test_band_and_cup_follow_the_system_and_the_allowance_that_are_remembered() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.desk.go_to("result")
+        yield lambda: measured(window)
+        card, shown = window.result.sizes, {view.key: view for view in window.result.measured}
+        girths = [shown[key].before or 0.0 for key in ("underbust_girth", "bust_girth")]
+        assert card.main.text() == f"JP {sizes(*girths)['jp'].label}"
+        card.button("uk").click()
+        assert card.main.text() == f"UK {sizes(*girths)['uk'].label}"
+        assert card.button("jp").text().startswith("JP ")
+        typed(card.allowance, "20")
+        tight = sizes(*girths, 20.0)["uk"]
+        assert card.main.text() == f"UK {tight.label}"
+        assert " ".join(tight.rule) == card.rule.text()
+        assert not card.near.isVisible()
+        card.fold.click()
+        assert card.near.isVisible()
+        assert tight.sisters[0].label in card.near.text()
+        assert tight.doubts[0].en in card.main.toolTip()
+        typed(card.allowance, "21")
+        assert "0 to 20" in card.allowance.accessibleDescription()
+
+    run_main([], script)
+    assert (wish("size_system"), wish("size_allowance")) == ("uk", "20")
+
+
+def typed(field: QLineEdit, text: str) -> None:
+    field.setFocus()
+    field.selectAll()
+    QTest.keyClicks(field, text)
+    QTest.keyClick(field, Qt.Key.Key_Return)

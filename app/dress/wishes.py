@@ -12,6 +12,8 @@ UNTIL_THEN = {
     "material": "clay",  # one of app.seeing.material.MATERIALS
     "motion": "full",  # or reduced
     "autosave": "10",  # seconds after an edit
+    "size_system": "jp",  # the key of a table of sizes
+    "size_allowance": "0",  # mm taken off the under-bust for a tape that is worn tight
 }
 """Every wish by its key in the settings, with the answer that holds until the user gives another."""
 

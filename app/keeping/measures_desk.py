@@ -7,14 +7,17 @@ from typing import TYPE_CHECKING, cast
 from PySide6.QtCore import QObject
 
 from app.asking.jobs import Job
+from app.dress.wishes import wish, wish_for
 from app.keeping.tables import copy_table, save_table
 from app.panels.result import ResultPanel
 from app.presenting.measures import as_table, measure_views, measured_views
+from app.presenting.sizes import size_views
 from app.presenting.verdict import doubt_of
 from app.wording.words import tr
 from core.body import Body
 from core.live import Frame
 from core.measures import Measures, before_after
+from core.sizes import ALLOWANCE
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -30,11 +33,14 @@ class MeasuresDesk(QObject):
         self._asked: Frame | None = None
         self._body: Body | None = None
         self._job: Job | None = None
+        self._rest: Measures | None = None
         panel.opened.connect(self.refresh)
         panel.copy_asked.connect(lambda: copy_table(window, self._as_table()))
         panel.table_asked.connect(
             lambda: save_table(window, self._as_table(), tr("Save the table of measures"), "measures")
         )
+        panel.sizes.chosen.connect(lambda key: self._wish("size_system", key))
+        panel.sizes.allowed.connect(lambda mm: self._wish("size_allowance", f"{mm:g}"))
 
     def show_frame(self, frame: Frame) -> None:
         """Show the measures of a frame."""
@@ -56,6 +62,8 @@ class MeasuresDesk(QObject):
         self._job = self._asked = None
         if not self._panel.measured or self._body is not frame.stages.body:
             self._body = frame.stages.body
+            self._rest = None
+            self._show_sizes()
             self._panel.set_measured([], tr("The body is measured as soon as the run rests."))
         self._panel.set_stale(True)
         if window.is_settled():
@@ -67,9 +75,29 @@ class MeasuresDesk(QObject):
             )
 
     def _show_measured(self, found: object) -> None:
-        self._panel.set_measured(measured_views(*cast(tuple[Measures, Measures], found)))
+        self._rest, after = cast(tuple[Measures, Measures], found)
+        self._panel.set_measured(measured_views(self._rest, after))
+        self._show_sizes()
+
+    def _wish(self, key: str, value: str) -> None:
+        wish_for(key, value)
+        self._show_sizes()
+
+    def _show_sizes(self) -> None:
+        allowance = _allowance()
+        views, why = size_views(self._rest, allowance) if self._rest else ([], "")
+        self._panel.sizes.set_sizes(views, wish("size_system"), allowance, why)
 
     def _as_table(self) -> list[list[str]]:
         # What was measured on a former body is no measure of this one.
         measured = () if self._panel.stale else self._panel.measured
         return as_table([*measured, *self._panel.rows])
+
+
+def _allowance() -> float:
+    """Return what the user takes off the under-bust [mm]; settings may hold anything."""
+    low, high = ALLOWANCE
+    try:
+        return min(max(float(wish("size_allowance")), low), high)
+    except ValueError:
+        return low

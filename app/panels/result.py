@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWi
 from app.dress.parts import EmptyState, button, sentence
 from app.dress.theme import set_tag
 from app.panels.measure_table import MeasureTable, MeasureView
+from app.panels.size_card import SizeCard
 from app.wording.words import tr
 
 
@@ -48,6 +49,8 @@ class ResultPanel(QWidget):
         self._waiting = sentence("", "caption")
         self._waiting.setContentsMargins(4, 6, 4, 6)
         self._waiting.hide()
+        self.sizes = SizeCard()
+        rows.addWidget(self.sizes)
         rows.addWidget(self._waiting)
         rows.addWidget(self._table)
         rows.addWidget(self._note)

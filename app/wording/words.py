@@ -10,6 +10,7 @@ from importlib import resources
 LANGUAGES = {"en": "English", "ja": "日本語"}
 """The languages that can be chosen, by code, each in its own words."""
 
+_code = "en"
 _table: dict[str, str] = {}
 _messages: list[tuple[re.Pattern[str], str]] = []
 _SENTENCE_END = re.compile(r"(?<=[.?!]) (?=[A-Z'])")
@@ -20,6 +21,8 @@ def use_language(code: str) -> None:
 
     Call it once, before the first widget is built: a widget keeps the words it was built with.
     """
+    global _code  # noqa: PLW0603 - one language at a time, as its table
+    _code = code if code in LANGUAGES else "en"
     _table.clear()
     _messages.clear()
     if code in LANGUAGES and code != "en":
@@ -28,6 +31,11 @@ def use_language(code: str) -> None:
         # The more words a pattern holds, the surer its match: the longest is tried first.
         for english in sorted(messages, key=lambda text: -len(re.sub(r"\{\w*\}", "", text))):
             _messages.append((_pattern(english), messages[english]))
+
+
+def language() -> str:
+    """Return the code of the language in use, for texts that bring their own words."""
+    return _code
 
 
 @cache

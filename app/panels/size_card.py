@@ -1,0 +1,131 @@
+"""Band and cup: the size in the system of the house, the other systems beside it, and how it was found."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+
+from app.dress.parts import Disclosure, button, hairline, sentence
+from app.dress.theme import font, label
+from app.panels.figure_field import FigureField
+from app.wording.words import number, tr
+from core.sizes import ALLOWANCE
+
+COLUMNS = 3
+"""Other systems that stand beside each other."""
+
+
+@dataclass(frozen=True)
+class SizeView:
+    """The size in one system: how it is written, the rule that found it, and what lies ``near`` it.
+
+    ``short`` is the system in a few letters; ``tip`` tells its name and what is uncertain in it.
+    """
+
+    key: str
+    short: str
+    size: str
+    rule: str
+    near: tuple[str, ...]
+    tip: str
+
+    @property
+    def title(self) -> str:
+        """System and size, as one says them."""
+        return f"{self.short} {self.size}"
+
+
+class SizeCard(QWidget):
+    """The sizes of a body; ``chosen`` carries another system, ``allowed`` another allowance [mm]."""
+
+    chosen = Signal(str)
+    allowed = Signal(float)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.views: tuple[SizeView, ...] = ()
+        self.main = label("", "hero")
+        self.others = QWidget()
+        self._grid = QGridLayout(self.others)
+        self._grid.setContentsMargins(0, 0, 0, 0)
+        self._grid.setSpacing(2)
+        self.rule, self.near = sentence("", "secondary"), sentence("", "secondary")
+        self.fold = Disclosure(tr("Next sizes and sister sizes"))
+        self.fold.toggled.connect(self.near.setVisible)
+        self.near.setContentsMargins(24, 0, 0, 4)
+        self.near.hide()
+        self.allowance = _AllowanceField("mm", tr("Taken off the under-bust, worn tight"), widest="20.0")
+        self.allowance.entered.connect(self.allowed)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(4, 2, 4, 6)
+        column.setSpacing(4)
+        column.addWidget(label(tr("Band and cup, of the body at rest"), "caption"))
+        for each in (self.main, self.others, self.rule, self._make_allowance(), self.fold, self.near):
+            column.addWidget(each)
+        column.addWidget(hairline())
+        self.hide()
+
+    def set_sizes(self, views: Sequence[SizeView], chosen: str, allowance_mm: float, why: str = "") -> None:
+        """Show sizes, the ``chosen`` system large; without any, ``why`` there is none, or nothing at all."""
+        self.views = tuple(views)
+        self.setVisible(bool(views or why))
+        for each in (self.main, self.others, self.fold, self._allowed):
+            each.setVisible(bool(views))
+        self.near.setVisible(bool(views) and self.fold.isChecked())
+        self.allowance.show_value(allowance_mm)
+        if not views:
+            self.rule.setText(why)
+            return
+        main = next((view for view in views if view.key == chosen), views[0])
+        self.main.setText(main.title)
+        self.main.setToolTip(main.tip)
+        self.rule.setText(main.rule)
+        self.near.setText("\n".join(main.near))
+        self._show_others([view for view in views if view is not main])
+
+    def button(self, key: str) -> QPushButton:
+        """Return the button of a system that is not the chosen one."""
+        return self.others.findChild(QPushButton, key)  # type: ignore[return-value]
+
+    def _show_others(self, views: Sequence[SizeView]) -> None:
+        keys = [view.key for view in views]
+        if keys != [each.objectName() for each in self.others.findChildren(QPushButton)]:
+            for each in self.others.findChildren(QPushButton):
+                each.setParent(None)
+                each.deleteLater()
+            for place, view in enumerate(views):
+                self._grid.addWidget(self._make_other(view.key), *divmod(place, COLUMNS))
+        for view in views:
+            press = self.button(view.key)
+            press.setText(view.title)
+            press.setToolTip(view.tip)
+
+    def _make_other(self, key: str) -> QPushButton:
+        press = button("", "word")
+        press.setObjectName(key)
+        press.setFont(font("secondary", tabular=True))
+        press.setFixedHeight(22)
+        press.clicked.connect(lambda: self.chosen.emit(key))
+        return press
+
+    def _make_allowance(self) -> QWidget:
+        self._allowed = QWidget()
+        row = QHBoxLayout(self._allowed)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.addWidget(label(self.allowance.accessibleName(), "secondary"), 1, Qt.AlignmentFlag.AlignLeft)
+        row.addWidget(self.allowance)
+        return self._allowed
+
+
+class _AllowanceField(FigureField):
+    """What a tape that is worn tight takes off: an estimate, and not much."""
+
+    def _read(self, text: str) -> float:
+        value, (low, high) = super()._read(text), ALLOWANCE
+        if not low <= value <= high:
+            refusal = tr("Choose {low} to {high} mm: an estimate, no norm.")
+            raise ValueError(refusal.format(low=number(low, 0), high=number(high, 0)))
+        return value
