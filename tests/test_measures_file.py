@@ -21,6 +21,7 @@ VALUES = {
     "breast_volume_left": (431.0, "ml"),
     "own:Strap <front> & 'back'": (312.0, "mm"),
     "own:Strap (front) + back": (313.0, "mm"),
+    "own:Strap [front] - back": (314.0, "mm"),
 }
 TITLES = {"cup_depth_left": "Cup depth, left", "own:Strap <front> & 'back'": "Strap <front> & 'back'"}
 SHORT_NAME = re.compile(r"""[^\d\s*/&|!<>^\-()–+−=?:;'"][^\s*/&|!<>^\-()–+−=?:;"]*""")  # as both formats say
@@ -54,6 +55,7 @@ def test_every_name_is_one_that_a_formula_can_hold_and_comes_once(tmp_path, kind
     assert len(names) == len(set(names)) == len(VALUES)  # the volume goes, the mean of both folds comes
     assert all(SHORT_NAME.fullmatch(name) for name in names)
     assert (found["@own_Strap_front_back_"], found["@own_Strap_front_back"]) == (312.0, 313.0)
+    assert found["@own_Strap_front_back_2"] == 314.0  # only its signs were others
     titles = {m.get("name"): m.get("full_name") for m in root.iterfind("body-measurements/m")}
     assert titles["@own_Strap_front_back_"] == "Strap <front> & 'back'"
     assert titles["bust_circ"] is None  # it has one there, in the user's language
