@@ -85,6 +85,20 @@ def test_the_outermost_pixels_are_kept_too(scene: Scene) -> None:
     assert np.array_equal(last, drawn_whole(scene))
 
 
+def test_graphics_that_cannot_keep_a_picture_draw_each_one_once(
+    scene: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    formats = iter(range(1000))
+    monkeypatch.setattr("app.seeing.still._depth_of", lambda _: next(formats))  # never the same
+    still, counts = StillPicture(scene.plotter), []
+    for by in (0.1, 0.2, 0.3, 0.4):
+        press(scene, by)
+        picture, count = drawn_with(scene, still)
+        counts.append(count)
+        assert np.array_equal(picture, drawn_whole(scene))
+    assert counts[-2:] == [2, 2], "body and floor once"
+
+
 def side(scene: Scene) -> np.ndarray:
     return np.flatnonzero(scene.body.rest.vertices[:, 0] > 70.0)
 

@@ -26,6 +26,7 @@ class StillPicture:
     def __init__(self, plotter: pv.BasePlotter) -> None:
         self._plotter = plotter
         self._kept: vtkOpenGLFramebufferObject | None = None
+        self._able = True
         self._size = (0, 0)
         self._state: object = None
         self._eye: object = None
@@ -34,11 +35,11 @@ class StillPicture:
         """Draw the scene, as little of it as is needed; ``still`` is what of it need not be drawn again."""
         window, still = self._plotter.ren_win, [prop for prop in still if prop.GetVisibility()]
         known = self._state is not None and self._state == self._state_of(still)
-        if known or (self._eye == self._eye_now() and self._keep(still)):
+        if known or (self._able and self._eye == self._eye_now() and self._keep(still)):
             self._draw_over(still)
             # Only now: hiding things and showing them again has changed their times.
             self._state = self._state_of(still)
-        else:  # the eye moves: what would be kept would be of no use
+        else:  # the eye moves: what would be kept would be of no use, or nothing can be kept
             window.Render()
             self._state = None
         self._eye = self._eye_now()
@@ -73,6 +74,7 @@ class StillPicture:
             # OpenGL copies depth only between formats that are the same.
             if not made or _depth_of(self._kept) != _depth_of(window.GetRenderFramebuffer()):
                 self.forget()
+                self._able = False  # to try it at every picture would draw each one twice
                 return False
         self._copy(window.GetRenderFramebuffer(), self._kept)
         return True
