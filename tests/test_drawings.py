@@ -1,5 +1,8 @@
 """Worn lines for pattern programs: read back by other libraries, at their length."""
 
+import os
+import subprocess
+import sys
 from dataclasses import replace
 from xml.etree import ElementTree
 
@@ -196,6 +199,24 @@ def test_other_endings_are_refused_with_a_choice(tmp_path, write):
     with pytest.raises(UserError, match="cannot be written"):
         write(tmp_path / "missing" / "lines.dxf")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_nothing_else_is_left_in_the_folders_of_the_user(tmp_path):
+    home, out = tmp_path / "home", tmp_path / "w.dxf"
+    home.mkdir()
+    code = (
+        "import sys; from core.writing_out.drawing import write_strips; "
+        "from core.writing_out.worn import Strip; write_strips(sys.argv[1], [Strip('a', 'a', 100.0, 10.0)])"
+    )
+    folders = {"HOME": str(home), "XDG_CACHE_HOME": str(home / "cache"), "USERPROFILE": str(home)}
+    subprocess.run(
+        [sys.executable, "-c", code, str(out)],
+        env=os.environ | folders,
+        cwd=SAMPLES.parent.parent,
+        check=True,
+    )
+    assert list(home.rglob("*")) == []
+    assert out.exists()
 
 
 def test_a_design_without_worn_lines_is_refused(solution):

@@ -13,6 +13,7 @@ from core.errors import UserError
 from core.mesh import Points
 from core.project import whole_file
 from core.space import Space
+from core.writing_out.dxf import new_dxf
 from core.writing_out.worn import Strip, WornCurve
 
 CURVE_FORMATS = ("dxf", "obj")
@@ -23,7 +24,6 @@ SCALE_BAR = 100.0
 
 _MARGIN, _HEAD, _LETTER = 10.0, 24.0, 4.0  # round the drawing, for the scale bar, of the text [mm]
 _LAYER = re.compile(r'[<>/\\":;?*|=`,\x00-\x1f]')
-_UNIT_NUMBERS = {"mm": 4, "cm": 5, "m": 6, "in": 1}  # as DXF numbers them
 _INK = ("#111111", "#777777")  # of what is cut, and of what is only told
 
 
@@ -38,7 +38,7 @@ def write_curves(path: str | os.PathLike[str], curves: Sequence[WornCurve], spac
         if kind == "obj":
             partial.write_text("\n".join(_obj_lines(parts, space)) + "\n", encoding="utf-8")
         else:
-            drawing = _dxf(space.unit)
+            drawing = new_dxf(space.unit)
             layers = _layers([f"{name} {part}" for name, part, _ in parts])
             for layer, (_, _, places) in zip(layers, parts, strict=True):
                 drawing.layers.add(layer, color=1 + layers.index(layer) // 2 % 6)
@@ -132,7 +132,7 @@ def _svg_text(parent: Xml.Element, x: float, y: float, text: str, size: float = 
 
 
 def _strips_dxf(strips: Sequence[Strip], heading: str) -> Any:
-    drawing = _dxf("mm")
+    drawing = new_dxf("mm")
     space, tops = drawing.modelspace(), _tops(strips)
     drawing.layers.add("scale bar", color=8)
     for start, end in _bar(0.0, 0.0):
@@ -164,15 +164,6 @@ def _bar(x: float, y: float) -> list[tuple[tuple[float, float], tuple[float, flo
     """Return the lines of the scale bar from a place on, first the one that is as long as it says."""
     ticks = [(x + 10.0 * k, 3.0 if k % 5 == 0 else 1.5) for k in range(11)]
     return [((x, y), (x + SCALE_BAR, y)), *(((at, y), (at, y - high)) for at, high in ticks)]
-
-
-def _dxf(unit: str) -> Any:
-    import ezdxf  # noqa: PLC0415 (it takes long to load, and is needed here alone)
-
-    drawing = ezdxf.new("R2010")
-    drawing.header["$INSUNITS"] = _UNIT_NUMBERS[unit]
-    drawing.header["$MEASUREMENT"] = 0 if unit == "in" else 1
-    return drawing
 
 
 def _layers(names: Sequence[str]) -> list[str]:
