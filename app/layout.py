@@ -167,7 +167,7 @@ class Layout(QObject):
         elif window.view.beside.way in ("wipe", "side"):
             window.view.compare_by("after")
         else:
-            return False
+            return window.result.unmark()
         return True
 
     def _over(self) -> list[OverCard]:

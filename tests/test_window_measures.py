@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QLineEdit
 
 from app.dress.wishes import wish
 from app.main_window import MainWindow
+from app.panels.measure_table import MeasureTable
 from app.presenting.measures import as_table
 from core.measures import before_after
 from core.sizes import sizes
@@ -103,3 +104,43 @@ def typed(field: QLineEdit, text: str) -> None:
     field.selectAll()
     QTest.keyClicks(field, text)
     QTest.keyClick(field, Qt.Key.Key_Return)
+
+
+def test_a_measure_is_shown_on_the_body_until_esc_and_framed_at_a_double_click() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        window.desk.go_to("result")
+        yield lambda: measured(window)
+        scene, table = window.view.viewport.scene, window.result.findChild(MeasureTable)
+        view = scene.view
+        click(table, "bust_girth")
+        assert (window.result.mark, scene.measure.shown) == ("bust_girth", True)
+        QTest.keyClick(table, Qt.Key.Key_Down)
+        assert window.result.mark == "bust_girth_skin"
+        assert scene.view == view, "the body is only turned at a double-click"
+        window.view.set_after(False)
+        assert scene.measure.shown
+        QTest.keyClick(table, Qt.Key.Key_Escape)
+        assert (window.result.mark, scene.measure.shown) == ("", False)
+        click(table, "hip_girth")
+        assert not window.result.mark, "what is missing cannot be shown"
+        click(table, "apex_lift")
+        assert not scene.measure.shown, "the body at rest has none"
+        window.view.set_after(True)
+        assert scene.measure.shown
+        QTest.mouseDClick(table, Qt.MouseButton.LeftButton, pos=table.place_of("bust_girth").center())
+        assert scene.view != view
+        name = next(iter(window.lines.rows))
+        window.session.commit_line(name, name, 0.95)
+        yield lambda: window.result.stale
+        assert not scene.measure.shown, "no curve of a former body"
+        yield lambda: measured(window)
+        assert scene.measure.shown
+        window.desk.go_to("lines")
+        assert not scene.measure.shown
+
+    run_main([], script)
+
+
+def click(table: MeasureTable, key: str) -> None:
+    QTest.mouseClick(table, Qt.MouseButton.LeftButton, pos=table.place_of(key).center())

@@ -17,6 +17,7 @@ from app.wording.words import tr
 from core.body import Body
 from core.live import Frame
 from core.measures import Measures, before_after
+from core.mesh import Points
 from core.sizes import ALLOWANCE
 
 if TYPE_CHECKING:
@@ -34,6 +35,9 @@ class MeasuresDesk(QObject):
         self._body: Body | None = None
         self._job: Job | None = None
         self._rest: Measures | None = None
+        self._worn: Measures | None = None
+        panel.marked.connect(self._show_mark)
+        panel.framed.connect(self._look_at)
         panel.opened.connect(self.refresh)
         panel.copy_asked.connect(lambda: copy_table(window, self._as_table()))
         panel.table_asked.connect(
@@ -62,10 +66,11 @@ class MeasuresDesk(QObject):
         self._job = self._asked = None
         if not self._panel.measured or self._body is not frame.stages.body:
             self._body = frame.stages.body
-            self._rest = None
+            self._rest = self._worn = None
             self._show_sizes()
             self._panel.set_measured([], tr("The body is measured as soon as the run rests."))
         self._panel.set_stale(True)
+        self._show_mark()
         if window.is_settled():
             self._asked = frame
             self._job = window.jobs.run(
@@ -75,9 +80,27 @@ class MeasuresDesk(QObject):
             )
 
     def _show_measured(self, found: object) -> None:
-        self._rest, after = cast(tuple[Measures, Measures], found)
-        self._panel.set_measured(measured_views(self._rest, after))
+        self._rest, self._worn = cast(tuple[Measures, Measures], found)
+        self._panel.set_measured(measured_views(self._rest, self._worn))
         self._show_sizes()
+        self._show_mark()
+
+    def _show_mark(self) -> None:
+        """Draw the marked measure on the body; while the body moves it is not there."""
+        viewport = self._window.view.viewport
+        rest, worn = (() if self._panel.stale else self._curves(found) for found in (self._rest, self._worn))
+        if rest or worn or viewport.scene.measure.shown:
+            viewport.scene.measure.show_both(rest, worn)
+            viewport.request_draw()
+
+    def _look_at(self) -> None:
+        viewport = self._window.view.viewport
+        if viewport.scene.measure.shown:
+            viewport.frame_points(viewport.scene.measure.points)
+
+    def _curves(self, found: Measures | None) -> tuple[Points, ...]:
+        measure = found.get(self._panel.mark) if found else None
+        return measure.curves if measure else ()
 
     def _wish(self, key: str, value: str) -> None:
         wish_for(key, value)

@@ -7,8 +7,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from PySide6.QtCore import QEvent, QPoint, QRect, QRectF, Qt
-from PySide6.QtGui import QColor, QFontMetrics, QHelpEvent, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtCore import QEvent, QPoint, QRect, QRectF, Qt, Signal
+from PySide6.QtGui import (
+    QColor,
+    QFontMetrics,
+    QHelpEvent,
+    QKeyEvent,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QResizeEvent,
+)
 from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
 
 from app.dress.theme import font, tokens_of
@@ -41,9 +50,14 @@ class MeasureView:
         return None if self.after is None or self.before is None else self.after - self.before
 
     @property
+    def known(self) -> bool:
+        """Whether it was measured at all."""
+        return self.before is not None or self.after is not None
+
+    @property
     def caption(self) -> str:
         """What stands under it: from where it is counted, how sure it is, or why it is missing."""
-        if self.before is None and self.after is None:
+        if not self.known:
             return self.note
         if not self.estimate:
             return self.reference
@@ -70,14 +84,22 @@ _WRAPPED = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop | Qt.TextFlag.
 
 
 class MeasureTable(QWidget):
-    """Measures in groups; those with a key fade while they are ``stale``."""
+    """Measures in groups; those with a key fade while they are ``stale``.
+
+    ``marked`` carries the key of the one that a click or an arrow key goes to, empty for none; ``framed``
+    when it is clicked twice.
+    """
+
+    marked = Signal(str)
+    framed = Signal()
 
     TOP, HEAD, ROW, NAME, CELLS, BAR, EDGE = 24, 30, 30, 20, (48, 54, 48), 28, 4
 
     def __init__(self) -> None:
         super().__init__()
         self.rows: tuple[MeasureView, ...] = ()
-        self.stale = False
+        self.stale, self.mark = False, ""
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self._spots: list[_Spot] = []
         self._heads: list[tuple[str, str, int]] = []
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
@@ -90,6 +112,42 @@ class MeasureTable(QWidget):
         self.setAccessibleName("; ".join(_spoken(each) for each in rows))
         self._lay_out()
         self.update()
+
+    def select(self, key: str) -> None:
+        """Mark the measure of this key, or none."""
+        if key != self.mark:
+            self.mark = key
+            self.update()
+            self.marked.emit(key)
+
+    def place_of(self, key: str) -> QRect:
+        """Return where a measure stands."""
+        spots = (spot for spot in self._spots if spot.view.key == key)
+        return next((QRect(0, spot.top, self.width(), spot.height) for spot in spots), QRect())
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        """Mark the measure under the pointer."""
+        view = self._view_at(event.position().toPoint())
+        self.select(view.key if view is not None and view.known else "")
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
+        """Ask for the measure to be looked at."""
+        self.mousePressEvent(event)
+        if self.mark:
+            self.framed.emit()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Go to the next measure or the one before; Esc marks none."""
+        if event.key() == Qt.Key.Key_Escape and self.mark:
+            self.select("")
+            return
+        turn = {Qt.Key.Key_Down: 1, Qt.Key.Key_Up: -1}.get(Qt.Key(event.key()), 0)
+        keys = [view.key for view in self.rows if view.key and view.known]
+        if not turn or not keys:
+            super().keyPressEvent(event)
+            return
+        at = keys.index(self.mark) + turn if self.mark in keys else 0
+        self.select(keys[min(max(at, 0), len(keys) - 1)])
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Let names and reasons wrap anew."""
@@ -108,7 +166,8 @@ class MeasureTable(QWidget):
         tokens, painter = tokens_of(self), QPainter(self)
         painter.setPen(QColor(tokens.text_caption))
         painter.setFont(font("caption"))
-        for cell, title in zip(self._cells(0, self.TOP), self._titles(), strict=False):
+        titles = (tr("Before"), tr("After"), tr("Change"))
+        for cell, title in zip(self._cells(0, self.TOP), titles, strict=False):
             painter.drawText(cell, _RIGHT, title)
         for title, units, top in self._heads:
             line = QRectF(self.EDGE, top, self.width() - 2 * self.EDGE, self.HEAD)
@@ -126,9 +185,13 @@ class MeasureTable(QWidget):
 
     def _paint_row(self, painter: QPainter, spot: _Spot) -> None:
         tokens, view = tokens_of(self), spot.view
-        missing = view.before is None and view.after is None
+        missing = not view.known
         high, long = self.NAME if spot.wide else self.ROW, self._name_width(spot.wide or missing)
         name = QRectF(self.EDGE, spot.top + (3 if spot.wide else 0), long, high)
+        if view.key and view.key == self.mark:
+            painter.setPen(QColor(tokens.accent) if self.hasFocus() else Qt.PenStyle.NoPen)
+            painter.setBrush(QColor(tokens.selected))
+            painter.drawRoundedRect(QRectF(0.5, spot.top + 1.5, self.width() - 1, spot.height - 3), 5, 5)
         painter.setFont(font("body"))
         painter.setPen(QColor(tokens.text))
         painter.drawText(name, _LEFT, view.label)
@@ -186,7 +249,7 @@ class MeasureTable(QWidget):
     def _spot(self, view: MeasureView, top: int, mixed: bool) -> _Spot:
         advance = QFontMetrics(font("body")).horizontalAdvance(view.label)
         advance += 4 + QFontMetrics(font("caption")).horizontalAdvance(view.unit) + 6 if mixed else 0
-        missing = view.before is None and view.after is None
+        missing = not view.known
         wide = advance > self._name_width(False) and not missing
         height = self.ROW + (self.NAME if wide else 0)
         if view.caption:
@@ -199,8 +262,8 @@ class MeasureTable(QWidget):
 
     def _cells(self, top: float, height: float) -> list[QRectF]:
         """Return the cells before, after, change and bar of a line of the table."""
-        left, cells = self.width() - self.EDGE - self.BAR, []
-        cells.append(QRectF(left, top, self.BAR, height))
+        left = self.width() - self.EDGE - self.BAR
+        cells = [QRectF(left, top, self.BAR, height)]
         left -= 6
         for room in reversed(self.CELLS):
             left -= room
@@ -210,10 +273,6 @@ class MeasureTable(QWidget):
     def _view_at(self, place: QPoint) -> MeasureView | None:
         spots = (each for each in self._spots if each.top <= place.y() < each.top + each.height)
         return next((spot.view for spot in spots), None)
-
-    @staticmethod
-    def _titles() -> tuple[str, str, str]:
-        return tr("Before"), tr("After"), tr("Change")
 
 
 def _digits(unit: str) -> int:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from PySide6.QtCore import Signal
-from PySide6.QtGui import QShowEvent
+from PySide6.QtGui import QHideEvent, QShowEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
 from app.dress.parts import EmptyState, button, sentence
@@ -19,10 +19,14 @@ from app.wording.words import tr
 class ResultPanel(QWidget):
     """The table of measures; ``opened`` when it comes to be seen, and what it shows has to be new.
 
-    ``copy_asked`` and ``table_asked`` are for the measures as text, on the clipboard or in a file.
+    ``marked`` carries the key of the measure to be shown on the body, empty for none; ``framed`` when it
+    is to be looked at. ``copy_asked`` and ``table_asked`` are for the measures as text, on the clipboard or
+    in a file.
     """
 
     opened = Signal()
+    marked = Signal(str)
+    framed = Signal()
     copy_asked = Signal()
     table_asked = Signal()
 
@@ -35,6 +39,8 @@ class ResultPanel(QWidget):
             "result", tr("Nothing solved yet"), tr("Set a line shorter and see it here.")
         )
         self._table, self._doubt = MeasureTable(), sentence("", "secondary")
+        self._table.framed.connect(self.framed)
+        self._table.marked.connect(self._mark)
         self._live: tuple[MeasureView, ...] = ()
         self._measured: tuple[MeasureView, ...] = ()
         self._stale = False
@@ -90,6 +96,21 @@ class ResultPanel(QWidget):
         self._show()
 
     @property
+    def mark(self) -> str:
+        """The key of the measure that is shown on the body, or nothing."""
+        return self._table.mark
+
+    def select(self, key: str) -> None:
+        """Show a measure on the body, or none."""
+        self._table.select(key)
+
+    def unmark(self) -> bool:
+        """Show no measure on the body any more; returns whether there was one."""
+        had = bool(self._table.mark)
+        self._table.select("")
+        return had
+
+    @property
     def rows(self) -> tuple[MeasureView, ...]:
         """The figures of the model that are shown."""
         return self._live
@@ -112,6 +133,13 @@ class ResultPanel(QWidget):
         """Why the measures are no result, or nothing."""
         return self._doubt.text()
 
+    def _mark(self, key: str) -> None:
+        place = self._table.place_of(key).translated(self._table.pos())
+        if key:
+            self._area.ensureVisible(0, place.bottom(), 0, 0)
+            self._area.ensureVisible(0, place.top(), 0, 0)
+        self.marked.emit(key)
+
     def _make_buttons(self) -> QWidget:
         self._buttons = QWidget()
         row = QHBoxLayout(self._buttons)
@@ -131,3 +159,7 @@ class ResultPanel(QWidget):
     def showEvent(self, event: QShowEvent) -> None:
         """Ask for the measures of now."""
         self.opened.emit()
+
+    def hideEvent(self, event: QHideEvent) -> None:
+        """Leave the body to what is done next."""
+        self.unmark()

@@ -17,7 +17,7 @@ from app.seeing.material import CLAY, look_of
 from app.seeing.ribbon import Surface
 from app.seeing.section import SectionSheet
 from app.seeing.stage import Look, Stage
-from app.seeing.trace import Trace
+from app.seeing.trace import MeasureTrace, Trace
 from core.mesh import Flags, Floats, Indices, Mesh, Points
 
 PARTS = ("body", "bands", "control", "floor", "ghost")
@@ -37,7 +37,7 @@ class Scene:
         self._pixel_ratio = pixel_ratio
         self._stage = Stage(plotter)
         self.bands = Bands(plotter)
-        self._trace = Trace(plotter)
+        self._trace, self.measure = Trace(plotter), MeasureTrace(plotter)
         self.section = SectionSheet(plotter, pixel_ratio)
         self._surface: Surface | None = None
         self._ghost: Ghost | None = None
@@ -55,7 +55,7 @@ class Scene:
     def show_body(self, mesh: Mesh, moving: Indices = NONE) -> None:
         """Show a body at rest, and nothing on it; ``moving`` (k,) are vertices that will move, if known."""
         self.bands.clear()
-        self._trace.show(np.empty((0, 3)))
+        self._trace.show()
         self._drop_control()
         self.body = BodyActor(self.plotter, mesh, self._look, moving)
         self._surface = Surface(mesh)
@@ -149,8 +149,8 @@ class Scene:
         self._dark = dark
         look = self._look
         self._stage.set_look(look)
-        self._trace.set_dark(dark)
-        self.section.set_dark(dark)
+        for each in (self._trace, self.measure, self.section):
+            each.set_dark(dark)
         if self.body is not None:
             self.body.set_look(look)
         if self._control is not None:

@@ -68,6 +68,7 @@ class BodyView:
     def set_after(self, after: bool) -> None:
         """Show the reshaped body, or the body at rest."""
         self.after = after
+        self.viewport.scene.measure.before(not after)
         if self.body is not None:
             self.viewport.scene.before(not after)
             self._show_label()
