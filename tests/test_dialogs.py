@@ -123,11 +123,11 @@ def test_dialogs_begin_where_files_of_their_kind_were_last(
 
 
 def test_a_folder_is_told_without_the_name_of_its_owner(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Path, "home", lambda: Path("/home/anna"))
-    assert shown_folder(Path("/home/anna/.local/share/Busk")) == "~/.local/share/Busk"
-    assert shown_folder(Path("/home/annabel")) == "/home/annabel"
-    monkeypatch.setattr(machine, "folders", lambda: [("Log", Path("/home/anna/log"))])
-    monkeypatch.setattr(sys, "executable", "/home/anna/busk/.venv/bin/python")
+    monkeypatch.setattr(Path, "home", lambda: Path("/houses/anna"))
+    assert shown_folder(Path("/houses/anna/.local/share/Busk")) == "~/.local/share/Busk"
+    assert shown_folder(Path("/houses/annabel")) == "/houses/annabel"
+    monkeypatch.setattr(machine, "folders", lambda: [("Log", Path("/houses/anna/log"))])
+    monkeypatch.setattr(sys, "executable", "/houses/anna/busk/.venv/bin/python")
     widget = QWidget()
     text = str(machine.machine_facts(widget))
     widget.deleteLater()

@@ -58,7 +58,10 @@ def test_slings_are_listed_drawn_shortened_and_removed() -> None:
         window.actions_.undo.trigger()
         yield lambda: "sling left" in window.lines.rows
         window.desk.select_line("sling right")
-        QTest.keyClick(window.lines, Qt.Key.Key_Delete)
+        window.activateWindow()
+        yield window.isActiveWindow
+        window.lines.rows["sling left"].slider.setFocus()
+        QTest.keyClick(window.lines.rows["sling left"].slider, Qt.Key.Key_Delete)
         yield lambda: "sling left" not in window.lines.rows
 
     run_main([], script)

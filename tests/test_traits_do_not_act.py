@@ -19,7 +19,9 @@ __all__ = ["solver"]
 DESIGN = Design(ScanSource("a.ply")).with_line("mid-bust", 0.95)
 
 
-@pytest.mark.parametrize("what", [{"title": "Mine"}, {"colour": "#e5536b"}, {"locked": True}, {"linked": False}])
+@pytest.mark.parametrize(
+    "what", [{"title": "Mine"}, {"colour": "#e5536b"}, {"locked": True}, {"linked": False}]
+)
 def test_what_a_line_is_called_does_not_act_and_its_stiffness_does(what: dict[str, object]) -> None:
     assert DESIGN.acts_as(DESIGN.with_traits(LineTraits("mid-bust", **what)))  # type: ignore[arg-type]
     assert not DESIGN.acts_as(DESIGN.with_traits(LineTraits("mid-bust", stiffness=3.0)))

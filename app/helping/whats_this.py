@@ -30,8 +30,8 @@ def _said(window: MainWindow) -> dict[QWidget, str]:
             "measured. The selected band can be pulled up or down to make its line shorter or longer."
         ),
         window.section_desk.panel: tr(
-            "The body cut by a plane, before and after, in millimetres. Move the plane by the handle on it in "
-            "the view, by the slider here, or by typing where it is."
+            "The body cut by a plane, before and after, in millimetres. Move the plane by the handle on it "
+            "in the view, by the slider here, or by typing where it is."
         ),
         window.strip: tr(
             "The model comes to rest turn by turn. A garment whose model vibrates or folds tells nothing "

@@ -144,9 +144,7 @@ class ProjectCard(QAbstractButton):
         light.setColorAt(0.0, QColor(tokens.app if self.view.gone else tokens.raised))
         light.setColorAt(1.0, QColor(tokens.app))
         painter.fillRect(area, light)
-        drawing, ink = (
-            ("file-gone", tokens.text_caption) if self.view.gone else ("view-front", tokens.line)
-        )
+        drawing, ink = ("file-gone", tokens.text_caption) if self.view.gone else ("view-front", tokens.line)
         size = 28.0 if self.view.gone else 104.0
         middle = QRectF(area.center().x() - size / 2, area.center().y() - size / 2, size, size)
         paint_icon(painter, drawing, ink, middle)
