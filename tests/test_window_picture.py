@@ -9,12 +9,13 @@ import pytest
 from PySide6.QtCore import QSize
 from PySide6.QtGui import QDesktopServices, QGuiApplication, QImage
 from PySide6.QtPrintSupport import QPrintDialog, QPrinter
-from PySide6.QtWidgets import QPushButton
+from PySide6.QtWidgets import QPushButton, QWidget
 from window_tools import Script, run_main
 
 from app.desks import picture_desk
 from app.desks.picture_desk import fitted
 from app.main_window import MainWindow
+from app.showing import fine_picture
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -84,6 +85,25 @@ def a_map_takes_its_legend_along(window: MainWindow) -> None:
     legend.setVisible(False)
     without = pixels(window.view.picture())[rows, columns]
     assert np.abs(with_legend - without).max() > 100
+
+
+def test_the_view_is_as_before_when_a_picture_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object) -> QImage:
+        raise MemoryError
+
+    def script(window: MainWindow) -> Script:
+        yield window.is_settled
+        window.view.tool_actions["section"].trigger()
+        window.desk.select_line("mid-bust")
+        panes, bands = window.view.panes, window.view.viewport.scene.bands
+        seen = [each for each in panes.findChildren(QWidget) if not each.isHidden()]
+        monkeypatch.setattr(fine_picture, "_rendered", fail)
+        with pytest.raises(MemoryError):
+            fine_picture.fine_picture(panes, 2.0)
+        assert [each for each in panes.findChildren(QWidget) if not each.isHidden()] == seen
+        assert bands.selected == "mid-bust"
+
+    run_main([], script)
 
 
 def test_a_picture_is_as_large_as_the_page() -> None:

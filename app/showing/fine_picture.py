@@ -33,14 +33,18 @@ def fine_picture(panes: Panes, finer: float) -> QImage:
     image = QImage(_times(panes.size(), ratio), QImage.Format.Format_RGB32)
     image.setDevicePixelRatio(ratio)
     handles = [handle for handle in panes.findChildren(PlaneHandle) if not handle.isHidden()]
-    for handle in handles:
-        handle.hide()
-    sheets = [_Sheet(viewport, finer) for viewport in panes.viewports]
-    panes.render(image, QPoint())
-    for sheet in sheets:
-        sheet.take_away()
-    for handle in handles:
-        handle.show()
+    sheets: list[_Sheet] = []
+    try:
+        for handle in handles:
+            handle.hide()
+        for viewport in panes.viewports:
+            sheets.append(_Sheet(viewport, finer))  # one by one: those that were made are taken away
+        panes.render(image, QPoint())
+    finally:
+        for sheet in sheets:
+            sheet.take_away()
+        for handle in handles:
+            handle.show()
     return image
 
 
@@ -78,9 +82,11 @@ def _drawn(viewport: Viewport, finer: float) -> QImage:
     marked = scene.bands.selected, scene.bands.hovered
     viewport.request_draw()  # the filters for smooth outlines are for the size of the screen
     scene.mark_bands()
-    with _thicker(plotter, finer * samples):
-        image = _rendered(plotter, size * samples)
-    scene.mark_bands(*marked)
+    try:
+        with _thicker(plotter, finer * samples):
+            image = _rendered(plotter, size * samples)
+    finally:
+        scene.mark_bands(*marked)
     return image.scaled(
         size, Qt.AspectRatioMode.IgnoreAspectRatio, Qt.TransformationMode.SmoothTransformation
     )
