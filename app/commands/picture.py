@@ -125,6 +125,7 @@ def save_window(window: MainWindow, out: Path) -> None:
     from PySide6.QtWidgets import QApplication
 
     window.desk.plot_now()
+    wait_until(lambda: not window.jobs.at_work(), QApplication.processEvents)
     # The view smooths its outlines once it has been still for a while.
     still = time.monotonic() + 0.6
     wait_until(lambda: time.monotonic() > still, QApplication.processEvents)

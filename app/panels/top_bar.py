@@ -27,6 +27,7 @@ class TopBar(QWidget):
         left.setSpacing(12)
         left.addWidget(label("Busk", "wordmark"))
         left.addWidget(menu, alignment=Qt.AlignmentFlag.AlignVCenter)
+        left.addSpacing(16)  # a long menu bar must not touch the title
         left.addStretch(1)
         right.addStretch(1)
         right.addWidget(ToolButton("arrow-u-up-left", action=undo))
