@@ -172,7 +172,10 @@ def a_ring(window: MainWindow) -> Script:
     window.activateWindow()
     yield window.isActiveWindow
     press(window, Qt.Key.Key_N)
-    click(window, *ring, ring[0])
+    assert drawing.at_work
+    click(window, *ring)
+    assert len(drawing._places) == len(ring)
+    click(window, ring[0])
     assert drawing._snapped.closed
     assert set(ring) <= set(drawing._snapped.path)
     press(window, Qt.Key.Key_Escape)
