@@ -156,7 +156,7 @@ def _add_scan(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_files(parser: argparse.ArgumentParser) -> None:
-    """Add what can be written of a design, and how."""
+    """Add what can be written of a design."""
     parser.add_argument(
         "input", metavar="PROJECT", help=f"a project (.busk), or a scan ({KINDS}) with --line"
     )
@@ -179,6 +179,11 @@ def _add_files(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--turntable", default="", metavar="FILE", help="one turn round: .gif, .webp, .png for a series"
     )
+    _add_how(parser)
+
+
+def _add_how(parser: argparse.ArgumentParser) -> None:
+    """Add how files of a design are written."""
     parser.add_argument(
         "--unit",
         dest="file_unit",

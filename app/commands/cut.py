@@ -8,15 +8,14 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import reduce
-from pathlib import Path
 
 from app.commands.settings import dressed, made_of
+from app.commands.told import told
 from core import __version__
 from core.cutting import CutList, CutRow, cut_list
 from core.design import Design, cannot_hold
-from core.errors import LineError, UserError
+from core.errors import LineError
 from core.pipeline import build
-from core.project import whole_file
 from core.report import shape_warnings
 from core.sewing.as_worn import as_worn
 from core.solution import run
@@ -60,18 +59,8 @@ def run_cut(design: Design, lines: Sequence[str], elastics: Sequence[str], same:
 
 
 def cut_text(found: Cut, kind: str, out: str | None) -> str:
-    """Return what to print; with a file ``out`` it is written there, as its ending says if ``kind`` is empty.
-
-    Raises UserError if it cannot be written.
-    """
-    if out is None:
-        return _FORMS[kind](found)
-    if not out.strip():
-        raise UserError("The place to write to has no name.", "Name a file: --out cut.csv.")
-    form = _FORMS[kind or {".json": "json", ".csv": "csv"}.get(Path(out).suffix.lower(), "")]
-    with whole_file(Path(out).absolute()) as partial:
-        partial.write_text(form(found) + "\n", encoding="utf-8")
-    return f"written to {out}"
+    """Return what to print, or write it to a file ``out``; see ``told``. Raises UserError."""
+    return told(_FORMS, found, kind, out)
 
 
 def _plain(found: Cut) -> str:

@@ -6,16 +6,14 @@ import csv
 import io
 import json
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
+from app.commands.told import told
 from core import __version__
 from core.design import Design
 from core.doubts import doubts
-from core.errors import UserError
 from core.measures import before_after, measure_rows, measures
 from core.pipeline import build, find, read_body
-from core.project import whole_file
 from core.report import shape_warnings
 from core.solution import run
 
@@ -51,18 +49,8 @@ def run_measure(design: Design, *, solved: bool) -> Measured:
 
 
 def measured_text(found: Measured, kind: str, out: str | None) -> str:
-    """Return what to print; with a file ``out`` it is written there, as its ending says if ``kind`` is empty.
-
-    Raises UserError if it cannot be written.
-    """
-    if out is None:
-        return _FORMS[kind](found)
-    if not out.strip():
-        raise UserError("The place to write to has no name.", "Name a file: --out measures.csv.")
-    form = _FORMS[kind or {".json": "json", ".csv": "csv"}.get(Path(out).suffix.lower(), "")]
-    with whole_file(Path(out).absolute()) as partial:
-        partial.write_text(form(found) + "\n", encoding="utf-8")
-    return f"written to {out}"
+    """Return what to print, or write it to a file ``out``; see ``told``. Raises UserError."""
+    return told(_FORMS, found, kind, out)
 
 
 def _plain(found: Measured) -> str:

@@ -19,6 +19,10 @@ def explain(window: MainWindow) -> None:
 
 
 def _said(window: MainWindow) -> dict[QWidget, str]:
+    return _around(window) | _inspected(window)
+
+
+def _around(window: MainWindow) -> dict[QWidget, str]:
     return {
         window.rail: tr(
             "The way from a scan to a result. No step is locked: go back and forth as you like. A green tick "
@@ -37,6 +41,14 @@ def _said(window: MainWindow) -> dict[QWidget, str]:
             "The model comes to rest turn by turn. A garment whose model vibrates or folds tells nothing "
             "yet: look at the verdict before you trust a shape. The dashed line is the exact answer."
         ),
+        window.notices: tr(
+            "What needs your attention, one at a time, with what you can do. Nothing here covers your work."
+        ),
+    }
+
+
+def _inspected(window: MainWindow) -> dict[QWidget, str]:
+    return {
         window.scan: tr(
             "What Busk understood of the scan: unit, up and front. All lengths follow from the unit, so that "
             "it is worth a look on a new scanner."
@@ -56,8 +68,5 @@ def _said(window: MainWindow) -> dict[QWidget, str]:
         window.model: tr(
             "How lines, skin and volume act. The choices of the paper are marked; they change the result, "
             "and are saved with the design."
-        ),
-        window.notices: tr(
-            "What needs your attention, one at a time, with what you can do. Nothing here covers your work."
         ),
     }

@@ -7,9 +7,10 @@ from collections.abc import Sequence
 
 from PySide6.QtCore import Signal
 from PySide6.QtGui import QHideEvent, QShowEvent
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QScrollArea, QVBoxLayout, QWidget
 
-from app.dress.parts import EmptyState, button, sentence
+from app.dress.parts import EmptyState, sentence
+from app.dress.press_row import press_row
 from app.dress.theme import set_tag
 from app.panels.measure_table import MeasureTable, MeasureView
 from app.panels.size_card import SizeCard
@@ -141,19 +142,10 @@ class ResultPanel(QWidget):
         self.marked.emit(key)
 
     def _make_buttons(self) -> QWidget:
-        self._buttons = QWidget()
-        row = QHBoxLayout(self._buttons)
-        row.setContentsMargins(0, 4, 0, 0)
-        row.setSpacing(6)
-        for text, tip, signal in (
-            (tr("Copy"), tr("Copy the table, to paste into a spreadsheet or a letter"), self.copy_asked),
-            (tr("CSV…"), tr("Write the table to a file (CSV)"), self.table_asked),
-        ):
-            press = button(text)
-            press.setToolTip(tip)
-            press.clicked.connect(signal)
-            row.addWidget(press)
-        row.addStretch(1)
+        copied = tr("Copy the table, to paste into a spreadsheet or a letter")
+        written = tr("Write the table to a file (CSV)")
+        choices = (tr("Copy"), copied, self.copy_asked), (tr("CSV…"), written, self.table_asked)
+        self._buttons = press_row(choices, top=4)
         return self._buttons
 
     def showEvent(self, event: QShowEvent) -> None:

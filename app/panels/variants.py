@@ -8,9 +8,10 @@ from dataclasses import dataclass
 
 from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPaintEvent, QShowEvent
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QScrollArea, QVBoxLayout, QWidget
 
-from app.dress.parts import EmptyState, button, sentence
+from app.dress.parts import EmptyState, sentence
+from app.dress.press_row import press_row
 from app.dress.theme import font, tokens_of
 from app.showing.verdict_chip import TONES, state_title
 from app.wording.words import number, tr
@@ -81,24 +82,16 @@ class VariantsPanel(QWidget):
         self._area.setWidget(self._inside())
         column.addWidget(self._empty)
         column.addWidget(self._area, 1)
-        self._buttons = QWidget()
-        row = QHBoxLayout(self._buttons)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(6)
-        for text, tip, signal in (
+        beside = tr("Show the bodies of all variants through linked cameras")
+        copied = tr("Copy the table, to paste into a spreadsheet or a letter")
+        written = tr("Write the table to a file (CSV)")
+        self._buttons = press_row(
             (
-                tr("Side by side"),
-                tr("Show the bodies of all variants through linked cameras"),
-                self.beside_asked,
-            ),
-            (tr("Copy"), tr("Copy the table, to paste into a spreadsheet or a letter"), self.copy_asked),
-            (tr("CSV…"), tr("Write the table to a file (CSV)"), self.table_asked),
-        ):
-            press = button(text)
-            press.setToolTip(tip)
-            press.clicked.connect(signal)
-            row.addWidget(press)
-        row.addStretch(1)
+                (tr("Side by side"), beside, self.beside_asked),
+                (tr("Copy"), copied, self.copy_asked),
+                (tr("CSV…"), written, self.table_asked),
+            )
+        )
         column.addWidget(self._buttons)
         column.addStretch(0)
         self.set_view(None)

@@ -11,6 +11,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from app.seeing.ribbon import ACROSS, Ribbon, Surface, build_casing, build_ribbon
 from app.seeing.sight import Sight
+from app.seeing.smooth import smooth_actor
 from app.seeing.stage import rgb
 from core.centre_line import NO_BACK
 from core.mesh import Flags, Floats, Indices, Points, unit
@@ -42,28 +43,19 @@ class RibbonActor:
     def __init__(self, plotter: pv.BasePlotter, ribbon: Ribbon, name: str) -> None:
         self.ribbon = ribbon
         self._moving = moving_faces(ribbon.mesh, np.empty(0, dtype=np.int64))
-        self.data = pv.PolyData.from_regular_faces(ribbon.mesh.vertices.astype(np.float32), ribbon.mesh.faces)
-        self.data.point_data["Normals"] = ribbon.mesh.vertex_normals.astype(np.float32)
-        self.data.point_data["Colour"] = np.full(ribbon.mesh.vertices.shape, 255, dtype=np.uint8)
-        self.sight = Sight(self.data)
-        self.actor = plotter.add_mesh(
-            self.data,
-            scalars="Colour",
-            rgb=True,
-            copy_mesh=False,
-            name=name,
-            reset_camera=False,
-            render=False,
+        mesh = ribbon.mesh
+        self.data, self.actor = smooth_actor(
+            plotter,
+            name,
+            mesh.vertices,
+            mesh.vertex_normals,
+            mesh.faces,
             ambient=0.42,
             diffuse=0.8,
             specular=0.14,
             specular_power=20,
         )
-        # Else a filter in Python stands between, which copies at each move.
-        self.data.set_active_scalars("Colour")
-        self.actor.mapper.SetInputDataObject(self.data)
-        self.actor.prop.interpolation = "Gouraud"
-        self.data.point_data.active_normals_name = "Normals"
+        self.sight = Sight(self.data)
         # Plain views of what is drawn: pyvista looks its own up by name each time.
         self._places = vtk_to_numpy(self.data.GetPoints().GetData())
         self._normals = vtk_to_numpy(self.data.GetPointData().GetNormals())

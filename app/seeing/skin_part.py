@@ -8,6 +8,7 @@ import pyvista as pv
 
 from app.seeing.paint import Colours
 from app.seeing.sight import Sight
+from app.seeing.smooth import smooth_actor
 from core.mesh import Flags, Indices, Mesh, Points
 
 Singles = npt.NDArray[np.float32]
@@ -33,33 +34,22 @@ class SkinPart:
         self._held[corners] = True
         self.rows: Indices = np.flatnonzero(self._held)
         place = np.cumsum(self._held) - 1
-        places = skin.vertices[self.rows].astype(np.float32)
-        self._data = pv.PolyData.from_regular_faces(places, place[corners])
-        self._data.point_data["Normals"] = skin.vertex_normals[self.rows].astype(np.float32)
-        self._data.point_data["Colour"] = np.zeros(places.shape, dtype=np.uint8)
-        self.actor = plotter.add_mesh(
-            self._data,
-            scalars="Colour",
-            rgb=True,
-            copy_mesh=False,
-            name=name,
-            reset_camera=False,
-            render=False,
+        self._data, self.actor = smooth_actor(
+            plotter,
+            name,
+            skin.vertices[self.rows],
+            skin.vertex_normals[self.rows],
+            place[corners],
             diffuse=DIFFUSE,
             specular=0.10,
             specular_power=14,
         )
-        # Else a filter in Python stands between, which is asked several times a picture.
-        self._data.set_active_scalars("Colour")
-        self.actor.mapper.SetInputDataObject(self._data)
-        self.actor.prop.interpolation = "Gouraud"
         # Of a closed body no inside is seen; not to fill it halves the time of a frame on software GL.
         self.actor.prop.culling = "none" if inside_seen else "back"
         # Coloured points overrule VTK's own property for back faces, hence these lines of shader.
         self.actor.GetShaderProperty().AddFragmentShaderReplacement(
             "//VTK::Color::Impl", True, _DIM_INSIDE, False
         )
-        self._data.point_data.active_normals_name = "Normals"
         self.sight = Sight(self._data)
 
     def has(self, rows: Indices | slice) -> bool:

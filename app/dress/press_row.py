@@ -1,0 +1,25 @@
+"""A row of buttons under a table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from PySide6.QtCore import SignalInstance
+from PySide6.QtWidgets import QHBoxLayout, QWidget
+
+from app.dress.parts import button
+
+
+def press_row(choices: Iterable[tuple[str, str, SignalInstance]], top: int = 0) -> QWidget:
+    """Return buttons from the left: text, tip and what is emitted; ``top`` is the room over them [px]."""
+    holder = QWidget()
+    row = QHBoxLayout(holder)
+    row.setContentsMargins(0, top, 0, 0)
+    row.setSpacing(6)
+    for text, tip, signal in choices:
+        press = button(text)
+        press.setToolTip(tip)
+        press.clicked.connect(signal)
+        row.addWidget(press)
+    row.addStretch(1)
+    return holder
