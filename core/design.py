@@ -11,7 +11,7 @@ from typing import Any
 
 from core.design_elastics import TISSUE_LIMITS, TISSUE_STIFFNESS, Elastic, check_elastics
 from core.design_lines import LineTraits, OwnLine, WornLine, partner_of
-from core.design_measures import OwnMeasure
+from core.design_measures import OwnMeasure, put_measure
 from core.errors import LandmarkError, LineError, UserError
 from core.lines import RATIO_LIMITS
 from core.mechanics import CHOICES, DEFAULT_LINE_STIFFNESS, RANGES, Mechanics
@@ -168,9 +168,10 @@ class Design:
         return design.with_traits(traits)
 
     def acts_as(self, other: Design) -> bool:
-        """Tell whether another design is solved alike: names, colours, locks and links do not act."""
+        """Tell whether another design is solved alike: own measures and names, locks, links do not act."""
         mine, others = (
-            reduce(Design.with_traits, map(LineTraits.acting, each.traits), each) for each in (self, other)
+            replace(reduce(Design.with_traits, map(LineTraits.acting, each.traits), each), own_measures=())
+            for each in (self, other)
         )
         return mine == others
 
@@ -240,12 +241,12 @@ class Design:
         placed = others if position is None else (*others, PlacedMark(name, position))
         return replace(self, placed=tuple(sorted(placed, key=lambda mark: mark.name)))
 
-    def with_own_measure(self, measure: OwnMeasure) -> Design:
-        """Return the design with an own measure, in the place of one of the same name if there is one."""
-        if measure.name in {each.name for each in self.own_measures}:
-            own = tuple(measure if each.name == measure.name else each for each in self.own_measures)
-            return replace(self, own_measures=own)
-        return replace(self, own_measures=(*self.own_measures, measure))
+    def with_own_measure(self, measure: OwnMeasure, former: str = "") -> Design:
+        """Return the design with an own measure, in the place of the ``former`` one or one of its name.
+
+        Raises UserError if another one than the former has the name already.
+        """
+        return replace(self, own_measures=put_measure(self.own_measures, measure, former))
 
     def without_own_measure(self, name: str) -> Design:
         """Return the design without an own measure."""

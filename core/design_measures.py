@@ -49,6 +49,16 @@ class OwnMeasure:
             raise UserError(f"The measure {self.name} has no two ends.", "Name two different landmarks.")
 
 
+def put_measure(
+    those: tuple[OwnMeasure, ...], measure: OwnMeasure, former: str = ""
+) -> tuple[OwnMeasure, ...]:
+    """Return ``those`` with one more, in the place of the ``former`` one or of one of the same name."""
+    former = former or measure.name
+    if former in {each.name for each in those}:
+        return tuple(measure if each.name == former else each for each in those)
+    return (*those, measure)
+
+
 HELP = (
     "NAME=KIND:PLACES: a measure of your own, may be repeated. 'Gore=straight:bust_point_left,front_centre' "
     "is straight between two landmarks, 'Arc=skin:...' the shortest way over the skin, "

@@ -39,6 +39,7 @@ def before_after(stages: Stages, control_points: Points) -> tuple[Measures, Meas
     """Return what a body measures at rest, and reshaped by ``control_points``, shape (n, 3) [mm].
 
     The landmarks ride on the skin and the levels follow them; the lift of the apex is told after alone.
+    Raises ValueError unless there are as many control points as the control mesh has.
     """
     rest, before = _at_rest(stages.body.calm, stages.landmarks)
     moves = deform(stages.binding, control_points) - stages.body.mesh.vertices

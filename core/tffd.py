@@ -83,7 +83,13 @@ class Binding:
         return frozen(self.body.vertices[self.moving])
 
     def change(self, control_points: Points) -> Floats:
-        """Return by how much ``points`` and the normals of ``triangles`` changed, shape (p + t, 3)."""
+        """Return by how much ``points`` and the normals of ``triangles`` changed, shape (p + t, 3).
+
+        Raises ValueError unless there are as many ``control_points`` as the control mesh has, (n, 3) [mm].
+        """
+        wanted, got = self.control.vertices.shape, np.shape(control_points)
+        if got != wanted:
+            raise ValueError(f"control points of shape {got} for a control mesh of shape {wanted}")
         return self._frames(control_points) - self._rest_frames
 
     def _frames(self, control_points: Points) -> Floats:
@@ -232,7 +238,8 @@ def deform_moving(binding: Binding, control_points: Points) -> Points:
 def deform(binding: Binding, control_points: Points) -> Points:
     """Return all vertices of the body for ``control_points``, shapes (N, 3) and (n, 3) [mm].
 
-    With the control points at rest the result is the body at rest, bit for bit.
+    With the control points at rest the result is the body at rest, bit for bit. Raises ValueError unless
+    there are as many as the control mesh has.
     """
     vertices = binding.body.vertices.copy()
     vertices[binding.moving] = deform_moving(binding, control_points)

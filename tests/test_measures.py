@@ -230,6 +230,8 @@ def test_at_rest_after_is_before_to_the_bit(worn: Solution) -> None:
         key: each.value for key, each in after.items() if key != "apex_lift"
     }
     assert after["apex_lift"].value == 0.0
+    with pytest.raises(ValueError, match="control points of shape"):
+        before_after(worn.stages, worn.stages.control.mesh.vertices[:-1])
 
 
 def test_a_thinner_calm_skin_moves_as_the_scan_does(worn: Solution) -> None:

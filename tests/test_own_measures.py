@@ -54,6 +54,10 @@ def test_own_measures_are_kept_by_name_and_saved() -> None:
     other = OwnMeasure("Gore", "skin", GORE.marks)
     assert design.with_own_measure(other).own_measures == (other, RIBS)
     assert design.without_own_measure("Gore").own_measures == (RIBS,)
+    renamed = OwnMeasure("Arc", "skin", GORE.marks)
+    assert design.with_own_measure(renamed, former="Gore").own_measures == (renamed, RIBS)
+    with pytest.raises(UserError, match="two measures"):
+        design.with_own_measure(OwnMeasure("Ribs", "skin", GORE.marks), former="Gore")
     with pytest.raises(UserError, match="two measures"):
         Design(PLAIN.scan, own_measures=(GORE, GORE))
 

@@ -89,6 +89,13 @@ def test_the_smooth_weights_by_hand():
     assert deform(binding, lifted)[0, 2] == pytest.approx(first / (first + second), abs=1e-12)
 
 
+@pytest.mark.parametrize("rows", [0, 1, len(CONTROL.vertices) - 1, len(CONTROL.vertices) + 1])
+def test_control_points_of_another_mesh_are_refused(rows):
+    binding = bind(BODY, CONTROL, FULL)
+    with pytest.raises(ValueError, match=rf"shape \({rows}, 3\)"):
+        deform(binding, np.resize(CONTROL.vertices, (rows, 3)))
+
+
 @BOTH
 @FORMS
 @pytest.mark.parametrize("scaled", [False, True])

@@ -1,4 +1,4 @@
-"""Names, colours, locks and links of lines do not act on the model: they leave the runs alone."""
+"""Names, colours, locks and links of lines, and own measures, do not act on the model: runs go on."""
 
 from __future__ import annotations
 
@@ -12,10 +12,12 @@ from window_tools import settled as at_rest
 from app.main_window import MainWindow
 from core.design import Design, ScanSource
 from core.design_lines import LineTraits
+from core.design_measures import OwnMeasure
 from core.live import LiveSolver
 
 __all__ = ["solver"]
 
+RIBS = OwnMeasure("Ribs", "girth", ("fold_left",), -30.0)
 DESIGN = Design(ScanSource("a.ply")).with_line("mid-bust", 0.95)
 
 
@@ -29,13 +31,16 @@ def test_what_a_line_is_called_does_not_act_and_its_stiffness_does(what: dict[st
     assert not DESIGN.acts_as(replace(DESIGN, volume="exact"))
 
 
-def test_a_run_goes_on_over_a_new_name(solver: LiveSolver, built: Built) -> None:
+def test_a_run_goes_on_over_a_new_name_and_a_measure(solver: LiveSolver, built: Built) -> None:
     design = built("mannequin").design.with_line("mid-bust", 0.95)
     before = settled(solver, solver.submit(design, fresh=True))
-    after = settled(solver, solver.submit(design.with_traits(LineTraits("mid-bust", "Mine"))))
-    assert after.stages.design.traits_of("mid-bust").title == "Mine"
-    for control, records in before.tracks.items():
-        assert after.tracks[control] == records, "no turn is made, and none is forgotten"
+    named = design.with_traits(LineTraits("mid-bust", "Mine"))
+    for alike in (named, named.with_own_measure(RIBS)):
+        assert design.acts_as(alike)
+        after = settled(solver, solver.submit(alike))
+        assert after.stages.design == alike
+        for control, records in before.tracks.items():
+            assert after.tracks[control] == records, "no turn is made, and none is forgotten"
 
 
 @pytest.mark.usefixtures("empty_house")
