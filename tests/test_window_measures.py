@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from itertools import groupby
 
+import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
@@ -138,6 +139,29 @@ def test_a_measure_is_shown_on_the_body_until_esc_and_framed_at_a_double_click()
         assert scene.measure.shown
         window.desk.go_to("lines")
         assert not scene.measure.shown
+
+    run_main([], script)
+
+
+def test_side_by_side_and_wiped_each_body_has_its_own_curve() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.desk.go_to("result")
+        yield lambda: measured(window)
+        frame = window.session.frame
+        assert frame is not None
+        found = before_after(frame.stages, frame.control_points)
+        window.result.select("bust_girth")
+        for way in ("side", "wipe"):
+            window.view.compare_by(way)
+            traces = {body.after: body.viewport.scene.measure for body in window.view.beside.bodies}
+            for after, measures in zip((False, True), found, strict=True):
+                (ring,) = measures["bust_girth"].curves
+                assert traces[after].shown
+                assert np.array_equal(traces[after].points, ring)
+        window.result.unmark()
+        assert not any(trace.shown for trace in traces.values())
 
     run_main([], script)
 

@@ -39,6 +39,7 @@ class MeasuresDesk(QObject):
         panel.marked.connect(self._show_mark)
         panel.framed.connect(self._look_at)
         panel.opened.connect(self.refresh)
+        window.view.compared.connect(self._show_mark)
         panel.copy_asked.connect(lambda: copy_table(window, self._as_table()))
         panel.table_asked.connect(
             lambda: save_table(window, self._as_table(), tr("Save the table of measures"), "measures")
@@ -86,12 +87,13 @@ class MeasuresDesk(QObject):
         self._show_mark()
 
     def _show_mark(self) -> None:
-        """Draw the marked measure on the body; while the body moves it is not there."""
-        viewport = self._window.view.viewport
+        """Draw the marked measure on the body, on each that is seen; while it moves it is not there."""
         rest, worn = (() if self._panel.stale else self._curves(found) for found in (self._rest, self._worn))
-        if rest or worn or viewport.scene.measure.shown:
-            viewport.scene.measure.show_both(rest, worn)
-            viewport.request_draw()
+        for body in self._window.view.beside.live:
+            trace = body.viewport.scene.measure
+            if rest or worn or trace.shown:
+                trace.show_both(rest, worn)
+                body.viewport.request_draw()
 
     def _look_at(self) -> None:
         viewport = self._window.view.viewport

@@ -27,6 +27,7 @@ class BodyView:
         self.selected_line = "mid-bust"
         self._control: ControlMesh | None = None
         self._laid: Stages | None = None  # whose lines lie on the body
+        viewport.scene.measure.before(not after)
 
     def show_frame(self, frame: Frame) -> None:
         """Bring the view up to date; of a body that is seen at rest only what is new is drawn again."""
