@@ -55,7 +55,8 @@ class Design:
     not as usual, ``placed`` the landmarks that were placed by hand, ``own_measures`` what is measured beside
     the usual, ``elastics`` those that lines are made of, with their curves, so that a project opens
     elsewhere. ``tissue_stiffness`` [N/m] tells what the model's forces are in newtons, an estimate (see
-    docs/sewing.md). ``unknown`` keeps what a later version wrote.
+    docs/sewing.md). ``customer`` is whom it is for, in whatever words. ``unknown`` keeps what a later version
+    wrote.
     """
 
     scan: ScanSource
@@ -81,6 +82,7 @@ class Design:
     own_measures: tuple[OwnMeasure, ...] = ()
     elastics: tuple[Elastic, ...] = ()
     tissue_stiffness: float = TISSUE_STIFFNESS
+    customer: str = ""
     unknown: Mapping[str, Any] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
@@ -168,12 +170,11 @@ class Design:
         return design.with_traits(traits)
 
     def acts_as(self, other: Design) -> bool:
-        """Tell whether another design is solved alike: own measures and names, locks, links do not act."""
+        """Tell whether another design is solved alike: customer, own measures, names, locks do not act."""
         mine, others = (
-            replace(reduce(Design.with_traits, map(LineTraits.acting, each.traits), each), own_measures=())
-            for each in (self, other)
+            reduce(Design.with_traits, map(LineTraits.acting, each.traits), each) for each in (self, other)
         )
-        return mine == others
+        return replace(mine, own_measures=(), customer="") == replace(others, own_measures=(), customer="")
 
     def with_template(self, template: str) -> Design:
         """Return the design with another template. Raises LineError if there are own lines.

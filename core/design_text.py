@@ -35,8 +35,9 @@ def to_json(design: Design, written: int = 1) -> str:
         del values["elastics"]
     if design.tissue_stiffness == TISSUE_STIFFNESS:
         del values["tissue_stiffness"]
-    if not design.own_measures:
-        del values["own_measures"]
+    for key in ("own_measures", "customer"):
+        if not values[key]:
+            del values[key]
     return json.dumps({"format": written, "length_unit": "mm", **unknown, **values}, indent=1)
 
 
@@ -59,6 +60,8 @@ def from_json(text: str) -> Design:
         measures = tuple(_own_measure(each) for each in values.pop("own_measures", ()))
         known = {f.name for f in fields(Design)} - {"unknown"}
         unknown = {key: values.pop(key) for key in list(values) if key not in known}
+        if not isinstance(values.get("customer", ""), str):
+            raise TypeError("the customer is a text")
         return Design(
             scan=scan,
             lines=lines,

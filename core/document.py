@@ -10,13 +10,15 @@ from core.errors import UserError
 VARIANTS = ("A", "B", "C")
 """What variants are called, in this order."""
 
+_OF_THE_BODY = ("scan", "placed", "own_measures", "tissue_stiffness", "customer")
+
 
 @dataclass(frozen=True)
 class Document:
     """The variants of a design by name, of which one is ``shown``.
 
-    All lie on one body: what is said of the scan, its landmarks, tissue and own measures is said of every
-    variant.
+    All lie on one body: what is said of the scan, its landmarks, tissue, own measures and of whose it is, is
+    said of every variant.
     Raises UserError if a variant has no name of ``VARIANTS`` or the shown one is not there.
     """
 
@@ -37,6 +39,11 @@ class Document:
     def design(self) -> Design:
         """The design that is shown."""
         return self.variants[self.shown]
+
+    @property
+    def customer(self) -> str:
+        """Whom it is for, in whatever words; empty where nobody is named."""
+        return self.design.customer
 
     @property
     def variants(self) -> dict[str, Design]:
@@ -62,7 +69,7 @@ class Document:
 
 
 def _on_same_body(design: Design, model: Design) -> Design:
-    same = {key: getattr(model, key) for key in ("scan", "placed", "own_measures", "tissue_stiffness")}
+    same = {key: getattr(model, key) for key in _OF_THE_BODY}
     if all(getattr(design, key) == value for key, value in same.items()):
         return design
     return replace(design, **same)
