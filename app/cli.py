@@ -182,6 +182,19 @@ def cut(options: argparse.Namespace) -> int:
     return SETTLED if found.settled else NOT_SETTLED
 
 
+def press(options: argparse.Namespace) -> int:
+    """Print or write what each worn line of a project presses the skin with."""
+    from app.commands.press import press_text, run_press
+
+    design = design_of(options.input, options)
+    found = run_press(design, options.line or [], options.elastic or [])
+    text = press_text(found, "csv" if options.csv else "json" if options.json else "", options.out)
+    if text:
+        print(text, flush=True)
+    _warn(found.warnings)
+    return SETTLED if found.settled else NOT_SETTLED
+
+
 def export(options: argparse.Namespace) -> int:
     """Write what other programs open: a body, its lines, strips, measures, a turntable."""
     from app.commands.exported import Wishes, run_export
@@ -259,6 +272,7 @@ COMMANDS: dict[str, Callable[[argparse.Namespace], int]] = {
     "measure": measure,
     "export": export,
     "cut": cut,
+    "press": press,
     "picture": picture,
     "demo": demo,
     "figures": figures,

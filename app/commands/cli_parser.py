@@ -23,6 +23,7 @@ COMMANDS = {
     "detect": "find the landmarks of a scan",
     "measure": "measure a scan, or a project before and after",
     "cut": "tell how long the elastic of each worn line is to be cut",
+    "press": "tell what each worn line presses the skin with, in kPa and mmHg, and whether that is much",
     "export": "write a body, its lines, strips, measures or a turntable for other programs",
     "picture": "render a scan or project to a PNG file",
     "demo": "do the sample session off-screen and write what comes out",
@@ -33,7 +34,7 @@ COMMANDS = {
 }
 """Every command with what it does, in a few words."""
 
-_OF_A_SCAN = ("solve", "limits", "detect", "measure", "cut", "picture")
+_OF_A_SCAN = ("solve", "limits", "detect", "measure", "cut", "press", "picture")
 
 _AXIS = "like {axis}, or a direction x,y,z of the file for a body that stands askew"
 
@@ -96,9 +97,9 @@ def _parser(command: str) -> argparse.ArgumentParser:
         )
     if command == "accuracy":
         parser.add_argument("folder", metavar="DIR", help="scans with a truth.json beside them")
-    if command in ("limits", "detect", "measure", "cut", "accuracy"):
+    if command in ("limits", "detect", "measure", "cut", "press", "accuracy"):
         parser.add_argument("--json", action="store_true", help="print JSON")
-    if command in ("measure", "cut"):
+    if command in ("measure", "cut", "press"):
         parser.add_argument("--csv", action="store_true", help="print a table of comma-separated values")
         parser.add_argument("--out", metavar="FILE", help="write it to a file, by its ending .json or .csv")
     if command == "measure":
@@ -124,17 +125,17 @@ def _parser(command: str) -> argparse.ArgumentParser:
 
 def _add_design(parser: argparse.ArgumentParser, command: str) -> None:
     """Add what can be said of a design: its settings, its lines and what they are made of."""
-    if command in ("solve", "limits", "cut", "export", "picture"):
+    if command in ("solve", "limits", "cut", "press", "export", "picture"):
         parser.add_argument("--settings", action="append", metavar="KEY=VALUE", help=help_text())
         parser.add_argument("--path", action="append", metavar="NAME=POINTS", help=LINE_HELP)
-    if command in ("solve", "limits", "cut", "export"):
+    if command in ("solve", "limits", "cut", "press", "export"):
         parser.add_argument(
             "--line",
             action="append",
             metavar="NAME=LENGTH",
             help="97%% of the rest length, -20mm shorter, 400mm absolute; of the front part, side to side",
         )
-    if command in ("solve", "cut", "export"):
+    if command in ("solve", "cut", "press", "export"):
         parser.add_argument("--elastic", action="append", metavar="LINE=ELASTIC", help=ELASTIC_HELP)
     if command == "cut":
         same = "let lines of elastic reach what they reach without it: lengths are then those on the body"

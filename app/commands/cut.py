@@ -2,23 +2,15 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from functools import reduce
 
-from app.commands.settings import dressed, made_of
-from app.commands.told import told
+from app.commands.told import csv_text, told
+from app.commands.worn import run_worn
 from core import __version__
 from core.cutting import CutList, CutRow, cut_list
-from core.design import Design, cannot_hold
-from core.errors import LineError
-from core.pipeline import build
-from core.report import shape_warnings
-from core.sewing.as_worn import as_worn
-from core.solution import run
+from core.design import Design
 
 COLUMNS = tuple(field.name for field in fields(CutRow))
 
@@ -37,25 +29,9 @@ def run_cut(design: Design, lines: Sequence[str], elastics: Sequence[str], same:
 
     If ``same`` lines made of elastics reach what they reach without them.
     """
-    stages = build(design)
-    design = dressed(design, stages.model.lines, lines)
-    if same:
-        bare = build(reduce(lambda bare, name: bare.with_elastic(name, None), design.worn_elastics(), design))
-        made = made_of(design, elastics).worn_elastics()
-        design = as_worn(bare, run(bare).control_points, made)
-    else:
-        design = made_of(design, elastics)
-    if not design.lines:
-        raise LineError("No line is worn.", "Set one: --line mid-bust=75% --elastic 'mid-bust=plush 12'.")
-    solution = run(build(design, stages))
-    motion = solution.verdict.motion
-    if design.line_hold == "held" and motion == "diverging":
-        raise cannot_hold(design)
-    settled = motion == "settled" and solution.verdict.state != "folded"
-    warnings = shape_warnings(solution)
-    if motion != "settled":
-        warnings.append("The turns have not come to rest: lengths to cut may still change.")
-    return Cut(cut_list(solution.stages, solution.control_points), settled, warnings)
+    worn = run_worn(design, lines, elastics, same)
+    solution = worn.solution
+    return Cut(cut_list(solution.stages, solution.control_points), worn.settled, worn.warnings)
 
 
 def cut_text(found: Cut, kind: str, out: str | None) -> str:
@@ -88,19 +64,7 @@ def _as_json(found: Cut) -> str:
 
 
 def _as_csv(found: Cut) -> str:
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    writer.writerows([_cell(getattr(row, column)) for column in COLUMNS] for row in found.cuts.rows)
-    return text.getvalue().rstrip("\n")
-
-
-def _cell(value: object) -> object:
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, tuple):
-        return " ".join(value)
-    return f"{value:.6g}" if isinstance(value, float) else value
+    return csv_text(COLUMNS, found.cuts.rows)
 
 
 _FORMS = {"": _plain, "json": _as_json, "csv": _as_csv}

@@ -1,0 +1,50 @@
+"""A design with its lines as the command line asks for them, solved: what is cut, and what presses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import reduce
+
+from app.commands.settings import dressed, made_of
+from core.design import Design, cannot_hold
+from core.errors import LineError
+from core.pipeline import build
+from core.report import shape_warnings
+from core.sewing.as_worn import as_worn
+from core.solution import Solution, run
+
+
+@dataclass(frozen=True)
+class Worn:
+    """A solved design, whether the body came to rest, and what to look at."""
+
+    solution: Solution
+    settled: bool
+    warnings: list[str]
+
+
+def run_worn(design: Design, lines: Sequence[str], elastics: Sequence[str], same: bool = False) -> Worn:
+    """Solve a design with lines and elastics as requested. Raises UserError.
+
+    If ``same`` lines made of elastics reach what they reach without them.
+    """
+    stages = build(design)
+    design = dressed(design, stages.model.lines, lines)
+    if same:
+        bare = build(reduce(lambda bare, name: bare.with_elastic(name, None), design.worn_elastics(), design))
+        made = made_of(design, elastics).worn_elastics()
+        design = as_worn(bare, run(bare).control_points, made)
+    else:
+        design = made_of(design, elastics)
+    if not design.lines:
+        raise LineError("No line is worn.", "Set one: --line mid-bust=75% --elastic 'mid-bust=plush 12'.")
+    solution = run(build(design, stages))
+    motion = solution.verdict.motion
+    if design.line_hold == "held" and motion == "diverging":
+        raise cannot_hold(design)
+    settled = motion == "settled" and solution.verdict.state != "folded"
+    warnings = shape_warnings(solution)
+    if motion != "settled":
+        warnings.append("The turns have not come to rest: these figures may still change.")
+    return Worn(solution, settled, warnings)
