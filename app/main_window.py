@@ -30,12 +30,14 @@ from app.keeping.variant_desk import VariantDesk
 from app.keeping.variant_figures import VariantFigures
 from app.layout import Layout
 from app.lining.band_pull import BandPull
+from app.lining.garment_desk import GarmentDesk
 from app.lining.limits_desk import LimitsDesk
 from app.lining.line_drawing import LineDrawing
 from app.lining.line_maker import LineMaker
 from app.lining.line_routing import LineRouting
 from app.lining.lines_desk import LinesDesk
 from app.lining.preset_desk import PresetDesk
+from app.panels.garment import GarmentPanel
 from app.panels.history import HistoryPanel
 from app.panels.inspector import Inspector
 from app.panels.landmarks import LandmarksPanel
@@ -75,7 +77,7 @@ class MainWindow(QMainWindow):
         self.top = TopBar(do.bar, do.undo, do.redo, do.export)
         self.rail, self.notices, self.strip, self.status = Rail(), NoticeBar(), Strip(), StatusBar()
         self.scan, self.landmarks = ScanPanel(), LandmarksPanel()
-        self.lines, self.result = LinesPanel(), ResultPanel()
+        self.lines, self.result, self.garment = LinesPanel(), ResultPanel(), GarmentPanel()
         self.model, self.door = ModelPanel(), ModelDoor()
         self.history, self.variants, self.inspector = HistoryPanel(), VariantsPanel(), Inspector()
         self._fill_inspector()
@@ -94,6 +96,7 @@ class MainWindow(QMainWindow):
         self.lines_desk, self.line_maker = LinesDesk(self), LineMaker(self)
         self.line_drawing, self.line_routing = LineDrawing(self), LineRouting(self)
         self.preset_desk, self.band_pull = PresetDesk(self), BandPull(self)
+        self.garment_desk = GarmentDesk(self, self.garment)
         self.help = HelpDesk(self)
         self.preferences = PreferencesDesk(self)
         self.rescuer = Rescue(self)
@@ -113,6 +116,7 @@ class MainWindow(QMainWindow):
         self.inspector.add("landmarks", self.landmarks)
         self.inspector.add("lines", lines, tr("Lines"))
         self.inspector.add("result", self.result, tr("Measures"))
+        self.inspector.add("garment", self.garment, tr("Garment"))
         self.inspector.add("variants", self.variants, tr("Variants"))
         self.inspector.add("history", self.history, tr("History"))
         self.inspector.add("model", self.model)

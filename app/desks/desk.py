@@ -166,6 +166,7 @@ class Desk(QObject):
     def select_line(self, name: str) -> None:
         """Select a line in the list and on the body."""
         self._window.lines.select(name)
+        self._window.garment.select(name)
         self._window.view.select_line(name)
 
     def select_landmark(self, name: str) -> None:

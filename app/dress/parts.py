@@ -170,7 +170,7 @@ class Segment(QFrame):
         each.setCheckable(True)
         each.setAutoExclusive(True)  # heard as one of several choices; the group sees to the rest
         each.setFont(font("title" if small else "name"))
-        room = each.fontMetrics().horizontalAdvance(title) + (20 if small or self._wide else 24)
+        room = each.fontMetrics().horizontalAdvance(title) + (6 if self._wide else 20 if small else 24)
         each.setFixedHeight(24)
         each.setMinimumWidth(room)
         if self._wide:

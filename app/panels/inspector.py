@@ -25,7 +25,7 @@ class Inspector(QWidget):
         self.tabs.chosen.connect(self.open)
         self._head = QWidget()
         row = QHBoxLayout(self._head)
-        row.setContentsMargins(12, 10, 12, 0)
+        row.setContentsMargins(8, 10, 8, 0)
         row.addWidget(self.tabs)
         self._stack = QStackedWidget()
         column = QVBoxLayout(self)

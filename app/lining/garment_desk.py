@@ -1,0 +1,58 @@
+"""The desk of the garment: the cut list of a body that rests, shown, copied, written to a file."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+
+from app.keeping.tables import copy_table, save_table
+from app.panels.garment import GarmentPanel
+from app.presenting.garment import as_table, garment_view
+from app.presenting.verdict import doubt_of
+from app.wording.words import tr
+from core.cutting import cut_list
+from core.live import Frame
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+
+
+class GarmentDesk(QObject):
+    """Fills the cut list where it is seen, once a run rests: while the body moves there is nothing to cut."""
+
+    def __init__(self, window: MainWindow, panel: GarmentPanel) -> None:
+        super().__init__(window)
+        self._window, self._panel = window, panel
+        self._frame: Frame | None = None
+        self._shown: Frame | None = None
+        panel.opened.connect(self.refresh)
+        panel.selected.connect(window.desk.select_line)
+        panel.lines_asked.connect(lambda: window.inspector.open("lines"))
+        panel.copy_asked.connect(lambda: copy_table(window, self._as_table()))
+        panel.table_asked.connect(
+            lambda: save_table(window, self._as_table(), tr("Save the cut list"), "cut-list")
+        )
+
+    def follow(self, frame: Frame) -> None:
+        """Show the pieces of a frame, or that those shown are of a former one."""
+        self._frame = frame
+        if self._panel.isVisible():
+            self.refresh()
+
+    def refresh(self) -> None:
+        """Bring the list up to date."""
+        frame = self._frame
+        if frame is None or frame is self._shown:
+            return
+        if not self._window.is_settled():
+            self._panel.set_stale()
+            return
+        self._shown = frame
+        self._panel.set_view(
+            garment_view(frame, cut_list(frame.stages, frame.control_points)), doubt_of(frame)
+        )
+
+    def _as_table(self) -> list[list[str]]:
+        frame = self._frame
+        return [] if frame is None else as_table(frame, cut_list(frame.stages, frame.control_points))

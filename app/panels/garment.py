@@ -1,0 +1,178 @@
+"""The garment: what to cut for each worn line, of which elastic, how far stretched, with what tension."""
+
+# ruff: noqa: N802 - Qt names its events and says what they are
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QShowEvent
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
+
+from app.dress.parts import EmptyState, sentence
+from app.dress.press_row import press_row
+from app.dress.theme import label, set_tag
+from app.panels.garment_row import CUT, NEWTONS, PRESSURE, GarmentRow
+from app.panels.garment_view import GarmentView, PressureView
+from app.wording.words import tr
+
+
+class GarmentPanel(QWidget):
+    """The cut list; ``cards`` takes what stands below its rows.
+
+    ``opened`` when it comes to be seen, and what it shows has to be new. ``selected`` names a line,
+    ``elastic_asked`` one and the widget under which its elastic is chosen. ``copy_asked`` and
+    ``table_asked`` are for the list as text, ``library_asked`` for the elastics there are.
+    """
+
+    opened = Signal()
+    selected = Signal(str)
+    elastic_asked = Signal(str, QWidget)
+    lines_asked = Signal()
+    copy_asked = Signal()
+    table_asked = Signal()
+    library_asked = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.view: GarmentView | None = None
+        self.stale = False
+        self.rows: dict[str, GarmentRow] = {}
+        self._selected = ""
+        self._pressures: Mapping[str, PressureView] = {}
+        self.cards = QVBoxLayout()
+        self._empty = EmptyState(
+            "lines",
+            tr("No line is worn"),
+            tr("A line that is set shorter pulls: then it can be cut."),
+            tr("Set lines"),
+        )
+        self._empty.asked.connect(self.lines_asked)
+        self._doubt, self._notes = sentence("", "secondary"), sentence("", "caption")
+        set_tag(self._doubt, "tone", "warn")
+        column = QVBoxLayout(self)
+        column.setContentsMargins(10, 8, 10, 12)
+        column.setSpacing(4)
+        self._head = self._make_head()
+        self._area = self._make_area()
+        for each in (self._empty, self._doubt, self._head):
+            column.addWidget(each)
+        column.addWidget(self._area, 1)
+        column.addWidget(self._make_buttons())
+        column.addStretch(0)
+        self.set_view(GarmentView(()))
+
+    def set_view(self, view: GarmentView, doubt: str = "") -> None:
+        """Show these pieces; ``doubt`` says why their figures are no result."""
+        self.view, self.stale = view, False
+        self._doubt.setText(doubt)
+        self._doubt.setVisible(bool(doubt))
+        self._notes.setText("\n".join(view.notes))
+        self._notes.setVisible(bool(view.notes))
+        self._empty.setVisible(not view.rows)
+        for each in (self._head, self._area):
+            each.setVisible(bool(view.rows))
+        if [row.line for row in view.rows] != list(self.rows):
+            self._rebuild()
+        self._show()
+
+    def set_stale(self) -> None:
+        """Fade the figures: the body is another one meanwhile."""
+        if not self.stale:
+            self.stale = True
+            self._show()
+
+    def set_pressures(self, pressures: Mapping[str, PressureView]) -> None:
+        """Show what lines press with, by line."""
+        self._pressures = dict(pressures)
+        self._show_pressures()
+
+    def select(self, line: str) -> None:
+        """Mark the row of a line."""
+        self._selected = line
+        for name, row in self.rows.items():
+            row.set_selected(name == line)
+
+    def showEvent(self, event: QShowEvent) -> None:
+        """Ask for the pieces of now."""
+        super().showEvent(event)
+        self.opened.emit()
+
+    def _show(self) -> None:
+        for view in self.view.rows if self.view is not None else ():
+            self.rows[view.line].show_view(view, self.stale)
+        self._show_pressures()
+
+    def _show_pressures(self) -> None:
+        for name, row in self.rows.items():
+            row.pressure.show_pressure(self._pressures.get(name, PressureView("", "", "", "")))
+
+    def _rebuild(self) -> None:
+        """Make the rows anew; those of lines that stay are kept, one of them may have the keyboard."""
+        assert self.view is not None
+        former, self.rows = self.rows, {}
+        for place, view in enumerate(self.view.rows):
+            row = former.pop(view.line, None) or self._make_row(view.line)
+            self.rows[view.line] = row
+            self._list.insertWidget(place, row)
+        for row in former.values():
+            self._list.removeWidget(row)
+            row.hide()
+            row.deleteLater()
+        self.select(self._selected)
+
+    def _make_row(self, name: str) -> GarmentRow:
+        row = GarmentRow()
+        row.pressed.connect(lambda: self.selected.emit(name))
+        row.elastic_asked.connect(lambda under: self.elastic_asked.emit(name, under))
+        return row
+
+    def _make_head(self) -> QWidget:
+        """Make the heading with the units, which stand nowhere else."""
+        head = QWidget()
+        row = QHBoxLayout(head)
+        row.setContentsMargins(8, 4, 4, 0)
+        row.setSpacing(0)
+        row.addWidget(label(tr("Cut list"), "heading"), 1)
+        right = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignBottom
+        for title, room in ((tr("cut mm"), CUT), ("N", NEWTONS), ("kPa", PRESSURE)):
+            each = label(title, "caption")
+            each.setFixedWidth(room)
+            each.setAlignment(right)
+            row.addWidget(each)
+        return head
+
+    def _make_area(self) -> QScrollArea:
+        inside = QWidget()
+        inside.setProperty("scrolled", "true")
+        column = QVBoxLayout(inside)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(8)
+        self._list = QVBoxLayout()
+        self._list.setSpacing(2)
+        self._notes.setContentsMargins(8, 0, 4, 4)
+        column.addLayout(self._list)
+        column.addLayout(self.cards)
+        column.addWidget(self._notes)
+        column.addStretch(1)
+        area = QScrollArea()
+        area.setAccessibleName(tr("Cut list"))
+        area.setWidgetResizable(True)
+        area.setFrameShape(QFrame.Shape.NoFrame)
+        area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        area.setWidget(inside)
+        return area
+
+    def _make_buttons(self) -> QWidget:
+        return press_row(
+            (
+                (
+                    tr("Copy"),
+                    tr("Copy the cut list, to paste into a spreadsheet or a letter"),
+                    self.copy_asked,
+                ),
+                (tr("CSV…"), tr("Write the cut list to a file (CSV)"), self.table_asked),
+                (tr("Elastics…"), tr("See, bring in and hand on elastics"), self.library_asked),
+            ),
+            top=4,
+        )

@@ -1,0 +1,188 @@
+"""One piece to cut in the list: colour, name, what it is made of, figures, and how hard it presses."""
+
+# ruff: noqa: N802 - Qt names its events and says what they are
+from __future__ import annotations
+
+from PySide6.QtCore import QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent
+from PySide6.QtWidgets import QFrame, QGridLayout, QPushButton, QSizePolicy, QWidget
+
+from app.dress.icons import paint_icon
+from app.dress.parts import ElidedLabel, sentence
+from app.dress.theme import font, label, set_tag, set_tip, tokens_of
+from app.panels.garment_view import CutView, PressureView
+from app.panels.line_parts import LineChip
+from app.wording.words import tr
+
+CHIP, CUT, NEWTONS, PRESSURE = 20, 54, 42, 60
+"""Room of the columns [px]; the name has the rest."""
+
+NOTHING = "\N{EN DASH}"
+
+_RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
+
+
+class ElasticPull(QPushButton):
+    """A word that opens the choice of elastics; what does not fit ends in dots."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setFont(font("secondary"))
+        self.setProperty("kind", "word")
+        self.setCursor(Qt.CursorShape.PointingHandCursor)
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self.setFixedHeight(24)
+        self._elastic = ""
+
+    def show_elastic(self, line: str, elastic: str) -> None:
+        """Show what a line is made of, or that it can be chosen."""
+        self._elastic = elastic or tr("Choose an elastic…")
+        set_tip(self, elastic or tr("What this line is made of: its length to cut follows"))
+        self.setAccessibleName(tr("{line}: elastic, {elastic}").format(line=line, elastic=self._elastic))
+        self.update()
+
+    def sizeHint(self) -> QSize:
+        """Ask for as much as the words take."""
+        return QSize(self.fontMetrics().horizontalAdvance(self._elastic) + 26, 24)
+
+    @property
+    def words(self) -> str:
+        """What stands on it."""
+        return self._elastic
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Paint ground and ring as every button, and the words with their caret."""
+        super().paintEvent(event)
+        tokens, painter = tokens_of(self), QPainter(self)
+        painter.setFont(self.font())
+        painter.setPen(QColor(tokens.text_quiet if self.isEnabled() else tokens.text_caption))
+        words = self.fontMetrics().elidedText(self._elastic, Qt.TextElideMode.ElideRight, self.width() - 24)
+        painter.drawText(QRectF(5, 0, self.width() - 22, self.height()), Qt.AlignmentFlag.AlignVCenter, words)
+        end = 5 + self.fontMetrics().horizontalAdvance(words) + 4
+        paint_icon(painter, "caret-down", tokens.text_caption, QRectF(end, self.height() / 2 - 5, 10, 10))
+
+
+class PressureMark(QWidget):
+    """How hard a line presses: kPa, and under it a light with its word."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.view = PressureView("", "", "", "")
+        self.setFixedSize(PRESSURE, 42)
+
+    def show_pressure(self, view: PressureView) -> None:
+        """Show what a line presses with."""
+        if view != self.view:
+            self.view = view
+            self.setToolTip(view.tip)
+            self.setAccessibleName(f"{view.kpa} kPa {view.word}" if view.kpa else "")
+            self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Paint figure, light and word, at the right."""
+        tokens, painter, view = tokens_of(self), QPainter(self), self.view
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setFont(font("body", tabular=True))
+        painter.setPen(QColor(tokens.text if view.kpa else tokens.text_caption))
+        painter.drawText(QRectF(0, 0, PRESSURE, 20), _RIGHT, view.kpa or NOTHING)
+        if not view.light:
+            return
+        tone = {"green": "ok", "amber": "warn", "red": "bad"}[view.light]
+        painter.setFont(font("caption"))
+        painter.setPen(QColor(getattr(tokens, tone)))
+        word = painter.fontMetrics().elidedText(view.word, Qt.TextElideMode.ElideRight, PRESSURE - 12)
+        painter.drawText(QRectF(0, 21, PRESSURE, 18), _RIGHT, word)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(getattr(tokens, tone)))
+        painter.drawEllipse(QRectF(PRESSURE - painter.fontMetrics().horizontalAdvance(word) - 12, 26, 8, 8))
+
+
+class GarmentRow(QFrame):
+    """The row of one line; ``pressed`` by a click, ``elastic_asked`` at its choice of elastics."""
+
+    pressed = Signal()
+    elastic_asked = Signal(QWidget)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.view: CutView | None = None
+        self._selected = False
+        self._chip, self.title = LineChip(), ElidedLabel()
+        self.title.setFont(font("name"))
+        self.title.setProperty("role", "name")
+        self.title.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self.cut = label("", "heading", tabular=True)
+        self.tension, self.stretch = label("", "body", tabular=True), label("", "caption", tabular=True)
+        self.elastic, self.pressure = ElasticPull(), PressureMark()
+        self.elastic.clicked.connect(lambda: self.elastic_asked.emit(self.elastic))
+        self.notes = sentence("", "caption")
+        self._build()
+
+    def show_view(self, view: CutView, stale: bool) -> None:
+        """Show a piece; ``stale`` figures are those of a former shape."""
+        self.view = view
+        self._chip.show_line(view.color, view.width_mm, True)
+        self.title.setText(view.title)
+        set_tip(self.title, view.title)
+        self.cut.setText(view.cut or NOTHING)
+        self.tension.setText(view.tension or NOTHING)
+        self.stretch.setText(view.stretch)
+        for each in (self.cut, self.tension, self.stretch):
+            set_tag(each, "tone", "faint" if stale else "")
+        self.elastic.show_elastic(view.title, view.elastic)
+        self.notes.setText("\n".join(view.notes))
+        self.notes.setVisible(bool(view.notes))
+        self.setAccessibleName(spoken(view))
+
+    def set_selected(self, selected: bool) -> None:
+        """Mark the row of the line that is selected on the body."""
+        if selected != self._selected:
+            self._selected = selected
+            self.update()
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        """Select the line."""
+        self.pressed.emit()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Paint the selected row as a card with the line's colour at its edge."""
+        if not self._selected or self.view is None:
+            return
+        tokens, painter = tokens_of(self), QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(QColor(tokens.outline))
+        painter.setBrush(QColor(tokens.raised))
+        painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 8, 8)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(self.view.color))
+        painter.drawRoundedRect(QRectF(0, 10, 3, self.height() - 20), 1.5, 1.5)
+
+    def _build(self) -> None:
+        grid = QGridLayout(self)
+        grid.setContentsMargins(8, 6, 4, 6)
+        grid.setHorizontalSpacing(0)
+        grid.setVerticalSpacing(0)
+        for column, room in enumerate((CHIP, 0, CUT, NEWTONS)):
+            grid.setColumnMinimumWidth(column, room)
+        grid.setColumnStretch(1, 1)
+        grid.addWidget(self._chip, 0, 0)
+        grid.addWidget(self.title, 0, 1)
+        for column, each in enumerate((self.cut, self.tension), start=2):
+            grid.addWidget(each, 0, column, _RIGHT)
+        grid.addWidget(self.elastic, 1, 1, 1, 2)
+        grid.addWidget(self.stretch, 1, 3, _RIGHT)
+        grid.addWidget(self.pressure, 0, 4, 2, 1)
+        grid.addWidget(self.notes, 2, 1, 1, 4)
+        self.notes.setContentsMargins(5, 2, 0, 2)
+
+
+def spoken(view: CutView) -> str:
+    """Return a piece for ears."""
+    figures = (
+        (view.cut, tr("cut {value} mm")),
+        (view.stretch, tr("stretched by {value}")),
+        (view.tension, "{value} N"),
+    )
+    told = [words.format(value=value) for value, words in figures if value]
+    return f"{view.title}: {', '.join([*told, *view.notes])}".rstrip(": ")

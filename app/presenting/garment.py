@@ -1,0 +1,77 @@
+"""What the window says of the cut list: pieces, notes, and the list as plain cells."""
+
+from __future__ import annotations
+
+from app.panels.garment_view import CutView, GarmentView
+from app.presenting.lines import band_width, line_colours, line_title, titled
+from app.wording.words import number, say, tr
+from core.cutting import CutList, CutRow
+from core.design import Design
+from core.live import Frame
+
+
+def garment_view(frame: Frame, cuts: CutList) -> GarmentView:
+    """Return the pieces of a frame in the order of the list of lines."""
+    design = frame.stages.design
+    colours = line_colours((line.name for line in frame.stages.model.lines), design)
+    rows = sorted(cuts.rows, key=lambda row: list(colours).index(row.line))
+    return GarmentView(
+        tuple(_view(row, design, colours[row.line]) for row in rows),
+        tuple(told(note, design) for note in cuts.notes) if rows else (),
+        design.tissue_stiffness,
+    )
+
+
+def told(sentence: str, design: Design) -> str:
+    """Return what the core says of lines and elastics in the words of the window."""
+    for name in sorted((each.name for each in design.elastics), key=len, reverse=True):
+        sentence = sentence.replace(name, say(name))
+    return say(titled(sentence, design))
+
+
+def as_table(frame: Frame, cuts: CutList) -> list[list[str]]:
+    """Return the cut list as plain cells, with a heading."""
+    heading = [
+        tr("Line"),
+        tr("Elastic"),
+        tr("Width mm"),
+        tr("Cut mm"),
+        tr("Stretch %"),
+        tr("Tension N"),
+        tr("Front on the body mm"),
+        tr("Whole on the body mm"),
+        tr("Allowance mm"),
+        tr("Note"),
+    ]
+    design = frame.stages.design
+    return [heading, *(_cells(row, design) for row in cuts.rows)]
+
+
+def _view(row: CutRow, design: Design, color: str) -> CutView:
+    return CutView(
+        row.line,
+        line_title(row.line, design),
+        color,
+        band_width(row.line, design),
+        say(row.elastic),
+        "" if row.cut_mm is None else number(row.cut_mm, 0),
+        "" if row.elongation is None else f"{number(100.0 * row.elongation, 0, signed=True)} %",
+        "" if row.tension_n is None else number(row.tension_n, 1),
+        tuple(told(note, design) for note in row.notes if row.elastic),
+    )
+
+
+def _cells(row: CutRow, design: Design) -> list[str]:
+    stretch = None if row.elongation is None else 100.0 * row.elongation
+    figures = (
+        row.width_mm,
+        row.cut_mm,
+        stretch,
+        row.tension_n,
+        row.reached_front_mm,
+        row.reached_whole_mm,
+        row.allowance_mm,
+    )
+    written = ["" if each is None else f"{each:.1f}" for each in figures]
+    notes = " ".join(told(note, design) for note in row.notes)
+    return [line_title(row.line, design), say(row.elastic), *written, notes]
