@@ -14,7 +14,7 @@ from core.elastics import find_elastic
 from core.errors import LineError
 from core.exact import solve_exact
 from core.pipeline import build, targets_of
-from core.sewing.as_worn import as_worn
+from core.sewing.as_worn import as_worn, made_as_worn
 from core.sewing.tensions import line_tensions
 
 STRAP, BAND = find_elastic("strap 15"), find_elastic("plush 12")
@@ -88,3 +88,16 @@ def test_the_command_cuts_for_the_shape_that_is_there(mannequin, capsys):
     assert bare["cut_mm"] is None
     assert row["reached_front_mm"] == pytest.approx(bare["reached_front_mm"], rel=1e-4)
     assert row["cut_mm"] < 0.8 * row["reached_whole_mm"]
+
+
+@pytest.mark.parametrize("contact", ["glued", "sliding"])
+def test_a_line_of_elastic_becomes_one_of_the_model_again(built, contact):
+    lines = [("full-bust", 0.985), ("mid-bust", 0.97)]
+    stages = worn_at(built("mannequin"), lines, line_contact=contact)
+    elastics = {"mid-bust": STRAP, "full-bust": BAND}
+    made = build(made_as_worn(stages, elastics), stages)
+    bare = made_as_worn(made, dict.fromkeys(elastics))
+    assert bare.worn_elastics() == {}
+    assert bare.elastics == ()
+    for name, ratio in lines:
+        assert bare.ratio(name) == pytest.approx(ratio, abs=2e-4)

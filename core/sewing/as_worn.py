@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from core.design import Design
+from core.design import Design, no_balance
 from core.design_elastics import Elastic
 from core.errors import LineError
 from core.exact import solve_exact
@@ -15,6 +15,7 @@ from core.lines import RATIO_LIMITS, Line
 from core.mesh import Floats, Points
 from core.pipeline import Stages, build, targets_of
 from core.sewing.tensions import line_tensions
+from core.solving.newtons import newtons_per_unit
 
 PRECISION = 1e-5
 """By how much the lengths may differ that are reached before and after, in parts."""
@@ -25,11 +26,23 @@ _ROOM = 0.9  # the part of an elastic's curve in which it is tried first
 _LEAST, _MOST = 0.02, 2.0  # how a reached length is thought to follow the natural one, both in logarithms
 
 
-def as_worn(stages: Stages, control_points: Points, elastics: Mapping[str, Elastic]) -> Design:
+def made_as_worn(stages: Stages, elastics: Mapping[str, Elastic | None]) -> Design:
+    """Return what ``as_worn`` does for the lengths of the exact answer, whatever control is shown.
+
+    Raises LineError where an elastic cannot do it, or nothing balances.
+    """
+    balance = solve_exact(stages.model, targets_of(stages.design, stages).ratios)
+    if not balance.found:
+        raise no_balance()
+    return as_worn(stages, stages.model.tensegric.expand(balance.state.moved), elastics)
+
+
+def as_worn(stages: Stages, control_points: Points, elastics: Mapping[str, Elastic | None]) -> Design:
     """Return the design with worn lines made of ``elastics`` and cut so that they reach what they reach now.
 
-    ``control_points`` (n, 3) [mm] are those of the design as it stands. A line on points that do not move
-    keeps its ratio, and all of them where lengths are held. Raises LineError where an elastic cannot do it.
+    ``control_points`` (n, 3) [mm] are those of the design as it stands; None is no elastic, a line with the
+    stiffness of the model. A line on points that do not move keeps its ratio, and all of them where lengths
+    are held. Raises LineError where an elastic cannot do it.
     """
     design, lines = stages.design, {line.name: line for line in stages.model.lines}
     made = design
@@ -40,9 +53,7 @@ def as_worn(stages: Stages, control_points: Points, elastics: Mapping[str, Elast
         return made
     wanted = np.log([line.length(control_points) / line.rest_length for line in moving.values()])
     tensions = line_tensions(stages, control_points)
-    stretch = [
-        min(elastics[name].elongation(tensions[name].mean), _ROOM * elastics[name].reach) for name in moving
-    ]
+    stretch = [_stretch(stages, line, elastics[name], tensions[name].mean) for name, line in moving.items()]
     log_ratio = wanted - np.log1p(stretch)
     slope, before, step = np.full(len(moving), 0.2), wanted, np.zeros(len(moving))
     for _ in range(_ROUNDS):
@@ -60,6 +71,17 @@ def as_worn(stages: Stages, control_points: Points, elastics: Mapping[str, Elast
             "Let the lines be longer, or take stronger or wider elastics.",
         )
     return tried
+
+
+def _stretch(stages: Stages, line: Line, elastic: Elastic | None, tension: float) -> float:
+    """Return how far a line is stretched [1] by about the tension [N] that it has now."""
+    if elastic is not None:
+        return min(elastic.elongation(tension), _ROOM * elastic.reach)
+    design, model = stages.design, stages.model
+    own = design.traits_of(line.name).stiffness
+    per_mm = newtons_per_unit(model, design.tissue_stiffness) * model.tensegric.mean_stiffness
+    ea = per_mm * (design.line_stiffness if own is None else own) * float(line.rest_lengths.mean())
+    return max(tension, 0.0) / ea
 
 
 def _at(design: Design, ratios: Mapping[str, float]) -> Design:
