@@ -11,21 +11,39 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from core import __version__
 from core.design_lines import WornLine
 from core.design_text import to_json
 from core.export import write_control_points, write_mesh
 from core.lines import Line
+from core.mesh import Points
 from core.pipeline import Stages
 from core.project import whole_file
 from core.solution import Solution
 from core.solver import Record
 from core.solving.condition import Condition
+from core.verdict import Verdict
 
 _LIBRARIES = ("numpy", "scipy", "trimesh")
 _SETTINGS = ("template", "line_height", "weights", "scaled_normals", "dense_volume", "tissue_stiffness")
+
+
+class Shown(Protocol):
+    """A body as it is shown, a ``Frame`` or a ``Solution``: control points (n, 3) [mm], and how it stands."""
+
+    @property
+    def stages(self) -> Stages:
+        """What it was made of."""
+
+    @property
+    def control_points(self) -> Points:
+        """Where the control points are [mm]."""
+
+    @property
+    def verdict(self) -> Verdict:
+        """How the run stands."""
 
 
 def write_solution(solution: Solution, folder: Path) -> dict[str, Any]:
@@ -175,9 +193,9 @@ def notes(stages: Stages) -> list[str]:
     ]
 
 
-def shape_warnings(solution: Solution) -> list[str]:
+def shape_warnings(shown: Shown) -> list[str]:
     """Return in a sentence what is wrong with a folded or overstrained shape, and what to do then."""
-    condition, state = solution.verdict.condition, solution.verdict.state
+    condition, state = shown.verdict.condition, shown.verdict.state
     if condition is None or state not in ("folded", "overstrained"):
         return []
     if state == "folded":
@@ -185,7 +203,7 @@ def shape_warnings(solution: Solution) -> list[str]:
     else:
         low, high = 100.0 * condition.shortest, 100.0 * condition.longest
         what = f"edges of the control mesh have {low:.0f} to {high:.0f} % of their rest lengths"
-    line = blamed_line(solution.stages)
+    line = blamed_line(shown.stages)
     wish = f" Set {line.name} {'longer' if line.ratio < 1.0 else 'shorter'}." if line else ""
     return [f"The shape is {state}: {what}. It does not tell how a body would look.{wish}"]
 

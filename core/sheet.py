@@ -1,0 +1,279 @@
+"""The sheet to work from: everything of one fitting as plain data, for paper and for tables."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import numpy as np
+
+from core import __version__
+from core.cutting import CutList, cut_list
+from core.doubts import doubts
+from core.measures import Measures, before_after, measure_rows
+from core.measuring.definitions import DEFINITIONS
+from core.mesh import Floats, Points
+from core.pipeline import Stages
+from core.pressure import LEFT_OUT, LinePressure, mmhg, pressures
+from core.profile import Curve, Plane, Slicer
+from core.progress import Progress, quiet
+from core.report import Shown, shape_warnings, still_lines, warnings
+from core.sewing.comfort import comfort
+from core.sizes import sizes, sizes_text
+from core.solver import Marks, Record
+from core.tffd import deform
+
+AROUND = 12.0
+"""What a section shows beside the part that can move [mm]."""
+
+NOT_MODELLED = (
+    "Friction between garment and skin, gravity, breathing, posture and movement are not modelled.",
+    "Lines alone shape the body: cloth between them, seams, wires and hooks are not there.",
+)
+"""What no figure of a sheet takes into account."""
+
+
+@dataclass(frozen=True)
+class Heading:
+    """What stands over a sheet: whose it is, of what, and the ``date`` as year-month-day.
+
+    ``system`` is the key of the table whose size comes first, ``allowance_mm`` what a tape that is worn tight
+    takes off the under-bust.
+    """
+
+    project: str
+    date: str
+    customer: str = ""
+    variant: str = ""
+    system: str = "jp"
+    allowance_mm: float = 0.0
+
+
+@dataclass(frozen=True)
+class Lift:
+    """How far the bust points went from where they are at rest [mm]: up and forward, the mean of both too."""
+
+    left_up: float
+    right_up: float
+    left_forward: float
+    right_forward: float
+    up: float
+    forward: float
+
+
+@dataclass(frozen=True)
+class VolumeKept:
+    """The volume inside the reshaped part at rest [ml], and how far it is from that now [ml, %]."""
+
+    rest_ml: float
+    error_ml: float
+    error_percent: float
+
+
+@dataclass(frozen=True)
+class BandPressure:
+    """What the band of a line presses with; ``light`` is "green", "amber" or "red"."""
+
+    line: str
+    mean_kpa: float
+    largest_kpa: float
+    mean_mmhg: float
+    largest_mmhg: float
+    force_n: float
+    bridged_mm: float
+    light: str
+    notes: tuple[str, ...]
+
+
+Line2 = tuple[tuple[float, float], ...]
+"""A flat curve, place by place: across and up [mm], as ``core.profile.Plane`` has them."""
+
+
+@dataclass(frozen=True)
+class SectionCurves:
+    """A cut of the body across ``axis`` at ``at_mm``, before and after; ``box`` is the part that can move."""
+
+    name: str
+    axis: str
+    at_mm: float
+    box: tuple[tuple[float, float], tuple[float, float]]
+    before: tuple[Line2, ...]
+    after: tuple[Line2, ...]
+
+
+@dataclass(frozen=True)
+class Turns:
+    """What is plotted of a run, turn by turn: volume error and how far the bust points are up [mm]."""
+
+    control: str
+    turn: tuple[int, ...] = ()
+    error_percent: tuple[float, ...] = ()
+    up_mm: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """Everything of a report; sentences are those of the core, in English.
+
+    ``state`` is the word of the verdict ("strained" where skin strains though all has settled); ``lift`` is
+    None where the shape is none. ``measures`` are rows of ``core.measures.measure_rows``, ``sizes`` those of
+    ``core.sizes.sizes_text``, the chosen system first, or none and ``no_size`` says why.
+    """
+
+    heading: Heading
+    scan: str
+    state: str
+    settled: bool
+    lift: Lift | None
+    volume: VolumeKept
+    measures: tuple[dict[str, Any], ...]
+    sizes: tuple[dict[str, Any], ...]
+    no_size: str
+    cuts: CutList
+    pressures: tuple[BandPressure, ...]
+    limits: Mapping[str, Any]
+    sections: tuple[SectionCurves, ...]
+    turns: Turns
+    warnings: tuple[str, ...]
+    left_out: tuple[str, ...]
+    model: Mapping[str, Any]
+    versions: Mapping[str, str]
+    definitions: tuple[dict[str, Any], ...] = field(
+        default_factory=lambda: tuple(asdict(each) for each in DEFINITIONS.values())
+    )
+
+    def as_data(self) -> dict[str, Any]:
+        """Return the sheet ready for JSON."""
+        return {**asdict(self), "limits": dict(self.limits), "model": dict(self.model)}
+
+
+def sheet_of(shown: Shown, records: Sequence[Record], heading: Heading, progress: Progress = quiet) -> Sheet:
+    """Return the sheet of a body as it is ``shown``; ``records`` are those of its run. Raises Cancelled."""
+    stages, points, verdict = shown.stages, shown.control_points, shown.verdict
+    progress("measuring", 0.1)
+    before, after = before_after(stages, points)
+    found, why = _sizes(before, heading)
+    progress("pressing", 0.8)
+    strained = verdict.condition is not None and verdict.condition.strained
+    return Sheet(
+        heading=heading,
+        scan=stages.design.scan.name,
+        state="strained" if verdict.state == "settled" and strained else verdict.state,
+        settled=verdict.state == "settled",
+        lift=None if verdict.motion == "diverging" else _lift(stages.rest_marks, stages.watch(points)),
+        volume=_volume(shown),
+        measures=tuple(measure_rows(before, after)),
+        sizes=found,
+        no_size=why,
+        cuts=cut_list(stages, points),
+        pressures=tuple(_pressed(name, band) for name, band in pressures(stages, points).items()),
+        limits=_limits(),
+        sections=_sections(stages, points),
+        turns=_turns(stages, records),
+        warnings=_warnings(shown),
+        left_out=(*NOT_MODELLED, *LEFT_OUT),
+        model=_model(stages),
+        versions={"busk": __version__, "python": platform.python_version(), "numpy": np.__version__},
+    )
+
+
+def _sizes(before: Measures, heading: Heading) -> tuple[tuple[dict[str, Any], ...], str]:
+    """Return the sizes of the body at rest, the chosen system first, or none and why."""
+    underbust, bust = before["underbust_girth"], before["bust_girth"]
+    if underbust.value is None or bust.value is None:
+        return (), underbust.note or bust.note
+    answers = sizes(underbust.value, bust.value, heading.allowance_mm)
+    keys = sorted(answers, key=lambda key: key != heading.system)
+    return tuple(sizes_text(answers[key]) for key in keys), ""
+
+
+def _lift(rest: Marks, now: Marks) -> Lift:
+    up = now.nipple_left_z - rest.nipple_left_z, now.nipple_right_z - rest.nipple_right_z
+    forward = now.nipple_left_out - rest.nipple_left_out, now.nipple_right_out - rest.nipple_right_out
+    return Lift(*up, *forward, 0.5 * sum(up), 0.5 * sum(forward))
+
+
+def _volume(shown: Shown) -> VolumeKept:
+    """Return the volume that is kept: the body's own where the exact answer keeps that."""
+    stages, rest = shown.stages, shown.stages.model.volume.rest_volume
+    if stages.design.dense_volume and stages.design.volume == "exact":
+        change = float(stages.body_change(shown.control_points).sum())
+    elif shown.verdict.state == "vibrating":
+        change = shown.verdict.error * rest
+    else:
+        change = stages.model.volume.volume(shown.control_points) - rest
+    return VolumeKept(rest / 1000.0, change / 1000.0, 100.0 * change / rest)
+
+
+def _pressed(name: str, band: LinePressure) -> BandPressure:
+    return BandPressure(
+        line=name,
+        mean_kpa=band.mean,
+        largest_kpa=band.largest,
+        mean_mmhg=mmhg(band.mean),
+        largest_mmhg=mmhg(band.largest),
+        force_n=band.force,
+        bridged_mm=float(band.bridged_length),
+        light=band.light,
+        notes=band.notes,
+    )
+
+
+def _limits() -> dict[str, Any]:
+    limits = comfort()
+    return {
+        "amber_kpa": limits.amber_kpa,
+        "red_kpa": limits.red_kpa,
+        "lights": {name: words.told("en") for name, words in limits.lights.items()},
+        "sources": [{"name": each.name, "says": each.words.told("en")} for each in limits.sources],
+        "doubts": [each.told("en") for each in limits.doubts],
+    }
+
+
+def _sections(stages: Stages, control_points: Points) -> tuple[SectionCurves, ...]:
+    """Return the side through a bust point and the level of the bust."""
+    control, marks = stages.control, stages.landmarks.points
+    laid = control.mesh.vertices[list(control.bust_points)]  # a side without a breast has these
+    both = [marks[name].position for name in ("bust_point_left", "bust_point_right") if name in marks]
+    left, level = (both[0], np.mean(both, axis=0)) if both else (laid[0], laid.mean(axis=0))
+    rest, places = stages.body.mesh, deform(stages.binding, control_points)
+    free = control.mesh.vertices[~control.fixed]
+    found = []
+    for name, plane in (("side", Plane("x", float(left[0]))), ("bust", Plane("z", float(level[2])))):
+        slicer, flat = Slicer(rest, plane), plane.flat(free)
+        box = _pair(flat.min(axis=0) - AROUND), _pair(flat.max(axis=0) + AROUND)
+        curves = (tuple(map(_line, slicer.curves(each))) for each in (rest.vertices, places))
+        found.append(SectionCurves(name, plane.axis, plane.at, box, *curves))
+    return tuple(found)
+
+
+def _line(curve: Curve) -> Line2:
+    return tuple(_pair(place) for place in curve.places)
+
+
+def _pair(place: Floats) -> tuple[float, float]:
+    return round(float(place[0]), 2), round(float(place[1]), 2)
+
+
+def _turns(stages: Stages, records: Sequence[Record]) -> Turns:
+    rest = stages.rest_marks
+    rows = [(row, row.marks) for row in records if row.marks is not None]
+    return Turns(
+        stages.design.volume,
+        tuple(row.turn for row, _ in rows),
+        tuple(100.0 * row.error for row, _ in rows),
+        tuple(_lift(rest, marks).up for _, marks in rows),
+    )
+
+
+def _warnings(shown: Shown) -> tuple[str, ...]:
+    stages = shown.stages
+    unclear = doubts(stages.body, stages.landmarks)
+    return *shape_warnings(shown), *unclear, *still_lines(stages), *warnings(stages)
+
+
+def _model(stages: Stages) -> dict[str, Any]:
+    names = "template", "volume", "line_contact", "line_hold", "member_law", "tissue_stiffness"
+    return {name: getattr(stages.design, name) for name in names}

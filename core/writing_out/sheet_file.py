@@ -1,0 +1,104 @@
+"""The sheet for other programs: all of it as JSON, its figures as one long table."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Iterator
+from typing import Any
+
+from core.sheet import Sheet
+
+COLUMNS = ("section", "key", "title", "unit", "before", "after", "difference", "plus_minus", "note")
+"""The columns of the table; what is told of the body as it is worn stands under *after*."""
+
+Row = dict[str, Any]
+
+
+def sheet_json(sheet: Sheet) -> str:
+    """Return everything of a sheet as JSON, curves and turns too; lengths in mm, sentences in English."""
+    return json.dumps(sheet.as_data(), indent=1, ensure_ascii=False)
+
+
+def sheet_csv(sheet: Sheet) -> str:
+    """Return the figures of a sheet as comma-separated values, one a row; curves and turns stay in JSON."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, COLUMNS, restval="", lineterminator="\n")
+    writer.writeheader()
+    writer.writerows({key: _cell(value) for key, value in row.items()} for row in sheet_rows(sheet))
+    return text.getvalue()
+
+
+def sheet_rows(sheet: Sheet) -> Iterator[Row]:
+    """Give the rows of the table by their columns; a column without anything may be left out."""
+    heading = sheet.heading
+    told = {"customer": heading.customer, "project": heading.project, "variant": heading.variant}
+    told |= {"date": heading.date, "scan": sheet.scan, "state": sheet.state, **sheet.versions}
+    for key, value in told.items():
+        yield {"section": "sheet", "key": key, "title": key.capitalize(), "after": value}
+    for each in sheet.sizes:
+        size = each["size"] or ""
+        yield {"section": "size", "key": each["key"], "title": each["title"], "before": size}
+    if sheet.no_size:
+        yield {"section": "size", "key": "none", "title": "No size", "note": sheet.no_size}
+    yield from _shape_rows(sheet)
+    for row in sheet.measures:
+        title = f"{row['title']}, {row['side']}" if row["side"] else row["title"]
+        known = {key: row[key] for key in ("key", "unit", "before", "after", "difference", "note")}
+        yield {"section": "measure", "title": title, **known, "plus_minus": row["plus_minus"] or None}
+    yield from _cut_rows(sheet)
+    yield from _pressure_rows(sheet)
+    for section, sentences in (("warning", sheet.warnings), ("left out", sheet.left_out)):
+        for number, sentence in enumerate(sentences, start=1):
+            yield {"section": section, "key": str(number), "note": sentence}
+
+
+def _shape_rows(sheet: Sheet) -> Iterator[Row]:
+    kept = sheet.volume
+    volume = {"before": kept.rest_ml, "after": kept.rest_ml + kept.error_ml, "difference": kept.error_ml}
+    yield {"section": "shape", "key": "volume", "title": "Volume of the model", "unit": "ml", **volume}
+    if sheet.lift is None:
+        return
+    for key, value in (("up", sheet.lift.up), ("forward", sheet.lift.forward)):
+        title = f"Bust points {key}"
+        yield {"section": "shape", "key": key, "title": title, "unit": "mm", "difference": value}
+
+
+def _cut_rows(sheet: Sheet) -> Iterator[Row]:
+    for row in sheet.cuts.rows:
+        about = " ".join(filter(None, (row.elastic, *row.notes)))
+        for key, unit, value in (
+            ("cut", "mm", row.cut_mm),
+            ("width", "mm", row.width_mm),
+            ("reached front", "mm", row.reached_front_mm),
+            ("reached whole", "mm", row.reached_whole_mm),
+            ("stretch", "%", None if row.elongation is None else 100.0 * row.elongation),
+            ("tension", "N", row.tension_n),
+        ):
+            title = f"{row.title}: {key}"
+            told = {"key": f"{row.line}: {key}", "title": title, "unit": unit, "after": value}
+            yield {"section": "cut", **told, "note": about}
+    for number, note in enumerate(sheet.cuts.notes, start=1):
+        yield {"section": "cut", "key": str(number), "note": note}
+
+
+def _pressure_rows(sheet: Sheet) -> Iterator[Row]:
+    titles = {row.line: row.title for row in sheet.cuts.rows}
+    for band in sheet.pressures:
+        note = " ".join((band.light, *band.notes))
+        for key, unit, value in (
+            ("largest pressure", "kPa", band.largest_kpa),
+            ("largest pressure", "mmHg", band.largest_mmhg),
+            ("mean pressure", "kPa", band.mean_kpa),
+            ("mean pressure", "mmHg", band.mean_mmhg),
+            ("force", "N", band.force_n),
+            ("bridged", "mm", band.bridged_mm),
+        ):
+            title = f"{titles.get(band.line, band.line)}: {key}"
+            told = {"key": f"{band.line}: {key} {unit}", "title": title, "unit": unit, "after": value}
+            yield {"section": "pressure", **told, "note": note}
+
+
+def _cell(value: Any) -> Any:
+    return "" if value is None else f"{value:.6g}" if isinstance(value, float) else value

@@ -1,0 +1,120 @@
+"""The sheet: the same figures as those who work them out, as plain data, JSON and one long table."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+
+from core.cutting import cut_list
+from core.elastics import find_elastic
+from core.measures import before_after, measure_rows
+from core.pipeline import Stages, build
+from core.pressure import mmhg, pressures
+from core.sheet import Heading, Sheet, sheet_of
+from core.solution import Solution, run
+from core.writing_out.sheet_file import COLUMNS, sheet_csv, sheet_json
+
+HEADING = Heading("Anna", "2026-11-22", "Customer 0412", system="uk", allowance_mm=5.0)
+Built = Callable[[str], Stages]
+
+
+@pytest.fixture(scope="module")
+def worn(built: Built) -> Solution:
+    stages = built("mannequin")
+    design = replace(stages.design, volume="exact").with_line("mid-bust", 0.7).with_line("full-bust", 0.98)
+    return run(build(design.with_elastic("mid-bust", find_elastic("plush 12")), stages))
+
+
+@pytest.fixture(scope="module")
+def sheet(worn: Solution) -> Sheet:
+    return sheet_of(worn, worn.records, HEADING)
+
+
+def test_the_sheet_holds_what_others_work_out(worn: Solution, sheet: Sheet) -> None:
+    points = worn.control_points
+    assert sheet.measures == tuple(measure_rows(*before_after(worn.stages, points)))
+    assert sheet.cuts == cut_list(worn.stages, points)
+    found = pressures(worn.stages, points)
+    assert [each.line for each in sheet.pressures] == list(found)
+    for each in sheet.pressures:
+        band = found[each.line]
+        assert (each.largest_kpa, each.force_n, each.light) == (band.largest, band.force, band.light)
+        assert each.mean_mmhg == mmhg(band.mean)
+
+
+def test_the_chosen_system_comes_first_and_the_allowance_counts(worn: Solution, sheet: Sheet) -> None:
+    assert [each["key"] for each in sheet.sizes][:3] == ["uk", "jp", "eu"]
+    assert len(sheet.sizes) == 7
+    assert sheet.sizes[0]["allowance_mm"] == 5.0
+    girth = next(row["before"] for row in sheet.measures if row["key"] == "underbust_girth")
+    assert sheet.sizes[0]["underbust_mm"] == girth
+
+
+def test_lift_and_volume_are_those_of_the_run(worn: Solution, sheet: Sheet) -> None:
+    rest, now = worn.stages.rest_marks, worn.last.marks
+    assert now is not None
+    assert sheet.lift is not None
+    assert sheet.lift.left_up == pytest.approx(now.nipple_left_z - rest.nipple_left_z)
+    assert sheet.lift.up == pytest.approx(0.5 * (sheet.lift.left_up + sheet.lift.right_up))
+    assert sheet.volume.error_ml == pytest.approx(worn.last.error_ml)
+    assert sheet.volume.error_percent == pytest.approx(100.0 * worn.last.error)
+    assert sheet.turns.up_mm[-1] == pytest.approx(sheet.lift.up)
+
+
+def test_the_sections_go_through_the_bust(worn: Solution, sheet: Sheet) -> None:
+    side, level = sheet.sections
+    left = worn.stages.landmarks.points["bust_point_left"].position
+    assert (side.name, side.axis, side.at_mm) == ("side", "x", left[0])
+    assert (level.name, level.axis) == ("bust", "z")
+    for each in sheet.sections:
+        assert len(each.before) >= 1
+        assert len(each.before) == len(each.after)
+        assert each.before != each.after, "the body was reshaped there"
+        (low, high), (across, up) = each.box, each.before[0][0]
+        assert low < high
+        assert isinstance(across, float)
+        assert isinstance(up, float)
+
+
+def test_a_body_at_rest_has_an_empty_cut_list(built: Built) -> None:
+    stages = built("mannequin")
+    bare = run(build(replace(stages.design, volume="exact", lines=()), stages))
+    sheet = sheet_of(bare, bare.records, HEADING)
+    assert sheet.cuts.rows == ()
+    assert sheet.pressures == ()
+    assert sheet.lift is not None
+    assert sheet.lift.up == pytest.approx(0.0, abs=1e-9)
+
+
+def test_json_is_the_whole_sheet(sheet: Sheet) -> None:
+    told = json.loads(sheet_json(sheet))
+    assert told["heading"]["customer"] == "Customer 0412"
+    assert told["measures"] == list(sheet.measures)
+    assert told["cuts"]["rows"][0]["cut_mm"] == sheet.cuts.rows[0].cut_mm
+    assert told["pressures"][0]["largest_kpa"] == sheet.pressures[0].largest_kpa
+    assert told["sections"][0]["after"][0][0] == list(sheet.sections[0].after[0][0])
+    assert len(told["definitions"]) > 20
+    assert told["limits"]["red_kpa"] == 4.0
+    assert set(told["versions"]) == {"busk", "python", "numpy"}
+
+
+def test_the_table_has_every_figure_once(sheet: Sheet) -> None:
+    rows = list(csv.DictReader(io.StringIO(sheet_csv(sheet))))
+    assert tuple(rows[0]) == COLUMNS
+    keys = [(row["section"], row["key"]) for row in rows]
+    assert len(set(keys)) == len(keys)
+    found = {(row["section"], row["key"]): row for row in rows}
+    measured = {row["key"]: row for row in sheet.measures}
+    assert float(found["measure", "bust_girth"]["after"]) == pytest.approx(
+        measured["bust_girth"]["after"], rel=1e-5
+    )
+    cut = next(row for row in sheet.cuts.rows if row.line == "mid-bust")
+    assert float(found["cut", "mid-bust: cut"]["after"]) == pytest.approx(cut.cut_mm, rel=1e-5)
+    assert found["cut", "full-bust: cut"]["after"] == "", "no elastic is chosen for it"
+    assert found["size", "uk"]["before"] == sheet.sizes[0]["size"]
+    assert found["sheet", "customer"]["after"] == "Customer 0412"
