@@ -41,20 +41,40 @@ def before_after(stages: Stages, control_points: Points) -> tuple[Measures, Meas
     The landmarks ride on the skin and the levels follow them; the lift of the apex is told after alone.
     Raises ValueError unless there are as many control points as the control mesh has.
     """
-    rest, before = _at_rest(stages.body.calm, stages.landmarks)
-    moves = deform(stages.binding, control_points) - stages.body.mesh.vertices
-    left, right = stages.body_change(control_points).tolist()
-    after = rest.moved(rest.mesh.vertices + calm_moves(stages.body, moves), (left, right))
+    mesh, landmarks, own = stages.body.calm, stages.landmarks, stages.design.own_measures
+    rest, before = _rest(mesh, landmarks), _at_rest(mesh, landmarks)
+    after = _reshaped(rest, stages, control_points)
     usual = dict(_usual(after))
     usual["apex_lift"] = _lift(after, rest)
-    own = stages.design.own_measures
     return _with_own(before, rest, own), _with_own(_ordered(usual), after, own)
 
 
+def own_before_after(stages: Stages, control_points: Points, own: OwnMeasure) -> tuple[Measure, Measure]:
+    """Return one measure of the designer's own at rest, and reshaped by ``control_points`` (n, 3) [mm].
+
+    It need not belong to the design yet. Raises ValueError as ``before_after`` does.
+    """
+    rest = _rest(stages.body.calm, stages.landmarks)
+    before, after = (
+        next(own_measures(subject, (own,))) for subject in (rest, _reshaped(rest, stages, control_points))
+    )
+    return before, after
+
+
 @lru_cache(maxsize=2)  # while a line is dragged, the body at rest is one and the same
-def _at_rest(mesh: Mesh, landmarks: Landmarks) -> tuple[Subject, Measures]:
-    rest = subject_of(mesh, landmarks)
-    return rest, _ordered(_usual(rest))
+def _rest(mesh: Mesh, landmarks: Landmarks) -> Subject:
+    return subject_of(mesh, landmarks)
+
+
+@lru_cache(maxsize=2)
+def _at_rest(mesh: Mesh, landmarks: Landmarks) -> Measures:
+    return _ordered(_usual(_rest(mesh, landmarks)))
+
+
+def _reshaped(rest: Subject, stages: Stages, control_points: Points) -> Subject:
+    moves = deform(stages.binding, control_points) - stages.body.mesh.vertices
+    left, right = stages.body_change(control_points).tolist()
+    return rest.moved(rest.mesh.vertices + calm_moves(stages.body, moves), (left, right))
 
 
 def calm_moves(body: Body, moves: Points) -> Points:

@@ -25,7 +25,7 @@ from PySide6.QtWidgets import (
 from app.dress.theme import apply_theme, tokens_of
 from app.panels.landmarks import LandmarksPanel, LandmarkView
 from app.panels.lines import LinesPanel, LineView
-from app.panels.measure_table import MeasureView
+from app.panels.measure_view import MeasureView
 from app.panels.model import ModelPanel
 from app.panels.notice import NoticeBar
 from app.panels.rail import Rail

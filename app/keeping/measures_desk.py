@@ -82,7 +82,10 @@ class MeasuresDesk(QObject):
 
     def _show_measured(self, found: object) -> None:
         self._rest, self._worn = cast(tuple[Measures, Measures], found)
-        self._panel.set_measured(measured_views(self._rest, self._worn))
+        frame = self._asked
+        assert frame is not None  # a job that was let go of does not come here
+        own, low = frame.stages.design.own_measures, float(frame.stages.body.mesh.vertices[:, 2].min())
+        self._panel.set_measured(measured_views(self._rest, self._worn, own, low))
         self._show_sizes()
         self._show_mark()
 

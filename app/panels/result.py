@@ -12,7 +12,8 @@ from PySide6.QtWidgets import QFrame, QScrollArea, QVBoxLayout, QWidget
 from app.dress.parts import EmptyState, sentence
 from app.dress.press_row import press_row
 from app.dress.theme import set_tag
-from app.panels.measure_table import MeasureTable, MeasureView
+from app.panels.measure_table import MeasureTable
+from app.panels.measure_view import MeasureView
 from app.panels.size_card import SizeCard
 from app.wording.words import tr
 

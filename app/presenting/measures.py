@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from app.panels.measure_table import MeasureView
+from app.panels.measure_view import MeasureView
 from app.presenting.lines import line_title
-from app.wording.words import say, tr
+from app.presenting.scan import landmark_title
+from app.wording.words import number, say, tr
+from core.design_measures import OwnMeasure
 from core.live import Frame
 from core.measures import Measures, measure_rows
 from core.measuring.definitions import definition_of
@@ -23,14 +25,20 @@ def measure_views(frame: Frame) -> list[MeasureView]:
     return [replace(row, group=group) for row in rows]
 
 
-def measured_views(before: Measures, after: Measures) -> list[MeasureView]:
-    """Return what was measured on the body at rest and reshaped, group by group."""
-    views = [_measured(row) for row in measure_rows(before, after)]
+def measured_views(
+    before: Measures, after: Measures, own: Sequence[OwnMeasure] = (), low: float = 0.0
+) -> list[MeasureView]:
+    """Return what was measured on the body at rest and reshaped, group by group.
+
+    ``own`` are the measures of the designer's own, ``low`` is where the lowest point of the scan lies [mm].
+    """
+    told = {f"{OWN}{each.name}": own_words(each, low) for each in own}
+    views = [_measured(row, told) for row in measure_rows(before, after)]
     groups = list(dict.fromkeys(view.group for view in views))
     return sorted(views, key=lambda view: groups.index(view.group))
 
 
-def _measured(row: dict[str, Any]) -> MeasureView:
+def _measured(row: dict[str, Any], told: Mapping[str, str]) -> MeasureView:
     own, key = row["key"].startswith(OWN), row["key"]
     sides = {"left": tr("{what}, left"), "right": tr("{what}, right")}
     title = row["title"] if own else say(row["title"])
@@ -44,8 +52,32 @@ def _measured(row: dict[str, Any]) -> MeasureView:
         note=say(row["note"]),
         plus_minus=row["plus_minus"],
         estimate=row["estimate"],
-        tip=say(row["definition"]),
+        tip=told.get(key, "") if own else say(row["definition"]),
+        iso=row["iso"],
+        sure=row["confidence"],
+        own=own,
     )
+
+
+def own_words(own: OwnMeasure, low: float) -> str:
+    """Return how a measure of the designer's own is taken; ``low`` is the lowest point of the scan [mm]."""
+    places = [landmark_title(name) for name in own.marks]
+    if own.kind != "girth":
+        ways = {
+            "straight": tr("Yours: straight from {start} to {end}."),
+            "skin": tr("Yours: the shortest way over the skin from {start} to {end}."),
+        }
+        return ways[own.kind].format(start=places[0], end=places[1])
+    if not places:
+        height = number(own.level - low, 0)
+        return tr("Yours: a tape, level, {mm} mm above the lowest point of the scan.").format(mm=height)
+    at, above, below = (
+        tr("Yours: a tape, level, at {place}."),
+        tr("Yours: a tape, level, {mm} mm above {place}."),
+        tr("Yours: a tape, level, {mm} mm below {place}."),
+    )
+    words = above if own.level > 0.0 else below if own.level < 0.0 else at
+    return words.format(place=places[0], mm=number(abs(own.level), 0))
 
 
 def as_table(views: Sequence[MeasureView]) -> list[list[str]]:

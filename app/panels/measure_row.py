@@ -1,0 +1,157 @@
+"""Where a row of the table of measures stands, and how it is painted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from PySide6.QtCore import QPoint, QRect, QRectF, Qt
+from PySide6.QtGui import QColor, QFontMetrics, QPainter
+
+from app.dress.theme import font
+from app.panels.measure_view import MeasureView
+from app.wording.tokens import Tokens
+
+ROW, NAME, FOOT, EDGE = 30, 20, 30, 4
+"""Heights of a row, of a name on a line of its own and of the buttons of an open row; the margin [px]."""
+
+CELLS, BAR = (48, 54, 48), 28
+"""Widths of the figures before, after and change, and of the bar [px]."""
+
+LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
+_WRAPPED = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap
+_GAP = 4  # over each paragraph of an open row
+
+
+@dataclass(frozen=True)
+class Spot:
+    """Where a row stands: ``wide`` if its name takes a line of its own, ``opened`` if it tells its details.
+
+    ``mixed`` if its unit is not that of the heading.
+    """
+
+    view: MeasureView
+    top: int
+    width: int
+    mixed: bool
+    opened: bool = False
+
+    @cached_property
+    def wide(self) -> bool:
+        """Whether the name does not fit beside the figures."""
+        advance = QFontMetrics(font("body")).horizontalAdvance(self.view.label)
+        if self.mixed:
+            advance += 10 + QFontMetrics(font("caption")).horizontalAdvance(self.view.unit)
+        return self.view.known and advance > name_width(self.width, alone=False)
+
+    @property
+    def figures(self) -> int:
+        """Where the line with the figures begins."""
+        return self.top + (NAME if self.wide else 0)
+
+    @cached_property
+    def texts(self) -> list[tuple[str, str, QRect]]:
+        """What stands under the figures: words, the kind of type, and where."""
+        told = [(self.view.caption, "caption")] if self.view.caption else []
+        told += [(each, "secondary") for each in self.view.details] if self.opened else []
+        result, top = [], self.figures + ROW - 4
+        for words, role in told:
+            room = QRect(EDGE, top, max(self.width - 2 * EDGE, 60), 1000)
+            high = QFontMetrics(font(role)).boundingRect(room, _WRAPPED, words).height()
+            result.append((words, role, QRect(room.left(), top, room.width(), high)))
+            top += high + (_GAP if self.opened else 0)
+        return result
+
+    @property
+    def foot(self) -> QRect:
+        """Where the buttons of an opened row of one's own stand."""
+        low = self.texts[-1][2].bottom() + _GAP if self.texts else self.figures + ROW
+        return QRect(EDGE, low, self.width - 2 * EDGE, FOOT if self.opened and self.view.own else 0)
+
+    @cached_property
+    def height(self) -> int:
+        """How high the row is [px]."""
+        high = self.figures + ROW - self.top
+        if self.texts:
+            high += sum(rect.height() for _, _, rect in self.texts)
+        if self.opened:
+            high += _GAP * (len(self.texts) + 1)
+        return high + self.foot.height()
+
+    def holds(self, place: QPoint) -> bool:
+        """Tell whether a place lies on the row."""
+        return self.top <= place.y() < self.top + self.height
+
+
+def name_width(width: int, alone: bool) -> int:
+    """Return the room for a name in a table so wide, ``alone`` on its line or beside the figures [px]."""
+    return width - 2 * EDGE - (0 if alone else sum(CELLS) + BAR + 8)
+
+
+def cells(width: int, top: float, height: float) -> list[QRectF]:
+    """Return the cells before, after, change and bar of a line of a table so wide."""
+    left = width - EDGE - BAR
+    result = [QRectF(left, top, BAR, height)]
+    left -= 6
+    for room in reversed(CELLS):
+        left -= room
+        result.append(QRectF(left, top, room, height))
+    return result[::-1]
+
+
+def paint_row(painter: QPainter, tokens: Tokens, spot: Spot, focused: bool) -> None:
+    """Paint a row; an opened one has a ground, and a rim if the keyboard is there."""
+    view, wide = spot.view, spot.wide
+    if spot.opened:
+        painter.setPen(QColor(tokens.accent) if focused else Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(tokens.selected))
+        painter.drawRoundedRect(QRectF(0.5, spot.top + 1.5, spot.width - 1, spot.height - 3), 5, 5)
+    name = QRectF(
+        EDGE,
+        spot.top + (3 if wide else 0),
+        name_width(spot.width, wide or not view.known),
+        NAME if wide else ROW,
+    )
+    painter.setFont(font("body"))
+    painter.setPen(QColor(tokens.text))
+    painter.drawText(name, LEFT, view.label)
+    if spot.mixed and view.known:
+        said = painter.fontMetrics().horizontalAdvance(view.label) + 6
+        painter.setFont(font("caption"))
+        painter.setPen(QColor(tokens.text_caption))
+        painter.drawText(name.adjusted(said, 1, 0, 1), LEFT, view.unit)
+    if view.known:
+        _paint_figures(painter, tokens, spot)
+    for words, role, room in spot.texts:
+        painter.setFont(font(role))
+        painter.setPen(QColor(tokens.text_caption if role == "caption" else tokens.text_quiet))
+        painter.drawText(room, _WRAPPED, words)
+
+
+def _paint_figures(painter: QPainter, tokens: Tokens, spot: Spot) -> None:
+    view, places = spot.view, cells(spot.width, spot.figures, ROW)
+    values = (
+        (view.before, "body", tokens.text_caption, False),
+        (view.after, "name", tokens.text, False),
+        (view.change, "body", tokens.text_quiet, True),
+    )
+    for cell, (value, role, color, signed) in zip(places, values, strict=False):
+        painter.setFont(font(role, tabular=True))
+        painter.setPen(QColor(color))
+        painter.drawText(cell, RIGHT, view.written(value, signed))
+    if view.change is not None:
+        _paint_bar(painter, tokens, places[-1], view.change / _full_bar(view.unit))
+
+
+def _paint_bar(painter: QPainter, tokens: Tokens, cell: QRectF, share: float) -> None:
+    middle = cell.center()
+    length = min(max(share, -1.0), 1.0) * BAR / 2
+    bar = QRectF(min(middle.x(), middle.x() + length), middle.y() - 3, abs(length), 6)
+    painter.fillRect(bar, QColor(tokens.more if share > 0 else tokens.less))
+    painter.fillRect(QRectF(middle.x() - 0.5, middle.y() - 7, 1, 14), QColor(tokens.control))
+
+
+def _full_bar(unit: str) -> float:
+    """Return the change that fills half a bar, in ``unit``."""
+    return {"ml": 100.0, "mm": 30.0}.get(unit, 10.0)

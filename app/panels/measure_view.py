@@ -1,0 +1,90 @@
+"""One measure before and after as a plain value, and how it is written."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.wording.words import number, tr
+
+
+@dataclass(frozen=True)
+class MeasureView:
+    """One measure before and after, in ``unit``; what is not known is None, and ``note`` may say why.
+
+    ``reference`` says from where it is counted, ``tip`` how it is taken, ``iso`` what the standard calls it.
+    An ``estimate`` may be off by ``plus_minus``; what it was taken from is ``sure`` to that share [1], if
+    that is known. ``key`` is that of a measure of the body, ``own`` if it is the designer's; ``group`` is
+    its heading.
+    """
+
+    label: str
+    unit: str
+    before: float | None
+    after: float | None
+    reference: str = ""
+    key: str = ""
+    group: str = ""
+    note: str = ""
+    plus_minus: float = 0.0
+    estimate: bool = False
+    tip: str = ""
+    iso: str = ""
+    sure: float | None = None
+    own: bool = False
+
+    @property
+    def change(self) -> float | None:
+        """By how much it grew, if that is known."""
+        return None if self.after is None or self.before is None else self.after - self.before
+
+    @property
+    def known(self) -> bool:
+        """Whether it was measured at all."""
+        return self.before is not None or self.after is not None
+
+    @property
+    def caption(self) -> str:
+        """What stands under it: from where it is counted, how sure it is, or why it is missing."""
+        if not self.known:
+            return self.note
+        if not self.estimate:
+            return self.reference
+        if not self.plus_minus:
+            return tr("an estimate")
+        off = number(self.plus_minus, digits_of(self.unit))
+        return tr("an estimate, ± {off} {unit}").format(off=off, unit=self.unit)
+
+    @property
+    def details(self) -> tuple[str, ...]:
+        """What is told where there is room: how it is taken, its name in the standard, how sure it is."""
+        if not self.key:
+            return ()
+        named = tr("ISO 8559-1: {name}").format(name=self.iso) if self.iso else tr("Not in ISO 8559-1")
+        sure = tr("What it is taken from is sure to {percent} %")
+        said = (
+            self.tip,
+            "" if self.own else named,
+            "" if self.sure is None or not self.known else sure.format(percent=number(100 * self.sure, 0)),
+            "" if self.note == self.caption else self.note,
+        )
+        return tuple(each for each in said if each)
+
+    def written(self, value: float | None, signed: bool = False) -> str:
+        """Return a value as it stands in the table."""
+        return "" if value is None else number(value, digits_of(self.unit), signed)
+
+    def told(self) -> str:
+        """Return all that is told of it under the pointer."""
+        return "\n".join((self.label, *self.details))
+
+    def spoken(self) -> str:
+        """Return it as it is read out."""
+        values = [
+            f"{self.written(each)} {self.unit}" for each in (self.before, self.after) if each is not None
+        ]
+        return f"{self.label}: {' → '.join(values)} {self.caption}".rstrip()
+
+
+def digits_of(unit: str) -> int:
+    """Return how many decimals are written in a unit."""
+    return 0 if unit == "ml" else 1
