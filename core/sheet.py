@@ -16,11 +16,11 @@ from core.measures import Measures, before_after, measure_rows
 from core.measuring.definitions import DEFINITIONS
 from core.mesh import Floats, Points
 from core.pipeline import Stages
-from core.pressure import LEFT_OUT, LinePressure, mmhg, pressures
+from core.press_list import PressRow, press_list
+from core.pressure import LEFT_OUT
 from core.profile import Curve, Plane, Slicer
 from core.progress import Progress, quiet
 from core.report import Shown, shape_warnings, still_lines, warnings
-from core.sewing.comfort import comfort
 from core.sizes import sizes, sizes_text
 from core.solver import Marks, Record
 from core.tffd import deform
@@ -72,21 +72,6 @@ class VolumeKept:
     error_percent: float
 
 
-@dataclass(frozen=True)
-class BandPressure:
-    """What the band of a line presses with; ``light`` is "green", "amber" or "red"."""
-
-    line: str
-    mean_kpa: float
-    largest_kpa: float
-    mean_mmhg: float
-    largest_mmhg: float
-    force_n: float
-    bridged_mm: float
-    light: str
-    notes: tuple[str, ...]
-
-
 Line2 = tuple[tuple[float, float], ...]
 """A flat curve, place by place: across and up [mm], as ``core.profile.Plane`` has them."""
 
@@ -119,7 +104,8 @@ class Sheet:
 
     ``state`` is the word of the verdict ("strained" where skin strains though all has settled); ``lift`` is
     None where the shape is none. ``measures`` are rows of ``core.measures.measure_rows``, ``sizes`` those of
-    ``core.sizes.sizes_text``, the chosen system first, or none and ``no_size`` says why.
+    ``core.sizes.sizes_text``, the chosen system first, or none and ``no_size`` says why; ``pressures`` follow
+    the cut list row by row, ``limits`` are those of their lights.
     """
 
     heading: Heading
@@ -132,7 +118,7 @@ class Sheet:
     sizes: tuple[dict[str, Any], ...]
     no_size: str
     cuts: CutList
-    pressures: tuple[BandPressure, ...]
+    pressures: tuple[PressRow, ...]
     limits: Mapping[str, Any]
     sections: tuple[SectionCurves, ...]
     turns: Turns
@@ -150,12 +136,13 @@ class Sheet:
 
 
 def sheet_of(shown: Shown, records: Sequence[Record], heading: Heading, progress: Progress = quiet) -> Sheet:
-    """Return the sheet of a body as it is ``shown``; ``records`` are those of its run. Raises Cancelled."""
+    """Return the sheet of a body as it is ``shown``; ``records`` are those of its turns. Raises Cancelled."""
     stages, points, verdict = shown.stages, shown.control_points, shown.verdict
     progress("measuring", 0.1)
     before, after = before_after(stages, points)
     found, why = _sizes(before, heading)
     progress("pressing", 0.8)
+    pressed = press_list(stages, points)
     strained = verdict.condition is not None and verdict.condition.strained
     return Sheet(
         heading=heading,
@@ -168,8 +155,8 @@ def sheet_of(shown: Shown, records: Sequence[Record], heading: Heading, progress
         sizes=found,
         no_size=why,
         cuts=cut_list(stages, points),
-        pressures=tuple(_pressed(name, band) for name, band in pressures(stages, points).items()),
-        limits=_limits(),
+        pressures=pressed.rows,
+        limits=pressed.as_data()["limits"],
         sections=_sections(stages, points),
         turns=_turns(stages, records),
         warnings=_warnings(shown),
@@ -205,31 +192,6 @@ def _volume(shown: Shown) -> VolumeKept:
     else:
         change = stages.model.volume.volume(shown.control_points) - rest
     return VolumeKept(rest / 1000.0, change / 1000.0, 100.0 * change / rest)
-
-
-def _pressed(name: str, band: LinePressure) -> BandPressure:
-    return BandPressure(
-        line=name,
-        mean_kpa=band.mean,
-        largest_kpa=band.largest,
-        mean_mmhg=mmhg(band.mean),
-        largest_mmhg=mmhg(band.largest),
-        force_n=band.force,
-        bridged_mm=float(band.bridged_length),
-        light=band.light,
-        notes=band.notes,
-    )
-
-
-def _limits() -> dict[str, Any]:
-    limits = comfort()
-    return {
-        "amber_kpa": limits.amber_kpa,
-        "red_kpa": limits.red_kpa,
-        "lights": {name: words.told("en") for name, words in limits.lights.items()},
-        "sources": [{"name": each.name, "says": each.words.told("en")} for each in limits.sources],
-        "doubts": [each.told("en") for each in limits.doubts],
-    }
 
 
 def _sections(stages: Stages, control_points: Points) -> tuple[SectionCurves, ...]:

@@ -14,7 +14,7 @@ from core.cutting import cut_list
 from core.elastics import find_elastic
 from core.measures import before_after, measure_rows
 from core.pipeline import Stages, build
-from core.pressure import mmhg, pressures
+from core.press_list import press_list
 from core.sheet import Heading, Sheet, sheet_of
 from core.solution import Solution, run
 from core.writing_out.sheet_file import COLUMNS, sheet_csv, sheet_json
@@ -39,12 +39,10 @@ def test_the_sheet_holds_what_others_work_out(worn: Solution, sheet: Sheet) -> N
     points = worn.control_points
     assert sheet.measures == tuple(measure_rows(*before_after(worn.stages, points)))
     assert sheet.cuts == cut_list(worn.stages, points)
-    found = pressures(worn.stages, points)
-    assert [each.line for each in sheet.pressures] == list(found)
-    for each in sheet.pressures:
-        band = found[each.line]
-        assert (each.largest_kpa, each.force_n, each.light) == (band.largest, band.force, band.light)
-        assert each.mean_mmhg == mmhg(band.mean)
+    found = press_list(worn.stages, points)
+    assert sheet.pressures == found.rows
+    assert sheet.limits == found.as_data()["limits"]
+    assert [row.line for row in sheet.pressures] == [row.line for row in sheet.cuts.rows]
 
 
 def test_the_chosen_system_comes_first_and_the_allowance_counts(worn: Solution, sheet: Sheet) -> None:
@@ -96,7 +94,7 @@ def test_json_is_the_whole_sheet(sheet: Sheet) -> None:
     assert told["heading"]["customer"] == "Customer 0412"
     assert told["measures"] == list(sheet.measures)
     assert told["cuts"]["rows"][0]["cut_mm"] == sheet.cuts.rows[0].cut_mm
-    assert told["pressures"][0]["largest_kpa"] == sheet.pressures[0].largest_kpa
+    assert told["pressures"][0]["max_kpa"] == sheet.pressures[0].max_kpa
     assert told["sections"][0]["after"][0][0] == list(sheet.sections[0].after[0][0])
     assert len(told["definitions"]) > 20
     assert told["limits"]["red_kpa"] == 4.0

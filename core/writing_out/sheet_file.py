@@ -84,20 +84,18 @@ def _cut_rows(sheet: Sheet) -> Iterator[Row]:
 
 
 def _pressure_rows(sheet: Sheet) -> Iterator[Row]:
-    titles = {row.line: row.title for row in sheet.cuts.rows}
-    for band in sheet.pressures:
-        note = " ".join((band.light, *band.notes))
+    for row in sheet.pressures:
+        note = " ".join(filter(None, (row.light, row.where, *row.notes)))
         for key, unit, value in (
-            ("largest pressure", "kPa", band.largest_kpa),
-            ("largest pressure", "mmHg", band.largest_mmhg),
-            ("mean pressure", "kPa", band.mean_kpa),
-            ("mean pressure", "mmHg", band.mean_mmhg),
-            ("force", "N", band.force_n),
-            ("bridged", "mm", band.bridged_mm),
+            ("largest pressure", "kPa", row.max_kpa),
+            ("largest pressure", "mmHg", row.max_mmhg),
+            ("mean pressure", "kPa", row.mean_kpa),
+            ("mean pressure", "mmHg", row.mean_mmhg),
+            ("force", "N", row.force_n),
+            ("bridged", "mm", row.bridged_mm),
         ):
-            title = f"{titles.get(band.line, band.line)}: {key}"
-            told = {"key": f"{band.line}: {key} {unit}", "title": title, "unit": unit, "after": value}
-            yield {"section": "pressure", **told, "note": note}
+            told = {"key": f"{row.line}: {key} {unit}", "title": f"{row.title}: {key}", "unit": unit}
+            yield {"section": "pressure", **told, "after": value, "note": note}
 
 
 def _cell(value: Any) -> Any:
