@@ -21,13 +21,16 @@ class GarmentPanel(QWidget):
     """The cut list; ``cards`` takes what stands below its rows.
 
     ``opened`` when it comes to be seen, and what it shows has to be new. ``selected`` names a line,
-    ``elastic_asked`` one and the widget under which its elastic is chosen. ``copy_asked`` and
+    ``elastic_asked`` one and the widget under which its elastic is chosen, ``all_asked`` that for all worn
+    lines, ``stretched`` a line and how far its elastic shall be stretched [1]. ``copy_asked`` and
     ``table_asked`` are for the list as text, ``library_asked`` for the elastics there are.
     """
 
     opened = Signal()
     selected = Signal(str)
     elastic_asked = Signal(str, QWidget)
+    all_asked = Signal(QWidget)
+    stretched = Signal(str, float)
     lines_asked = Signal()
     copy_asked = Signal()
     table_asked = Signal()
@@ -48,6 +51,7 @@ class GarmentPanel(QWidget):
             tr("Set lines"),
         )
         self._empty.asked.connect(self.lines_asked)
+        self._bare = self._make_bare()
         self._doubt, self._notes = sentence("", "secondary"), sentence("", "caption")
         set_tag(self._doubt, "tone", "warn")
         column = QVBoxLayout(self)
@@ -55,7 +59,7 @@ class GarmentPanel(QWidget):
         column.setSpacing(4)
         self._head = self._make_head()
         self._area = self._make_area()
-        for each in (self._empty, self._doubt, self._head):
+        for each in (self._empty, self._doubt, self._bare, self._head):
             column.addWidget(each)
         column.addWidget(self._area, 1)
         column.addWidget(self._make_buttons())
@@ -69,7 +73,8 @@ class GarmentPanel(QWidget):
         self._doubt.setVisible(bool(doubt))
         self._notes.setText("\n".join(view.notes))
         self._notes.setVisible(bool(view.notes))
-        self._empty.setVisible(not view.rows)
+        self._empty.setVisible(not view.worn)
+        self._bare.setVisible(view.worn and view.bare)
         for each in (self._head, self._area):
             each.setVisible(bool(view.rows))
         if [row.line for row in view.rows] != list(self.rows):
@@ -125,7 +130,19 @@ class GarmentPanel(QWidget):
         row = GarmentRow()
         row.pressed.connect(lambda: self.selected.emit(name))
         row.elastic_asked.connect(lambda under: self.elastic_asked.emit(name, under))
+        row.stretched.connect(lambda share: self.stretched.emit(name, share))
         return row
+
+    def _make_bare(self) -> QWidget:
+        """Make what stands over the list while no line is made of an elastic."""
+        card = EmptyState(
+            "bands",
+            tr("No elastic chosen yet"),
+            tr("Of an elastic, Busk knows how long to cut it. Choose one for all lines, or for each below."),
+            tr("Choose for all worn lines…"),
+        )
+        card.asked.connect(lambda: self.all_asked.emit(card))
+        return card
 
     def _make_head(self) -> QWidget:
         """Make the heading with the units, which stand nowhere else."""

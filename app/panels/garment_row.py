@@ -3,16 +3,17 @@
 # ruff: noqa: N802 - Qt names its events and says what they are
 from __future__ import annotations
 
-from PySide6.QtCore import QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent
-from PySide6.QtWidgets import QFrame, QGridLayout, QPushButton, QSizePolicy, QWidget
+from PySide6.QtWidgets import QFrame, QGridLayout, QSizePolicy, QWidget
 
-from app.dress.icons import paint_icon
 from app.dress.parts import ElidedLabel, sentence
 from app.dress.theme import font, label, set_tag, set_tip, tokens_of
+from app.panels.elastic_pull import ElasticPull
+from app.panels.figure_field import FigureField
 from app.panels.garment_view import CutView, PressureView
 from app.panels.line_parts import LineChip
-from app.wording.words import tr
+from app.wording.words import number, tr
 
 CHIP, CUT, NEWTONS, PRESSURE = 20, 54, 42, 60
 """Room of the columns [px]; the name has the rest."""
@@ -20,47 +21,6 @@ CHIP, CUT, NEWTONS, PRESSURE = 20, 54, 42, 60
 NOTHING = "\N{EN DASH}"
 
 _RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
-
-
-class ElasticPull(QPushButton):
-    """A word that opens the choice of elastics; what does not fit ends in dots."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.setFont(font("secondary"))
-        self.setProperty("kind", "word")
-        self.setCursor(Qt.CursorShape.PointingHandCursor)
-        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-        self.setFixedHeight(24)
-        self._elastic = ""
-
-    def show_elastic(self, line: str, elastic: str) -> None:
-        """Show what a line is made of, or that it can be chosen."""
-        self._elastic = elastic or tr("Choose an elastic…")
-        set_tip(self, elastic or tr("What this line is made of: its length to cut follows"))
-        self.setAccessibleName(tr("{line}: elastic, {elastic}").format(line=line, elastic=self._elastic))
-        self.update()
-
-    def sizeHint(self) -> QSize:
-        """Ask for as much as the words take."""
-        return QSize(self.fontMetrics().horizontalAdvance(self._elastic) + 26, 24)
-
-    @property
-    def words(self) -> str:
-        """What stands on it."""
-        return self._elastic
-
-    def paintEvent(self, event: QPaintEvent) -> None:
-        """Paint ground and ring as every button, and the words with their caret."""
-        super().paintEvent(event)
-        tokens, painter = tokens_of(self), QPainter(self)
-        painter.setFont(self.font())
-        painter.setPen(QColor(tokens.text_quiet if self.isEnabled() else tokens.text_caption))
-        words = self.fontMetrics().elidedText(self._elastic, Qt.TextElideMode.ElideRight, self.width() - 24)
-        painter.drawText(QRectF(5, 0, self.width() - 22, self.height()), Qt.AlignmentFlag.AlignVCenter, words)
-        end = 5 + self.fontMetrics().horizontalAdvance(words) + 4
-        paint_icon(painter, "caret-down", tokens.text_caption, QRectF(end, self.height() / 2 - 5, 10, 10))
 
 
 class PressureMark(QWidget):
@@ -85,7 +45,7 @@ class PressureMark(QWidget):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setFont(font("body", tabular=True))
         painter.setPen(QColor(tokens.text if view.kpa else tokens.text_caption))
-        painter.drawText(QRectF(0, 0, PRESSURE, 20), _RIGHT, view.kpa or NOTHING)
+        painter.drawText(QRectF(0, 0, PRESSURE, 21), _RIGHT, view.kpa or NOTHING)
         if not view.light:
             return
         tone = {"green": "ok", "amber": "warn", "red": "bad"}[view.light]
@@ -99,9 +59,13 @@ class PressureMark(QWidget):
 
 
 class GarmentRow(QFrame):
-    """The row of one line; ``pressed`` by a click, ``elastic_asked`` at its choice of elastics."""
+    """The row of one line; ``pressed`` by a click, ``elastic_asked`` at its choice of elastics.
+
+    ``stretched`` carries how far its elastic shall be stretched [1], where the designer sets that.
+    """
 
     pressed = Signal()
+    stretched = Signal(float)
     elastic_asked = Signal(QWidget)
 
     def __init__(self) -> None:
@@ -114,7 +78,8 @@ class GarmentRow(QFrame):
         self.title.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self.cut = label("", "heading", tabular=True)
         self.tension, self.stretch = label("", "body", tabular=True), label("", "caption", tabular=True)
-        self.elastic, self.pressure = ElasticPull(), PressureMark()
+        self.elastic, self.pressure, self.set_stretch = ElasticPull(), PressureMark(), _StretchField()
+        self.set_stretch.entered.connect(lambda percent: self.stretched.emit(percent / 100.0))
         self.elastic.clicked.connect(lambda: self.elastic_asked.emit(self.elastic))
         self.notes = sentence("", "caption")
         self._build()
@@ -128,6 +93,10 @@ class GarmentRow(QFrame):
         self.cut.setText(view.cut or NOTHING)
         self.tension.setText(view.tension or NOTHING)
         self.stretch.setText(view.stretch)
+        self.stretch.setVisible(view.stretch_percent is None)
+        self.set_stretch.setVisible(view.stretch_percent is not None)
+        self.set_stretch.show_value(view.stretch_percent or 0.0)
+        self.set_stretch.setAccessibleName(tr("{line}: stretched by, in percent").format(line=view.title))
         for each in (self.cut, self.tension, self.stretch):
             set_tag(each, "tone", "faint" if stale else "")
         self.elastic.show_elastic(view.title, view.elastic)
@@ -170,11 +139,29 @@ class GarmentRow(QFrame):
         grid.addWidget(self.title, 0, 1)
         for column, each in enumerate((self.cut, self.tension), start=2):
             grid.addWidget(each, 0, column, _RIGHT)
+        grid.setRowMinimumHeight(0, 21)
+        grid.setRowMinimumHeight(1, 21)
         grid.addWidget(self.elastic, 1, 1, 1, 2)
         grid.addWidget(self.stretch, 1, 3, _RIGHT)
-        grid.addWidget(self.pressure, 0, 4, 2, 1)
+        grid.addWidget(self.set_stretch, 1, 3, _RIGHT)
+        grid.addWidget(self.pressure, 0, 4, 2, 1, Qt.AlignmentFlag.AlignTop)
         grid.addWidget(self.notes, 2, 1, 1, 4)
         self.notes.setContentsMargins(5, 2, 0, 2)
+
+
+class _StretchField(FigureField):
+    """How far a band that does not move the body is stretched: the designer says it."""
+
+    MOST = 100.0
+
+    def __init__(self) -> None:
+        super().__init__("%", tr("How far it is stretched on the body"), digits=0, signed=True, widest="+100")
+
+    def _read(self, text: str) -> float:
+        value = super()._read(text.removesuffix("%"))
+        if not 0.0 <= value <= self.MOST:
+            raise ValueError(tr("Choose 0 to {most} %.").format(most=number(self.MOST, 0)))
+        return value
 
 
 def spoken(view: CutView) -> str:

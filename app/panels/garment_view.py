@@ -40,8 +40,14 @@ class CutView:
 
 @dataclass(frozen=True)
 class GarmentView:
-    """All pieces, and what holds for all of them; ``tissue`` [N/m] is what the newtons rest on."""
+    """All pieces, and what holds for all of them; ``tissue`` [N/m] is what the newtons rest on.
+
+    ``worn`` tells whether any line is: bands on points that do not move can be cut all the same. ``bare``
+    that no line is made of an elastic yet.
+    """
 
     rows: tuple[CutView, ...]
     notes: tuple[str, ...] = ()
     tissue: float = 0.0
+    worn: bool = False
+    bare: bool = False

@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWi
 
 from app.dress.parts import IconLabel, ToolButton, hairline, sentence
 from app.dress.theme import label, set_tag, set_tip
+from app.panels.elastic_pull import ElasticPull
 from app.panels.line_parts import PaletteMenu, StiffnessField
 from app.panels.line_view import LineView, SideView
 from app.wording.words import number, tr
@@ -20,11 +21,12 @@ class LineDetails(QWidget):
     """The lower part of an opened row; a linked pair has one line of figures for each side.
 
     ``decided`` carries what was decided and its value: colour, linked, stiffness; ``asked`` one of: reset,
-    rename, path, remove.
+    rename, path, remove. ``elastic_asked`` carries the widget under which an elastic is chosen.
     """
 
     decided = Signal(str, object)
     asked = Signal(str)
+    elastic_asked = Signal(QWidget)
 
     def __init__(self) -> None:
         super().__init__()
@@ -38,9 +40,10 @@ class LineDetails(QWidget):
         self._grid = QGridLayout()
         self._grid.setHorizontalSpacing(8)
         self._grid.setVerticalSpacing(1)
-        for place, title in enumerate((tr("Set"), tr("Reached"), tr("Gap"))):
-            self._grid.addWidget(label(title, "caption"), 0, place + 1)
-            self._grid.setColumnStretch(place + 1, 1)
+        self._heads = [label("", "caption") for _ in range(3)]
+        for place, head in enumerate(self._heads, start=1):
+            self._grid.addWidget(head, 0, place)
+            self._grid.setColumnStretch(place, 1)
         self._figures = [self._row(1), self._row(2)]
         column.addLayout(self._grid)
         column.addSpacing(5)
@@ -51,6 +54,9 @@ class LineDetails(QWidget):
         column.addWidget(self._part)
         column.addWidget(self._whole)
         outside.addWidget(self._set)
+        self._elastic = ElasticPull()
+        self._elastic.clicked.connect(lambda: self.elastic_asked.emit(self._elastic))
+        outside.addWidget(self._elastic)
         outside.addLayout(self._foot())
 
     def show_lengths(self, view: LineView, ratio: float) -> None:
@@ -63,25 +69,26 @@ class LineDetails(QWidget):
         unit = "mm" if len(sides) == 1 else ""  # two sides leave no room for it in each figure
         tone = view.feasible.tone(ratio) if worn and view.feasible is not None else ""
         for side, figures in zip(sides, self._figures, strict=False):
-            _show_side(side, ratio, tone, unit, figures)
-        front, own = (
-            tr("{percent} % of the front part, side to side"),
-            tr("{percent} % of its length at rest"),
-        )
-        part = (own if view.own else front).format(percent=number(ratio * 100))
+            _show_side(side, ratio, "" if view.elastic else tone, unit, figures, bool(view.elastic))
+        made = tr("Unstretched"), tr("Reached"), tr("Stretched by")
+        for head, title in zip(self._heads, made if view.elastic else _titles(), strict=True):
+            head.setText(title)
+        part = _part_words(view).format(percent=number(ratio * 100))
         self._part.setText(part if worn else tr("At 100 % the line is off: it measures and does not pull."))
         self._show_whole(view, ratio)
 
     def show_view(self, view: LineView) -> None:
         """Show limits and stiffness, and what can be done; a line that is only measured has none."""
         limits = view.feasible
-        for each in (self._set, self._pull, self._tools["reset"]):
+        for each in (self._set, self._tools["reset"]):
             each.setVisible(view.constrained)
         self._limits.setVisible(limits is not None)
         if limits is not None:
             self._limit.setText(limits.sentence())
             tone = limits.tone(view.ratio)
             self._sign.show_icon("warning" if tone else "info", tone or "text_caption")
+        self._pull.setVisible(view.constrained and not view.elastic)  # an elastic has its own
+        self._elastic.show_elastic(view.title, view.elastic)
         self._stiffness.show_stiffness(view.stiffness, view.usual_stiffness)
         self._tools["link"].setVisible(bool(view.partner))
         self._tools["link"].show_icon("unlink" if view.sides else "link")
@@ -150,7 +157,8 @@ class LineDetails(QWidget):
 
     def _show_whole(self, view: LineView, ratio: float) -> None:
         whole_mm = view.whole_mm - view.rest_mm + ratio * view.rest_mm
-        self._whole.setVisible(view.whole_mm > view.rest_mm)
+        # Of an elastic the back is stretched as the front: what is cut stands in the cut list.
+        self._whole.setVisible(view.whole_mm > view.rest_mm and not view.elastic)
         whole = tr("Whole band: {set} of {rest} mm ({percent} %)")
         percent = number(whole_mm / view.whole_mm * 100)
         self._whole.setText(whole.format(set=number(whole_mm), rest=number(view.whole_mm), percent=percent))
@@ -167,8 +175,26 @@ def _tools() -> Sequence[tuple[str, str, str]]:
     )
 
 
-def _show_side(side: SideView, ratio: float, tone: str, unit: str, figures: list[QLabel]) -> None:
-    """Write what is set and reached of a line, and the gap between them in the tone of the groove there."""
+def _titles() -> tuple[str, str, str]:
+    return tr("Set"), tr("Reached"), tr("Gap")
+
+
+def _part_words(view: LineView) -> str:
+    """Return what the set length is a share of."""
+    if view.elastic:
+        return tr("Its elastic, unstretched, is {percent} % of the length at rest")
+    if view.own:
+        return tr("{percent} % of its length at rest")
+    return tr("{percent} % of the front part, side to side")
+
+
+def _show_side(
+    side: SideView, ratio: float, tone: str, unit: str, figures: list[QLabel], stretch: bool
+) -> None:
+    """Write what is set and reached of a line, and the gap between them in the tone of the groove there.
+
+    The gap of an elastic is how far it is stretched.
+    """
     set_mm = ratio * side.rest_mm
     reached, gap = "–", "–"
     if side.reached_mm is not None:
@@ -176,6 +202,8 @@ def _show_side(side: SideView, ratio: float, tone: str, unit: str, figures: list
         share = abs(off) / set_mm
         reached = _figure(number(side.reached_mm), unit)
         gap = _figure(number(off, signed=True), f"mm&nbsp; {number(share * 100)} %")
+        if stretch:
+            gap = _figure(number(100.0 * off / set_mm, signed=True), "%")
     said = (side.title, _figure(number(set_mm), unit), reached, gap)
     for each, text in zip(figures, said, strict=True):
         each.setText(text)

@@ -34,6 +34,7 @@ class LineRow(QFrame):
     decided = Signal(str, object)
     path_asked = Signal()
     removed = Signal()
+    elastic_asked = Signal(QWidget)
 
     def __init__(self, view: LineView) -> None:
         super().__init__()
@@ -204,6 +205,7 @@ class LineRow(QFrame):
         self.title.left.connect(lambda: self.take_focus(Qt.FocusReason.OtherFocusReason))
         self.details.decided.connect(self.decided)
         self.details.asked.connect(self._do)
+        self.details.elastic_asked.connect(self.elastic_asked)
         self._eye.clicked.connect(lambda: self.visibility_changed.emit(not self.view.visible))
         self._link.clicked.connect(lambda: self.decided.emit("linked", True))
         self._lock.clicked.connect(lambda: self.decided.emit("locked", not self.view.locked))

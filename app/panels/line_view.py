@@ -26,6 +26,7 @@ class LineView:
     of a linked pair has both ``sides``, and means of their lengths. ``own_title`` is empty for the usual one.
     ``apart`` is the side, "left" or "right", of a line that is set apart from its partner; ``pair_title``
     what both are called together.
+    ``elastic`` is what it is made of, if anything: its length is then that of the elastic unstretched.
     ``width_mm`` is that of its band; ``stiffness`` [1] its own, or None for the ``usual_stiffness``.
     """
 
@@ -49,6 +50,7 @@ class LineView:
     feasible: Feasible | None = None
     apart: str = ""
     pair_title: str = ""
+    elastic: str = ""
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -14,11 +14,19 @@ def garment_view(frame: Frame, cuts: CutList) -> GarmentView:
     """Return the pieces of a frame in the order of the list of lines."""
     design = frame.stages.design
     colours = line_colours((line.name for line in frame.stages.model.lines), design)
-    rows = sorted(cuts.rows, key=lambda row: list(colours).index(row.line))
+    pieces = {row.line: row for row in cuts.rows}
+    still = {line.name for line in frame.stages.model.lines if not line.constrains}
+    views = [
+        _view(pieces[name], design, colour, name in still) if name in pieces else _off(name, design, colour)
+        for name, colour in colours.items()
+        if name in pieces or name in still
+    ]
     return GarmentView(
-        tuple(_view(row, design, colours[row.line]) for row in rows),
-        tuple(told(note, design) for note in cuts.notes) if rows else (),
+        tuple(views),
+        tuple(told(note, design) for note in cuts.notes) if pieces else (),
         design.tissue_stiffness,
+        worn=bool(pieces),
+        bare=not any(row.elastic for row in cuts.rows),
     )
 
 
@@ -47,7 +55,14 @@ def as_table(frame: Frame, cuts: CutList) -> list[list[str]]:
     return [heading, *(_cells(row, design) for row in cuts.rows)]
 
 
-def _view(row: CutRow, design: Design, color: str) -> CutView:
+def _off(name: str, design: Design, color: str) -> CutView:
+    """Return what is said of a band that could be cut though no line pulls there."""
+    notes = (tr("On the rib cage: it moves nothing, but it can be cut."),)
+    return CutView(name, line_title(name, design), color, band_width(name, design), "", notes=notes)
+
+
+def _view(row: CutRow, design: Design, color: str, still: bool) -> CutView:
+    set_here = still and row.elongation is not None and design.line_hold == "spring"
     return CutView(
         row.line,
         line_title(row.line, design),
@@ -58,6 +73,7 @@ def _view(row: CutRow, design: Design, color: str) -> CutView:
         "" if row.elongation is None else f"{number(100.0 * row.elongation, 0, signed=True)} %",
         "" if row.tension_n is None else number(row.tension_n, 1),
         tuple(told(note, design) for note in row.notes if row.elastic),
+        100.0 * row.elongation if set_here and row.elongation is not None else None,
     )
 
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 from app.panels.length_groove import Feasible
 from app.panels.line_view import LineView, SideView
 from app.wording.tokens import LINE_COLORS
-from app.wording.words import tr
+from app.wording.words import say, tr
 from core.design import Design
 from core.design_lines import partner_of
 from core.lines import Line
@@ -151,4 +151,5 @@ def _view(design: Design, frame: Frame, lines: list[Line], colour: str) -> LineV
         usual_stiffness=design.line_stiffness,
         apart=name.rsplit(" ", 1)[-1] if partner and len(lines) == 1 else "",
         pair_title=pair_title(name, design),
+        elastic=say(traits.elastic),
     )

@@ -1,0 +1,67 @@
+"""The elastics to choose from, as a menu: those that come with Busk by kind, one's own, the project's."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from functools import partial
+
+from PySide6.QtGui import QAction
+from PySide6.QtWidgets import QMenu
+
+from app.wording.words import say, tr
+from core.design_elastics import Elastic
+from core.elastics import built_in, own_elastics
+
+Choose = Callable[[Elastic | None], None]
+
+
+def fill_elastics(menu: QMenu, chosen: str, kept: Iterable[Elastic], choose: Choose) -> None:
+    """Fill ``menu`` anew, the one called ``chosen`` ticked; ``kept`` are those that the project brings along.
+
+    ``choose`` hears which one is taken, None for none.
+    """
+    menu.clear()
+    _add(menu, tr("No elastic"), not chosen, partial(choose, None))
+    menu.addSeparator()
+    own, problems = own_elastics()
+    known = {each.name: each for each in (*built_in(), *own)}
+    for kind, elastics in _kinds(each for each in built_in() if known[each.name] == each).items():
+        widths = menu.addMenu(kind)
+        widths.menuAction().setCheckable(True)
+        widths.menuAction().setChecked(chosen in {each.name for each in elastics})
+        for each in elastics:
+            words = tr("{width} mm").format(width=f"{each.width_mm:g}")
+            _add(widths, words, each.name == chosen, partial(choose, each))
+    _group(menu, tr("Your own elastics"), own, chosen, choose)
+    brought = [each for each in kept if known.get(each.name) != each]
+    _group(menu, tr("In this project"), brought, chosen, choose)
+    for problem in problems:
+        action = menu.addAction(say(problem.message))
+        action.setToolTip(say(problem.hint))
+        action.setEnabled(False)
+
+
+def kind_title(elastic: Elastic) -> str:
+    """Return what an elastic that comes with Busk is called without its width."""
+    return say(elastic.name).removesuffix(f"{elastic.width_mm:g} mm").strip()
+
+
+def _kinds(elastics: Iterable[Elastic]) -> dict[str, list[Elastic]]:
+    kinds: dict[str, list[Elastic]] = {}
+    for each in elastics:
+        kinds.setdefault(kind_title(each), []).append(each)
+    return kinds
+
+
+def _group(menu: QMenu, title: str, elastics: list[Elastic], chosen: str, choose: Choose) -> None:
+    if elastics:
+        menu.addSection(title)
+    for each in elastics:
+        _add(menu, each.name, each.name == chosen, partial(choose, each))
+
+
+def _add(menu: QMenu, words: str, ticked: bool, do: Callable[[], None]) -> QAction:
+    action = menu.addAction(words, do)
+    action.setCheckable(True)
+    action.setChecked(ticked)
+    return action
