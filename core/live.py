@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from threadpoolctl import threadpool_limits
@@ -25,16 +24,16 @@ from core.progress import Cancelled, Progress, quiet
 
 __all__ = ["Failure", "Frame", "LiveSolver"]
 
-_SLICE, _FIRST_SLICE, _LONG_SLICE = 0.012, 0.005, 0.05
+_SLICE, _FIRST_SLICE, _LONG_SLICE = 0.012, 0.004, 0.05
 """Seconds of turns between two frames, about one picture of a screen; fewer before new lengths are seen, more
 while the last frame has not been fetched.
 """
 
 _HAND_RESTS = 0.2
-"""Seconds after the last request until turns wait no longer for their frames to be shown."""
+"""Seconds after the last request until the next frame waits no longer until the last one is shown."""
 
-_STALE = 0.1
-"""Seconds for which a frame of former lengths is kept back where that of the newest is about to come."""
+_NEXT_MOVE = 0.016
+"""Seconds after a picture for which turns wait while lengths move: the hand is about to ask for others."""
 
 LARGE = 10_000
 """Moving vertices from which on compiled loops gain more in use than the second costs that they load in."""
@@ -53,7 +52,8 @@ class _Request:
 class LiveSolver:
     """Solves the newest design in a thread of its own.
 
-    While lengths move it waits once it is one frame ahead of who fetches them. ``tell`` is called in that
+    While lengths move it waits until its last frame is fetched and shown, and only then takes the newest:
+    what it made meanwhile would be old, and would take its time from the picture. ``tell`` is called in that
     thread with the work in hand and the share done, or "" when it is done; ``ready`` when there is something
     to fetch. A body is handed to ``prepare`` there, before its first frame.
     """
@@ -70,7 +70,7 @@ class LiveSolver:
         self._wake = threading.Condition()
         self._request: _Request | None = None
         self._frame: Frame | None = None
-        self._asked_at = self._fetched_at = 0.0
+        self._asked_at = self._shown_at = 0.0
         self._failure: Failure | None = None
         self._revision = 0
         self._stopping = False
@@ -105,20 +105,18 @@ class LiveSolver:
             self._request = self._failure = None
             self._unwanted = self._revision
 
-    def latest(self) -> Frame | Failure | None:
+    def latest(self, hold: bool = False) -> Frame | Failure | None:
         """Return what has not been fetched yet, if anything: a failure first, else the newest frame.
 
-        While lengths move, a frame of former ones counts only if none has been fetched for a while.
+        ``hold``: until ``release`` no turns are made after a frame, as who shows it would only wait for the
+        interpreter lock.
         """
         with self._wake:
             if self._failure is not None:
                 failure, self._failure = self._failure, None
                 return failure
-            frame, now = self._frame, time.perf_counter()
-            moving = now - min(self._asked_at, self._fetched_at) < _STALE
-            if frame is None or (moving and frame.revision < self._revision):
-                return None
-            self._frame, self._fetched_at = None, now
+            frame, self._frame = self._frame, None
+            self._held = self._held if frame is None else hold
             self._wake.notify()
             return frame
 
@@ -130,14 +128,11 @@ class LiveSolver:
     def _hear_last(self, what: str, share: float) -> None:
         self._hear(what, 0.98 + 0.02 * share)
 
-    @contextmanager
-    def held(self) -> Iterator[None]:
-        """Let no turns be made meanwhile: who shows a frame would only wait for the interpreter lock."""
-        self._held = True
-        try:
-            yield
-        finally:
-            self._held = False
+    def release(self) -> None:
+        """Go on: the frame that was fetched is shown."""
+        with self._wake:
+            self._held, self._shown_at = False, time.perf_counter()
+            self._wake.notify()
 
     def set_pace(self, turns_per_second: float | None) -> None:
         """Make turns no faster than this, one a frame, so that each can be seen; None: as fast as they go."""
@@ -160,10 +155,8 @@ class LiveSolver:
             asked = taken = 0
             while True:
                 with self._wake:
-                    while not self._something_to_do():
-                        self._wake.wait(self._lead if self._turning and self._lead > 0.0 else None)
-                    while not self._called and (pause := self._pause) > 0.0:
-                        self._wake.wait(pause)
+                    while (patience := self._patience()) != 0.0:
+                        self._wake.wait(patience)
                     if self._stopping:
                         return
                     request, self._request = self._request, None
@@ -197,18 +190,20 @@ class LiveSolver:
             self._warmer = threading.Thread(target=kernels.warm, name="busk-warm", daemon=True)
             self._warmer.start()
 
-    def _something_to_do(self) -> bool:
-        unseen = self._frame is not None and (self._lead > 0.0 or self._pace is not None)
-        return self._called or (self._turning and not unseen)
-
-    @property
-    def _turning(self) -> bool:
-        return self._comparison is not None and not self._comparison.resting
-
-    @property
-    def _lead(self) -> float:
-        """Seconds for which turns still wait until their frame is shown: as long as lengths move."""
-        return self._asked_at + _HAND_RESTS - time.perf_counter()
+    def _patience(self) -> float | None:
+        """Return in how many seconds there is something to do; None while nobody asks for anything."""
+        now = time.perf_counter()
+        rests_at = self._asked_at + _HAND_RESTS
+        unseen = self._frame is not None
+        if self._stopping:
+            return 0.0
+        if now < rests_at and (unseen or self._held):
+            return rests_at - now
+        if self._request is not None:
+            return 0.0
+        if self._comparison is None or self._comparison.resting or (unseen and self._pace is not None):
+            return None
+        return max(min(self._shown_at + _NEXT_MOVE, rests_at) - now, self._pause, 0.0)
 
     @property
     def _called(self) -> bool:

@@ -31,7 +31,10 @@ class Solving(QObject):
         self._soon = QTimer(self, interval=0, singleShot=True)
         self._soon.timeout.connect(self._look)
         self._ready.connect(self._soon.start)
+        # Paint first: it comes before what is due at once.
+        self._shown = QTimer(self, interval=0, singleShot=True)
         self._solver = LiveSolver(self._hear, self._ready.emit, _prepare)
+        self._shown.timeout.connect(self._solver.release)
         self._clock = QTimer(self, interval=FRAME_INTERVAL)
         self._clock.timeout.connect(self._look)
         self._clock.start()
@@ -58,6 +61,7 @@ class Solving(QObject):
         """Stop the clock and the solver, and wait until it has ended."""
         self._clock.stop()
         self._soon.stop()
+        self._shown.stop()
         self._solver.stop()
 
     def _hear(self, what: str, share: float) -> None:
@@ -68,12 +72,12 @@ class Solving(QObject):
         if self._work != self._work_told:
             self._work_told = self._work
             self.working.emit(*self._work_told)
-        answer = self._solver.latest()
+        answer = self._solver.latest(hold=True)
         if isinstance(answer, Failure):
             self.refused.emit(answer)
         elif answer is not None:
-            with self._solver.held():
-                self.answered.emit(answer)
+            self._shown.start()
+            self.answered.emit(answer)
 
 
 def _prepare(body: Body, progress: Progress) -> None:
