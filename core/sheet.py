@@ -24,6 +24,7 @@ from core.report import Shown, shape_warnings, still_lines, warnings
 from core.sizes import sizes, sizes_text
 from core.solver import Marks, Record
 from core.tffd import deform
+from core.verdict import Verdict
 
 AROUND = 12.0
 """What a section shows beside the part that can move [mm]."""
@@ -33,6 +34,9 @@ NOT_MODELLED = (
     "Lines alone shape the body: cloth between them, seams, wires and hooks are not there.",
 )
 """What no figure of a sheet takes into account."""
+
+SOUND = ("settled", "strained", "settling")
+"""States whose figures can be worked with, or will be once all has settled."""
 
 
 @dataclass(frozen=True)
@@ -103,9 +107,9 @@ class Sheet:
     """Everything of a report; sentences are those of the core, in English.
 
     ``state`` is the word of the verdict ("strained" where skin strains though all has settled); ``lift`` is
-    None where the shape is none. ``measures`` are rows of ``core.measures.measure_rows``, ``sizes`` those of
-    ``core.sizes.sizes_text``, the chosen system first, or none and ``no_size`` says why; ``pressures`` follow
-    the cut list row by row, ``limits`` are those of their lights.
+    None in any state that is not ``SOUND``. ``measures`` are rows of ``core.measures.measure_rows``,
+    ``sizes`` those of ``core.sizes.sizes_text``, the chosen system first, or none and ``no_size`` says why;
+    ``pressures`` follow the cut list row by row, ``limits`` are those of their lights.
     """
 
     heading: Heading
@@ -143,13 +147,13 @@ def sheet_of(shown: Shown, records: Sequence[Record], heading: Heading, progress
     found, why = _sizes(before, heading)
     progress("pressing", 0.8)
     pressed = press_list(stages, points)
-    strained = verdict.condition is not None and verdict.condition.strained
+    state = _state(verdict)
     return Sheet(
         heading=heading,
         scan=stages.design.scan.name,
-        state="strained" if verdict.state == "settled" and strained else verdict.state,
+        state=state,
         settled=verdict.state == "settled",
-        lift=None if verdict.motion == "diverging" else _lift(stages.rest_marks, stages.watch(points)),
+        lift=_lift(stages.rest_marks, stages.watch(points)) if state in SOUND else None,
         volume=_volume(shown),
         measures=tuple(measure_rows(before, after)),
         sizes=found,
@@ -174,6 +178,12 @@ def _sizes(before: Measures, heading: Heading) -> tuple[tuple[dict[str, Any], ..
     answers = sizes(underbust.value, bust.value, heading.allowance_mm)
     keys = sorted(answers, key=lambda key: key != heading.system)
     return tuple(sizes_text(answers[key]) for key in keys), ""
+
+
+def _state(verdict: Verdict) -> str:
+    """Return the word for a run: its verdict's, but skin that strains beyond what is calm is told too."""
+    strained = verdict.condition is not None and verdict.condition.strained
+    return "strained" if verdict.state == "settled" and strained else verdict.state
 
 
 def _lift(rest: Marks, now: Marks) -> Lift:
@@ -220,8 +230,9 @@ def _pair(place: Floats) -> tuple[float, float]:
 
 
 def _turns(stages: Stages, records: Sequence[Record]) -> Turns:
-    rest = stages.rest_marks
-    rows = [(row, row.marks) for row in records if row.marks is not None]
+    """Return the turns of a run; Newton's steps to the exact answer are none."""
+    rest, made = stages.rest_marks, () if stages.design.volume == "exact" else records
+    rows = [(row, row.marks) for row in made if row.marks is not None]
     return Turns(
         stages.design.volume,
         tuple(row.turn for row, _ in rows),

@@ -61,7 +61,22 @@ def test_lift_and_volume_are_those_of_the_run(worn: Solution, sheet: Sheet) -> N
     assert sheet.lift.up == pytest.approx(0.5 * (sheet.lift.left_up + sheet.lift.right_up))
     assert sheet.volume.error_ml == pytest.approx(worn.last.error_ml)
     assert sheet.volume.error_percent == pytest.approx(100.0 * worn.last.error)
+    assert sheet.turns.turn == (), "the exact answer makes no turns"
+
+
+def test_turns_end_where_the_lift_does_and_a_fold_has_none(built: Built) -> None:
+    stages = built("mannequin")
+    turned = run(build(replace(stages.design, volume="adaptive"), stages))
+    sheet = sheet_of(turned, turned.records, HEADING)
+    assert sheet.lift is not None
+    assert sheet.turns.turn == tuple(row.turn for row in turned.records)
     assert sheet.turns.up_mm[-1] == pytest.approx(sheet.lift.up)
+    assert sheet.turns.error_percent[-1] == pytest.approx(100.0 * turned.last.error)
+    folded = run(build(stages.design.with_line("mid-bust", 0.55), stages), turns=30)
+    told = sheet_of(folded, folded.records, HEADING)
+    assert told.state not in ("settled", "strained", "settling")
+    assert told.lift is None
+    assert any("does not tell how a body would look" in each for each in told.warnings)
 
 
 def test_the_sections_go_through_the_bust(worn: Solution, sheet: Sheet) -> None:
