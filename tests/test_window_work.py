@@ -73,7 +73,7 @@ def test_an_export_is_named_and_can_be_left_by_card_key_and_status_bar(
             else:
                 QTest.mouseClick(status.stop, Qt.MouseButton.LeftButton)
             assert not busy.isVisible(), "the window is free at once"
-            assert not status.stop.isVisible()
+            assert status._job_name.text() != "Writing the body", "limits may be at work beside it"
             assert not window.actions_.cancel.isEnabled()
             yield jobs_end
             assert len(left) == count
