@@ -11,7 +11,7 @@ import pytest
 from PySide6.QtGui import QRawFont
 from PySide6.QtWidgets import QApplication
 
-from app.wording.words import LANGUAGES, number, read_words, say, tr, use_language
+from app.wording.words import LANGUAGES, number, read_words, say, speaking, tr, use_language
 
 ROOT = Path(__file__).parent.parent
 TRANSLATIONS = [code for code in LANGUAGES if code != "en"]
@@ -115,6 +115,14 @@ def test_language_is_chosen_once_and_unknown_words_stay() -> None:
     assert tr("no such sentence") == "no such sentence"
     use_language("xx")
     assert tr("Scan") == "Scan"
+
+
+def test_another_language_is_spoken_for_a_while() -> None:
+    use_language("ja")
+    with pytest.raises(KeyError), speaking("en"):
+        assert (tr("Scan"), say("Choose another scan.")) == ("Scan", "Choose another scan.")
+        raise KeyError
+    assert (tr("Scan"), say("Choose another scan.")) == ("スキャン", "別のスキャンを選んでください。")
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
 from importlib import resources
 
@@ -11,8 +13,6 @@ LANGUAGES = {"en": "English", "ja": "日本語"}
 """The languages that can be chosen, by code, each in its own words."""
 
 _code = "en"
-_table: dict[str, str] = {}
-_messages: list[tuple[re.Pattern[str], str]] = []
 _SENTENCE_END = re.compile(r"(?<=[.?!]) (?=[A-Z'])")
 
 
@@ -21,16 +21,19 @@ def use_language(code: str) -> None:
 
     Call it once, before the first widget is built: a widget keeps the words it was built with.
     """
-    global _code  # noqa: PLW0603 - one language at a time, as its table
+    global _code  # noqa: PLW0603 - one language at a time
     _code = code if code in LANGUAGES else "en"
-    _table.clear()
-    _messages.clear()
-    if code in LANGUAGES and code != "en":
-        _table.update(read_words(code))
-        messages = read_words(f"{code}_messages")
-        # The more words a pattern holds, the surer its match: the longest is tried first.
-        for english in sorted(messages, key=lambda text: -len(re.sub(r"\{\w*\}", "", text))):
-            _messages.append((_pattern(english), messages[english]))
+
+
+@contextmanager
+def speaking(code: str) -> Iterator[None]:
+    """Ask for words of another language meanwhile: of a sheet that is for somebody else than the window."""
+    before = _code
+    use_language(code)
+    try:
+        yield
+    finally:
+        use_language(before)
 
 
 def language() -> str:
@@ -48,7 +51,7 @@ def read_words(name: str) -> dict[str, str]:
 
 def tr(english: str) -> str:
     """Return ``english`` in the language of the window, or as it is where no translation is known."""
-    return _table.get(english, english)
+    return _table(_code).get(english, english)
 
 
 def say(english: str) -> str:
@@ -56,11 +59,12 @@ def say(english: str) -> str:
 
     ``english`` is one or more sentences with names and numbers filled in; one that no pattern fits stays.
     """
-    for pattern, translated in _messages:
+    messages = _messages(_code)
+    for pattern, translated in messages:
         match = pattern.fullmatch(english)
         if match:
             return translated.format(**{name: say(value) for name, value in match.groupdict().items()})
-    sentences = _SENTENCE_END.split(english) if _messages else [english]
+    sentences = _SENTENCE_END.split(english) if messages else [english]
     if len(sentences) > 1:
         return "".join(say(each) for each in sentences)
     # A sentence that begins with the name of a line; a name of a file, with its dot, stays as it is.
@@ -70,9 +74,23 @@ def say(english: str) -> str:
 
 def in_all_languages(shown: str) -> list[str]:
     """Return words of the window as they are shown, and as they are in every other language."""
-    english = next((text for text, translated in _table.items() if translated == shown), shown)
+    english = next((text for text, translated in _table(_code).items() if translated == shown), shown)
     others = (read_words(code).get(english) for code in LANGUAGES if code != "en")
     return [shown, english, *(other for other in others if other)]
+
+
+@cache
+def _table(code: str) -> dict[str, str]:
+    return {} if code == "en" else read_words(code)
+
+
+@cache
+def _messages(code: str) -> list[tuple[re.Pattern[str], str]]:
+    """Return what the core may say, as patterns with their translations."""
+    messages = {} if code == "en" else read_words(f"{code}_messages")
+    # The more words a pattern holds, the surer its match: the longest is tried first.
+    longest = sorted(messages, key=lambda text: -len(re.sub(r"\{\w*\}", "", text)))
+    return [(_pattern(english), messages[english]) for english in longest]
 
 
 def _pattern(english: str) -> re.Pattern[str]:
