@@ -10,7 +10,7 @@ from app.keeping.tables import copy_table, save_table
 from app.panels.garment import GarmentPanel
 from app.presenting.garment import as_table, garment_view
 from app.presenting.verdict import doubt_of
-from app.wording.words import tr
+from app.wording.words import number, tr
 from core.cutting import cut_list
 from core.live import Frame
 
@@ -29,6 +29,7 @@ class GarmentDesk(QObject):
         panel.opened.connect(self.refresh)
         panel.selected.connect(window.desk.select_line)
         panel.lines_asked.connect(lambda: window.inspector.open("lines"))
+        panel.tissue.entered.connect(self._set_tissue)
         panel.copy_asked.connect(lambda: copy_table(window, self._as_table()))
         panel.table_asked.connect(
             lambda: save_table(window, self._as_table(), tr("Save the cut list"), "cut-list")
@@ -52,6 +53,10 @@ class GarmentDesk(QObject):
         self._panel.set_view(
             garment_view(frame, cut_list(frame.stages, frame.control_points)), doubt_of(frame)
         )
+
+    def _set_tissue(self, stiffness: float) -> None:
+        said = tr("Tissue {value} N/m").format(value=number(stiffness, 0))
+        self._window.session.change({"tissue_stiffness": stiffness}, said)
 
     def _as_table(self) -> list[list[str]]:
         frame = self._frame

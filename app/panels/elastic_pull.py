@@ -18,7 +18,7 @@ class ElasticPull(QPushButton):
     def __init__(self) -> None:
         super().__init__()
         self.setFont(font("secondary"))
-        self.setProperty("kind", "word")
+        self.setProperty("kind", "pick")
         self.setCursor(Qt.CursorShape.PointingHandCursor)
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)

@@ -14,6 +14,7 @@ from app.dress.press_row import press_row
 from app.dress.theme import label, set_tag
 from app.panels.garment_row import CUT, NEWTONS, PRESSURE, GarmentRow
 from app.panels.garment_view import GarmentView, PressureView
+from app.panels.tissue_card import TissueCard
 from app.wording.words import tr
 
 
@@ -52,7 +53,7 @@ class GarmentPanel(QWidget):
         )
         self._empty.asked.connect(self.lines_asked)
         self._bare = self._make_bare()
-        self._doubt, self._notes = sentence("", "secondary"), sentence("", "caption")
+        self._doubt, self.tissue = sentence("", "secondary"), TissueCard()
         set_tag(self._doubt, "tone", "warn")
         column = QVBoxLayout(self)
         column.setContentsMargins(10, 8, 10, 12)
@@ -71,8 +72,8 @@ class GarmentPanel(QWidget):
         self.view, self.stale = view, False
         self._doubt.setText(doubt)
         self._doubt.setVisible(bool(doubt))
-        self._notes.setText("\n".join(view.notes))
-        self._notes.setVisible(bool(view.notes))
+        self.tissue.show_tissue(view.tissue, view.notes)
+        self.tissue.setVisible(view.worn)
         self._empty.setVisible(not view.worn)
         self._bare.setVisible(view.worn and view.bare)
         for each in (self._head, self._area):
@@ -148,7 +149,7 @@ class GarmentPanel(QWidget):
         """Make the heading with the units, which stand nowhere else."""
         head = QWidget()
         row = QHBoxLayout(head)
-        row.setContentsMargins(8, 4, 4, 0)
+        row.setContentsMargins(8, 4, 8, 0)
         row.setSpacing(0)
         row.addWidget(label(tr("Cut list"), "heading"), 1)
         right = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignBottom
@@ -167,10 +168,9 @@ class GarmentPanel(QWidget):
         column.setSpacing(8)
         self._list = QVBoxLayout()
         self._list.setSpacing(2)
-        self._notes.setContentsMargins(8, 0, 4, 4)
         column.addLayout(self._list)
         column.addLayout(self.cards)
-        column.addWidget(self._notes)
+        column.addWidget(self.tissue)
         column.addStretch(1)
         area = QScrollArea()
         area.setAccessibleName(tr("Cut list"))

@@ -15,7 +15,7 @@ from app.panels.garment_view import CutView, PressureView
 from app.panels.line_parts import LineChip
 from app.wording.words import number, tr
 
-CHIP, CUT, NEWTONS, PRESSURE = 20, 54, 42, 60
+CHIP, CUT, NEWTONS, PRESSURE = 20, 54, 46, 56
 """Room of the columns [px]; the name has the rest."""
 
 NOTHING = "\N{EN DASH}"
@@ -129,7 +129,7 @@ class GarmentRow(QFrame):
 
     def _build(self) -> None:
         grid = QGridLayout(self)
-        grid.setContentsMargins(8, 6, 4, 6)
+        grid.setContentsMargins(8, 6, 8, 6)
         grid.setHorizontalSpacing(0)
         grid.setVerticalSpacing(0)
         for column, room in enumerate((CHIP, 0, CUT, NEWTONS)):
@@ -155,10 +155,12 @@ class _StretchField(FigureField):
     MOST = 100.0
 
     def __init__(self) -> None:
-        super().__init__("%", tr("How far it is stretched on the body"), digits=0, signed=True, widest="+100")
+        super().__init__("%", tr("How far it is stretched on the body"), digits=0, widest="100")
+        self.setFont(font("caption", tabular=True))
+        self.setFixedSize(NEWTONS, 20)
 
     def _read(self, text: str) -> float:
-        value = super()._read(text.removesuffix("%"))
+        value = super()._read(text)
         if not 0.0 <= value <= self.MOST:
             raise ValueError(tr("Choose 0 to {most} %.").format(most=number(self.MOST, 0)))
         return value
