@@ -197,11 +197,14 @@ def press(options: argparse.Namespace) -> int:
 
 def export(options: argparse.Namespace) -> int:
     """Write what other programs open: a body, its lines, strips, measures, a turntable."""
-    from app.commands.exported import Wishes, run_export
+    from app.commands.exported import KINDS, run_export
+    from app.exporting.outcome import Manner
 
-    wishes = Wishes(**{name: getattr(options, name) for name in vars(Wishes())})
+    files = {kind: getattr(options, kind) for kind in KINDS}
+    told = ("axes", "before", "frames", "seconds", "size", "dark", "beside")
+    manner = Manner(options.file_unit, **{name: getattr(options, name) for name in told})
     design = design_of(options.input, options)
-    done = run_export(design, options.line or [], options.elastic or [], wishes, print)
+    done = run_export(design, options.line or [], options.elastic or [], files, manner, print)
     _warn(done.warnings)
     return SETTLED if done.settled else NOT_SETTLED
 

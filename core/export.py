@@ -10,7 +10,7 @@ from pathlib import Path
 from core.control_mesh import ControlMesh
 from core.errors import UserError
 from core.live import Frame
-from core.mesh import Mesh
+from core.mesh import Mesh, Points
 from core.profile import Curve, Plane
 from core.progress import Progress, quiet
 from core.project import whole_file
@@ -62,16 +62,18 @@ def write_frame(
     write_mesh(path, Mesh(places, frame.stages.body.mesh.faces), progress, space)
 
 
-def write_control_points(path: str | os.PathLike[str], control: ControlMesh) -> None:
-    """Write the control points at rest [mm] as CSV, with the number, row and column that name them in lines.
+def write_control_points(
+    path: str | os.PathLike[str], control: ControlMesh, points: Points | None = None
+) -> None:
+    """Write control points [mm] as CSV, with the number, row and column that name them in lines.
 
-    Raises UserError if the place cannot be written to.
+    They are those at rest, or ``points``, shape (n, 3). Raises UserError if the place cannot be written to.
     """
-    target = Path(path).absolute()
+    target, places = Path(path).absolute(), control.mesh.vertices if points is None else points
     with whole_file(target) as partial, open(partial, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(["number", "row", "column", "x_mm", "y_mm", "z_mm", "free"])
-        for number, (place, fixed) in enumerate(zip(control.mesh.vertices, control.fixed, strict=True)):
+        for number, (place, fixed) in enumerate(zip(places, control.fixed, strict=True)):
             figures = (f"{value:.3f}" for value in place)
             at = control.row[number], control.column[number]
             writer.writerow([number, *at, *figures, "no" if fixed else "yes"])

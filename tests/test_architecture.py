@@ -27,6 +27,7 @@ APP_FLOORS = (
     "dress",
     "showing",
     "presenting",
+    "exporting",
     "keeping",
     "viewing",
 )
@@ -63,6 +64,7 @@ OUTSIDE = {
     "showing": {"numpy", "pyvista", "pyvistaqt", "pyqtgraph", "vtkmodules", "PySide6.QtCore", "PySide6.QtGui"}
     | {"PySide6.QtWidgets", "PySide6.QtOpenGLWidgets"},
     "presenting": {"numpy"},
+    "exporting": set(),
     "keeping": QT,
     "viewing": QT | {"numpy"},
     "helping": QT | {"PySide6", "platformdirs"},

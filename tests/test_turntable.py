@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-import app.printing.turntable as table
 from app.presenting.frame import bands
-from app.printing.turntable import FORMATS, Turntable, draw_turntable, write_turntable
+from app.printing.studio import Studio, on_ground
+from app.printing.turntable import FORMATS, Turntable, turn_round, write_turntable
 from core.errors import UserError
-from core.progress import Cancelled
+from core.progress import Cancelled, in_one_go
 from core.solution import run
 
 SMALL = Turntable(frames=4, size=(120, 100), seconds=2.0)
@@ -18,19 +18,28 @@ SMALL = Turntable(frames=4, size=(120, 100), seconds=2.0)
 
 @pytest.fixture(scope="module")
 def reshaped(built):
+    """A body with its bands, and no soft shadows, which are another test's."""
     stages = built("mannequin")
-    return stages, run(stages).control_points, bands(stages, ())
+    return stages, run(stages).control_points, bands(stages, ()), np.ones(len(stages.body.mesh.vertices))
 
 
-@pytest.fixture(autouse=True)
-def light_shadows(monkeypatch):
-    """Soft shadows take a second, and are another test's."""
-    monkeypatch.setattr(table, "bake_occlusion", lambda mesh: np.ones(len(mesh.vertices)))
+def shots_of(reshaped, turntable, hear=lambda *_: None):
+    with Studio(*reshaped, dark=turntable.dark) as studio:
+        return in_one_go(turn_round(studio, turntable), hear)
+
+
+def pictures(reshaped, turntable):
+    return [on_ground(shot, turntable.dark).astype(float) for shot in shots_of(reshaped, turntable)]
+
+
+@pytest.fixture(scope="module")
+def shots(reshaped):
+    return shots_of(reshaped, SMALL)
 
 
 @pytest.mark.parametrize("kind", ["gif", "webp"])
-def test_a_moving_picture_turns_once_in_its_time_and_goes_on(tmp_path, reshaped, kind):
-    files = write_turntable(tmp_path / f"t.{kind}", *reshaped, SMALL)
+def test_a_moving_picture_turns_once_in_its_time_and_goes_on(tmp_path, shots, kind):
+    files = write_turntable(tmp_path / f"t.{kind}", shots, SMALL)
     with Image.open(files[0]) as picture:
         assert (picture.n_frames, picture.size, picture.info["loop"]) == (4, (120, 100), 0)
         shown = []
@@ -45,7 +54,8 @@ def test_a_moving_picture_turns_once_in_its_time_and_goes_on(tmp_path, reshaped,
 
 
 def test_a_series_has_a_numbered_picture_a_step(tmp_path, reshaped):
-    files = write_turntable(tmp_path / "t.png", *reshaped, Turntable(10, (64, 64)))
+    ten = Turntable(10, (64, 64))
+    files = write_turntable(tmp_path / "t.png", shots_of(reshaped, ten), ten)
     assert [path.name for path in files] == [f"t-{k:02}.png" for k in range(1, 11)]
     assert sorted(tmp_path.iterdir()) == files
     with Image.open(files[9]) as picture:
@@ -53,7 +63,7 @@ def test_a_series_has_a_numbered_picture_a_step(tmp_path, reshaped):
 
 
 def test_it_begins_at_the_front_and_turns_to_the_left_side(reshaped):
-    front, left, back, right = (np.asarray(each, dtype=float) for each in draw_turntable(*reshaped, SMALL))
+    front, left, back, right = pictures(reshaped, SMALL)
     assert np.abs(front - front[:, ::-1]).mean() < 3.0  # a body from in front is even
     assert np.abs(back - back[:, ::-1]).mean() < 3.0
     assert np.abs(left - right[:, ::-1]).mean() < 3.0
@@ -61,47 +71,52 @@ def test_it_begins_at_the_front_and_turns_to_the_left_side(reshaped):
     assert np.abs(front - back).mean() > 1.0
 
 
-def test_before_and_after_stand_side_by_side_and_bands_are_worn_after(reshaped):
+def test_before_and_after_stand_side_by_side_and_bands_are_worn_after(tmp_path, reshaped):
     wide = Turntable(2, (200, 100), beside=True)
-    picture = np.asarray(draw_turntable(*reshaped, wide)[0], dtype=float)[:80]
-    before, after = picture[:, :100], picture[:, 100:]
-    assert bright(before) == 0 < bright(after)
-    assert picture.shape[1] == 200
+    files = write_turntable(tmp_path / "t.png", shots_of(reshaped, wide), wide)
+    with Image.open(files[0]) as picture:
+        pixels = np.asarray(picture, dtype=float)
+    assert pixels.shape == (100, 200, 3)
+    assert bright(pixels[:80, :100]) == 0 < bright(pixels[:80, 100:])
+    for half in (pixels[80:, :100], pixels[80:, 100:]):
+        assert ((half.max(axis=2) < 120) & (np.ptp(half, axis=2) < 20)).sum() > 5, "each is named below"
 
 
 def test_dark_ground_is_dark(reshaped):
     light, dark = (
-        np.asarray(draw_turntable(*reshaped, Turntable(2, (64, 64), dark=is_dark))[0])[:4].mean()
-        for is_dark in (False, True)
+        pictures(reshaped, Turntable(2, (64, 64), dark=is_dark))[0][:4].mean() for is_dark in (False, True)
     )
     assert dark < 0.4 * light
 
 
 @pytest.mark.parametrize("kind", FORMATS)
-@pytest.mark.parametrize("late", [False, True])
-def test_what_is_stopped_leaves_no_file(tmp_path, reshaped, kind, late):
+@pytest.mark.parametrize("late", [0.0, 0.5])
+def test_what_is_stopped_leaves_no_file(tmp_path, shots, kind, late):
     def stop(what, share):
-        if share > 0.3 and (what == "writing" or not late):
+        if share >= late:
             raise Cancelled
 
     with pytest.raises(Cancelled):
-        write_turntable(tmp_path / f"t.{kind}", *reshaped, SMALL, stop)
+        write_turntable(tmp_path / f"t.{kind}", shots, SMALL, stop)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_progress_only_goes_on(tmp_path, reshaped):
-    heard = []
-    write_turntable(tmp_path / "t.gif", *reshaped, SMALL, lambda _, share: heard.append(share))
-    assert heard == sorted(heard)
-    assert (heard[0], heard[-1]) == (0.0, 1.0)
+    drawn, written = [], []
+    shots = shots_of(reshaped, SMALL, lambda _, share: drawn.append(share))
+    write_turntable(tmp_path / "t.gif", shots, SMALL, lambda _, share: written.append(share))
+    for heard in (drawn, written):
+        assert heard == sorted(heard)
+        assert heard[-1] == 1.0
+    assert len(drawn) >= SMALL.frames
 
 
 @pytest.mark.parametrize(
     ("name", "said"), [("t.mp4", "gif, webp, png"), ("missing/t.gif", "There is no folder")]
 )
-def test_other_names_are_refused(tmp_path, reshaped, name, said):
+def test_other_names_are_refused(tmp_path, shots, name, said):
     with pytest.raises(UserError, match=said):
-        write_turntable(tmp_path / name, *reshaped, SMALL)
+        write_turntable(tmp_path / name, shots, SMALL)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Jobs: named work in passing threads that tells how far it is and is let go of at once."""
+"""Jobs: named work, in threads or in small pieces, that tells how far it is and is let go of at once."""
 
 from __future__ import annotations
 
@@ -6,10 +6,11 @@ import logging
 import threading
 import time
 from collections.abc import Callable
+from typing import Any
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from core.progress import Cancelled, Progress
+from core.progress import Cancelled, Pieces, Progress
 
 LOOKS = 100
 """Milliseconds between two looks at how far the jobs are."""
@@ -51,7 +52,7 @@ class Job:
 
 
 class Jobs(QObject):
-    """Runs plain functions in threads; what follows happens in the window's thread.
+    """Runs plain functions in threads; what follows happens in the window's thread, and so do pieces of work.
 
     ``changed`` says that jobs came, went or got further.
     """
@@ -65,6 +66,9 @@ class Jobs(QObject):
         self._clock = QTimer(self, interval=LOOKS)
         self._clock.timeout.connect(self.changed)
         self._ended.connect(self._end)
+        self._pieces: dict[Job, Pieces[Any]] = {}
+        self._between = QTimer(self, interval=0)
+        self._between.timeout.connect(self._go_on)
 
     def run(
         self,
@@ -89,14 +93,38 @@ class Jobs(QObject):
         self.changed.emit()
         return job
 
+    def run_pieces(
+        self,
+        words: str,
+        pieces: Pieces[Any],
+        done: Callable[[Any], None],
+        failed: Callable[[Exception], None] = _log,
+        *,
+        waited: bool = False,
+        left: Callable[[], None] = _forget,
+    ) -> Job:
+        """Begin work that belongs to the window's thread: a small piece of it whenever events are done.
+
+        All else is as in ``run``. What it holds is given back as soon as it ends or is cancelled.
+        """
+        job = Job(words, waited, done, failed, left)
+        self._pieces[job] = pieces
+        self._between.start()
+        self._clock.start()
+        self.changed.emit()
+        return job
+
     def at_work(self) -> list[Job]:
         """Return the jobs that are wanted, those first that the user waits for."""
-        return sorted((job for job in self._threads if job.wanted), key=lambda job: not job.waited)
+        jobs = (job for job in (*self._threads, *self._pieces) if job.wanted)
+        return sorted(jobs, key=lambda job: not job.waited)
 
     def cancel(self, job: Job | None) -> None:
         """Let go of a job at once; its thread ends when it next tells how far it is."""
         if job is not None:
             job.wanted = False
+            if job in self._pieces:
+                self._pieces.pop(job).close()
             self.changed.emit()
 
     def leave(self, job: Job | None) -> None:
@@ -108,6 +136,10 @@ class Jobs(QObject):
     def close(self) -> None:
         """Let go of all jobs, and wait until their threads have ended."""
         self._clock.stop()
+        self._between.stop()
+        for pieces in self._pieces.values():
+            pieces.close()
+        self._pieces.clear()
         for job in self._threads:
             job.wanted = False
         for thread in self._threads.values():
@@ -125,7 +157,27 @@ class Jobs(QObject):
 
     def _end(self, job: Job, result: object, fault: Exception | None) -> None:
         del self._threads[job]
-        if not self._threads:
+        self._answer(job, result, fault)
+
+    def _go_on(self) -> None:
+        """Do the next piece of the job that has waited longest."""
+        job, pieces = next(iter(self._pieces.items()), (None, None))
+        if job is None or pieces is None:
+            self._between.stop()
+            return
+        result, fault = None, None
+        try:
+            job.share = next(pieces)
+            return
+        except StopIteration as ended:
+            result = ended.value
+        except Exception as error:
+            fault = error
+        del self._pieces[job]
+        self._answer(job, result, fault)
+
+    def _answer(self, job: Job, result: object, fault: Exception | None) -> None:
+        if not (self._threads or self._pieces):
             self._clock.stop()
         try:
             if job.wanted and fault is None:

@@ -165,7 +165,7 @@ def _add_files(parser: argparse.ArgumentParser) -> None:
         "--body", default="", metavar="FILE", help="the reshaped body: .glb, .obj, .ply, .stl"
     )
     parser.add_argument(
-        "--control", default="", metavar="FILE", help="the reshaped control mesh: .glb, .obj, .ply, .stl"
+        "--control", default="", metavar="FILE", help="the control mesh: .glb, .obj, .ply, .stl, .csv"
     )
     parser.add_argument("--lines", default="", metavar="FILE", help="the worn lines on the body: .dxf, .obj")
     parser.add_argument(

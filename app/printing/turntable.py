@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from importlib import resources
@@ -11,24 +11,18 @@ from pathlib import Path
 from typing import IO
 
 import numpy as np
-import pyvista as pv
 from PIL import Image, ImageDraw, ImageFont
 
-from app.seeing.bands import Band
-from app.seeing.occlusion import bake_occlusion
-from app.seeing.scene import Scene
-from app.wording.display import off_screen
+from app.printing.studio import Picture, Studio, on_ground
 from core.errors import UserError
-from core.mesh import Points
-from core.pipeline import Stages
-from core.progress import Progress, quiet
+from core.progress import Pieces, Progress, part_of, quiet
 from core.project import whole_file
 
 FORMATS = ("gif", "webp", "png")
 """Kinds of turntables by their endings; "png" is a series of pictures, numbered from 1."""
 
 _LIMITS = {"frames": (2, 360), "seconds": (0.5, 60.0), "width": (64, 4096), "height": (64, 4096)}
-_DRAWN = 0.85  # the part of the work that is done when all is drawn
+_COMPOSED = 0.3  # the part of writing that is done when all lies on its background
 _BRIGHT = 70  # how far apart red, green and blue of a bright colour are, of 255
 _LIGHT_INK, _DARK_INK = "#57534E", "#C9CCD3"
 _FONT = {True: "NotoSansJP-Regular.otf", False: "Inter-Regular.ttf"}  # by whether there are other letters
@@ -72,82 +66,72 @@ def turntable_kind(path: str | os.PathLike[str]) -> str:
     return kind
 
 
+def turn_round(studio: Studio, turntable: Turntable) -> Pieces[list[Picture]]:
+    """Return the pictures of one turn, from the front towards the subject's left.
+
+    Where before and after stand beside each other, all of before come first.
+    """
+    scene, (width, height) = studio.scene, turntable.size
+    parts = 1 + turntable.beside
+    each, shots = 1.0 / (parts * turntable.frames), list[Picture]()
+    size = width // parts, height
+    studio.stand_back(size, "front")
+    start = scene.view.orbit(0.0, 4.0)
+    for before in (True, False)[-parts:]:
+        scene.before(before)
+        scene.set_visible("bands", not before)
+        for k in range(turntable.frames):
+            scene.look_from(start.orbit(360.0 * k / turntable.frames, 0.0))
+            shots.append((yield from part_of(studio.shot(size), each * len(shots), each)))
+    return shots
+
+
 def write_turntable(
     path: str | os.PathLike[str],
-    stages: Stages,
-    control_points: Points,
-    bands: Sequence[Band],
+    shots: Sequence[Picture],
     turntable: Turntable,
     progress: Progress = quiet,
 ) -> list[Path]:
-    """Write the body shaped by ``control_points``, (n, 3) [mm], with its ``bands``, and return the files.
+    """Write what ``turn_round`` has drawn, and return the files.
 
     Raises UserError for another ending or a place that cannot be written to; Cancelled leaves no file.
     """
-    kind, target = turntable_kind(path), Path(path).absolute()
-    if not target.parent.is_dir():
-        raise UserError(f"There is no folder {target.parent}.", "Make it, or choose another one.")
-    pictures = draw_turntable(stages, control_points, bands, turntable, progress)
-    progress("writing", _DRAWN)
-    targets = [target]
-    if kind == "png":
-        digits = len(str(len(pictures)))
-        targets = [target.with_stem(f"{target.stem}-{k:0{digits}}") for k in range(1, len(pictures) + 1)]
+    kind, targets = turntable_kind(path), turntable_files(path, turntable.frames)
+    if not targets[0].parent.is_dir():
+        raise UserError(f"There is no folder {targets[0].parent}.", "Make it, or choose another one.")
+    pictures = _composed(shots, turntable, progress)
     with ExitStack() as stack:
         partials = [stack.enter_context(whole_file(each)) for each in targets]
-        for partial, group in zip(
-            partials, [[each] for each in pictures] if kind == "png" else [pictures], strict=True
-        ):
+        groups = [[each] for each in pictures] if kind == "png" else [pictures]
+        for k, (partial, group) in enumerate(zip(partials, groups, strict=True)):
+            progress("writing", _COMPOSED + (1.0 - _COMPOSED) * k / len(groups))
             with open(partial, "wb") as file:
                 _encode(file, kind, group, turntable.seconds)
         progress("writing", 1.0)
     return targets
 
 
-def draw_turntable(
-    stages: Stages,
-    control_points: Points,
-    bands: Sequence[Band],
-    turntable: Turntable,
-    progress: Progress = quiet,
-) -> list[Image.Image]:
-    """Return the pictures of one turn, from the front towards the subject's left. Raises Cancelled."""
-    off_screen()
-    progress("drawing", 0.0)
-    width, height = turntable.size
-    parts = 1 + turntable.beside
-    plotter = pv.Plotter(off_screen=True, window_size=[width // parts, height], lighting="none")
-    try:
-        scene = Scene(plotter, turntable.dark)
-        scene.show_body(stages.body.mesh)
-        scene.set_occlusion(bake_occlusion(stages.body.mesh))
-        scene.show_control_mesh(stages.control.mesh, stages.control.fixed)  # framed by it, and not seen
-        scene.show_bands(bands)
-        scene.move_body(stages.moving.vertices, *stages.shape(control_points))
-        plotter.enable_anti_aliasing("ssaa")
-        total, shots = parts * turntable.frames, []
-        for before in (True, False)[-parts:]:
-            scene.before(before)
-            scene.set_visible("bands", not before)
-            for shot in _turn(scene, turntable.frames):
-                shots.append(shot)
-                progress("drawing", _DRAWN * len(shots) / total)
-    finally:
-        plotter.close()
-    if not turntable.beside:
-        return [Image.fromarray(shot) for shot in shots]
-    pairs = zip(shots[: turntable.frames], shots[turntable.frames :], strict=True)
-    return [_labelled(np.concatenate(pair, axis=1), turntable) for pair in pairs]
+def turntable_files(path: str | os.PathLike[str], frames: int) -> list[Path]:
+    """Return the files that a turntable of this name is: one, or a numbered series of PNG."""
+    target = Path(path).absolute()
+    if turntable_kind(path) != "png":
+        return [target]
+    digits = len(str(frames))
+    return [target.with_stem(f"{target.stem}-{k:0{digits}}") for k in range(1, frames + 1)]
 
 
-def _turn(scene: Scene, frames: int) -> Iterator[np.ndarray]:
-    scene.set_view("front")
-    scene.frame_bust()
-    start = scene.view.orbit(0.0, 4.0)
-    for k in range(frames):
-        scene.look_from(start.orbit(360.0 * k / frames, 0.0))
-        scene.plotter.render()
-        yield np.array(scene.plotter.screenshot(return_img=True))[..., :3]
+def _composed(shots: Sequence[Picture], turntable: Turntable, progress: Progress) -> list[Image.Image]:
+    """Return the pictures on their background, before and after beside each other if that is wished."""
+    pictures = []
+    for k in range(turntable.frames):
+        progress("writing", _COMPOSED * k / turntable.frames)
+        parts = [on_ground(shot, turntable.dark) for shot in shots[k :: turntable.frames]]
+        pictures.append(
+            _labelled(np.concatenate(parts, axis=1), turntable)
+            if len(parts) > 1
+            else Image.fromarray(parts[0])
+        )
+    return pictures
 
 
 def _labelled(pixels: np.ndarray, turntable: Turntable) -> Image.Image:

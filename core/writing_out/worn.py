@@ -40,6 +40,11 @@ class WornCurve:
         """The front by "front", the back by "back" if there is one."""
         return {"front": self.front} | ({"back": self.back} if len(self.back) else {})
 
+    @property
+    def length(self) -> float:
+        """How long the whole curve is [mm]."""
+        return sum(float(arc_length(part)[-1]) for part in self.parts.values())
+
 
 @dataclass(frozen=True)
 class Strip:

@@ -1,0 +1,1 @@
+"""Rooms of what leaves Busk for other programs: by command, or from the window."""
