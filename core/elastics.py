@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ import platformdirs
 from core.design_elastics import Elastic
 from core.errors import LineError, UserError
 from core.project import safe_name, whole_file
-from core.sewing.elastic_csv import LARGEST, csv_of, elastic_from_csv
+from core.sewing.elastic_csv import LARGEST, TEMPLATE, csv_of, elastic_from_csv
 
 __all__ = [
     "Elastic",
@@ -22,8 +23,10 @@ __all__ = [
     "own_elastics",
     "own_folder",
     "read_elastic",
+    "remove_elastic",
     "save_elastic",
     "write_elastic",
+    "write_template",
 ]
 
 FORMAT = 1
@@ -119,6 +122,26 @@ def write_elastic(path: Path, elastic: Elastic) -> None:
     """Write an elastic as a table, whole or not at all. Raises ProjectError."""
     with whole_file(path.absolute()) as partial:
         partial.write_text(csv_of(elastic), encoding="utf-8")
+
+
+def write_template(path: Path) -> None:
+    """Write a table to be filled in with what is measured, whole or not at all. Raises ProjectError."""
+    with whole_file(path.absolute()) as partial:
+        partial.write_text(TEMPLATE, encoding="utf-8-sig")
+
+
+def remove_elastic(name: str) -> None:
+    """Take one of the designer's own elastics away, with its table. Raises UserError."""
+    for path in own_folder().glob("*.csv"):
+        with suppress(LineError):
+            if read_elastic(path).name == name:
+                try:
+                    path.unlink()
+                except OSError as problem:
+                    raise UserError(
+                        f"The table {path.name} cannot be removed: {problem.strerror}.",
+                        "Remove it from the folder by hand.",
+                    ) from problem
 
 
 def save_elastic(elastic: Elastic) -> Path:

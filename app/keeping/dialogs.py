@@ -23,6 +23,15 @@ def ask_open(parent: QWidget) -> str:
     return path
 
 
+def ask_table(parent: QWidget, title: str) -> str:
+    """Return the table that the user wants to bring in, or an empty text."""
+    kinds = "CSV (*.csv *.tsv *.txt)"
+    path, _ = QFileDialog.getOpenFileName(parent, title, str(last_folder("written")), kinds)
+    if path:
+        remember_folder("written", path)
+    return path
+
+
 def ask_save(parent: QWidget, title: str, name: str, kinds: str, ending: str) -> str:
     """Return where to save, or an empty text; a ``name`` with its folder is offered as it is.
 

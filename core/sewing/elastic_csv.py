@@ -32,6 +32,20 @@ HELP = (
 """What a user has to know to write a table."""
 
 
+TEMPLATE = """\
+# name: my elastic 12 mm
+# width_mm: 12
+# allowance_mm: 20
+# source: whose it is, when it was measured, at which stretch
+elongation %,force N
+20,
+40,
+60,
+80,
+"""
+"""A table to fill in: until each row has its force, it is refused."""
+
+
 def elastic_from_csv(text: str, name: str, width_mm: float | None = None) -> Elastic:
     """Read a measured table; ``name`` and ``width_mm`` stand where the text tells none.
 
