@@ -25,11 +25,15 @@ from app.helping.safe_mode import SafeMode
 from app.keeping.history_desk import HistoryDesk
 from app.keeping.keeping_desk import KeepingDesk
 from app.keeping.measures_desk import MeasuresDesk
+from app.keeping.own_measures_desk import OwnMeasuresDesk
+from app.keeping.pressure_desk import PressureDesk
 from app.keeping.recovery_desk import RecoveryDesk
 from app.keeping.variant_desk import VariantDesk
 from app.keeping.variant_figures import VariantFigures
 from app.layout import Layout
 from app.lining.band_pull import BandPull
+from app.lining.elastic_choice import ElasticChoice
+from app.lining.elastics_desk import ElasticsDesk
 from app.lining.garment_desk import GarmentDesk
 from app.lining.limits_desk import LimitsDesk
 from app.lining.line_drawing import LineDrawing
@@ -90,13 +94,16 @@ class MainWindow(QMainWindow):
         self.history_desk, self.variant_desk = HistoryDesk(self, self.history), VariantDesk(self)
         self.variant_figures = VariantFigures(self, self.variants)
         self.measures_desk = MeasuresDesk(self, self.result)
+        self.own_measures_desk = OwnMeasuresDesk(self, self.result)
+        self.pressure_desk = PressureDesk(self)
         self.map_desk, self.section_desk = MapDesk(self), SectionDesk(self)
         self.start_desk, self.plot_desk = StartDesk(self), PlotDesk(self)
         self.picture_desk = PictureDesk(self)
         self.lines_desk, self.line_maker = LinesDesk(self), LineMaker(self)
         self.line_drawing, self.line_routing = LineDrawing(self), LineRouting(self)
         self.preset_desk, self.band_pull = PresetDesk(self), BandPull(self)
-        self.garment_desk = GarmentDesk(self, self.garment)
+        self.garment_desk, self.elastic_choice = GarmentDesk(self, self.garment), ElasticChoice(self)
+        self.elastics_desk = ElasticsDesk(self)
         self.help = HelpDesk(self)
         self.preferences = PreferencesDesk(self)
         self.rescuer = Rescue(self)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from app.dress import divider
-from app.panels import landmarks, lines, project_card, typed_field
+from app.panels import landmarks, lines, measure_table, project_card, typed_field
 from app.panels.commands import Command, plain
 from app.showing import hand, plot_canvas, wipe
 from app.showing.gestures import chosen_gestures, gestures_in_words
@@ -20,6 +20,7 @@ def keys_of_parts() -> Iterator[Command]:
         (tr("In a field"), typed_field.keys_in_words()),
         (tr("While a line is drawn"), hand.keys_in_words()),
         (tr("In the list of landmarks"), landmarks.keys_in_words()),
+        (tr("In the table of measures"), measure_table.keys_in_words()),
         (tr("On the handle of the wipe"), wipe.keys_in_words()),
         (tr("In the live plot"), plot_canvas.keys_in_words()),
         (tr("Between two parts of the window"), divider.keys_in_words()),

@@ -17,6 +17,7 @@ from app.wording.words import tr
 from core.body import Body
 from core.live import Frame
 from core.measures import Measures, before_after
+from core.measuring.definitions import Measure
 from core.mesh import Points
 from core.sizes import ALLOWANCE
 
@@ -36,6 +37,7 @@ class MeasuresDesk(QObject):
         self._job: Job | None = None
         self._rest: Measures | None = None
         self._worn: Measures | None = None
+        self._tried: tuple[Measure, Measure] | None = None
         panel.marked.connect(self._show_mark)
         panel.framed.connect(self._look_at)
         panel.opened.connect(self.refresh)
@@ -89,9 +91,17 @@ class MeasuresDesk(QObject):
         self._show_sizes()
         self._show_mark()
 
+    def try_out(self, found: tuple[Measure, Measure] | None) -> None:
+        """Draw a measure that is being made, before and after, on the body instead of the marked one."""
+        if found is not self._tried:
+            self._tried = found
+            self._show_mark()
+
     def _show_mark(self) -> None:
         """Draw the marked measure on the body, on each that is seen; while it moves it is not there."""
         rest, worn = (() if self._panel.stale else self._curves(found) for found in (self._rest, self._worn))
+        if self._tried is not None:
+            rest, worn = (found.curves for found in self._tried)
         for body in self._window.view.beside.live:
             trace = body.viewport.scene.measure
             if rest or worn or trace.shown:

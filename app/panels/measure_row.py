@@ -115,7 +115,8 @@ def paint_row(painter: QPainter, tokens: Tokens, spot: Spot, focused: bool) -> N
     )
     painter.setFont(font("body"))
     painter.setPen(QColor(tokens.text))
-    painter.drawText(name, LEFT, view.label)
+    shown = painter.fontMetrics().elidedText(view.label, Qt.TextElideMode.ElideRight, int(name.width()))
+    painter.drawText(name, LEFT, shown)
     if spot.mixed and view.known:
         said = painter.fontMetrics().horizontalAdvance(view.label) + 6
         painter.setFont(font("caption"))

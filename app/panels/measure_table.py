@@ -21,6 +21,17 @@ TOP, HEAD = 24, 30
 """Heights of the titles of the columns and of the heading of a group [px]."""
 
 
+def keys_in_words() -> list[tuple[str, str]]:
+    """Return what the keys do in the table, ready to read."""
+    return [
+        ("↑ ↓", tr("Show the measure above or below on the body")),
+        ("Enter", tr("Bring it near")),
+        ("F2", tr("Change it, if it is your own")),
+        ("Del", tr("Delete it, if it is your own")),
+        ("Esc", tr("Show none")),
+    ]
+
+
 class MeasureTable(QWidget):
     """Measures in groups; those with a key fade while they are ``stale``.
 

@@ -7,73 +7,85 @@ from collections.abc import Sequence
 
 from PySide6.QtCore import Signal
 from PySide6.QtGui import QHideEvent, QShowEvent
-from PySide6.QtWidgets import QFrame, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
 
 from app.dress.parts import EmptyState, sentence
 from app.dress.press_row import press_row
 from app.dress.theme import set_tag
+from app.panels.measure_editor import MeasureEditor
 from app.panels.measure_table import MeasureTable
 from app.panels.measure_view import MeasureView
 from app.panels.size_card import SizeCard
 from app.wording.words import tr
 
 
-class ResultPanel(QWidget):
-    """The table of measures; ``opened`` when it comes to be seen, and what it shows has to be new.
+class ResultPanel(QStackedWidget):
+    """The table of measures, or the form for one's own; ``opened`` when it comes to be seen, and what it
+    shows has to be new, ``hidden`` when it goes.
 
     ``marked`` carries the key of the measure to be shown on the body, empty for none; ``framed`` when it
-    is to be looked at. ``copy_asked`` and ``table_asked`` are for the measures as text, on the clipboard or
-    in a file.
+    is to be looked at. ``adding`` asks for one more, ``changing`` and ``removing`` carry the key of one's
+    own. ``copy_asked`` and ``table_asked`` are for the measures as text, on the clipboard or in a file.
     """
 
     opened = Signal()
+    hidden = Signal()
     marked = Signal(str)
     framed = Signal()
+    adding = Signal()
+    changing = Signal(str)
+    removing = Signal(str)
     copy_asked = Signal()
     table_asked = Signal()
 
     def __init__(self) -> None:
         super().__init__()
-        column = QVBoxLayout(self)
-        column.setContentsMargins(14, 8, 14, 12)
-        column.setSpacing(4)
-        self._empty = EmptyState(
-            "result", tr("Nothing solved yet"), tr("Set a line shorter and see it here.")
-        )
-        self._table, self._doubt = MeasureTable(), sentence("", "secondary")
-        self._table.framed.connect(self.framed)
-        self._table.marked.connect(self._mark)
         self._live: tuple[MeasureView, ...] = ()
         self._measured: tuple[MeasureView, ...] = ()
         self._stale = False
+        self._empty = EmptyState(
+            "result", tr("Nothing solved yet"), tr("Set a line shorter and see it here.")
+        )
+        self._doubt = sentence("", "secondary")
         self._doubt.setContentsMargins(4, 2, 4, 4)
         set_tag(self._doubt, "tone", "warn")
+        self.sizes, self._table = SizeCard(), MeasureTable()
+        for name in ("framed", "changing", "removing"):
+            getattr(self._table, name).connect(getattr(self, name))
+        self._table.marked.connect(self._mark)
+        page = QWidget()
+        column = QVBoxLayout(page)
+        column.setContentsMargins(14, 8, 14, 12)
+        column.setSpacing(4)
+        column.addWidget(self._empty)
+        column.addWidget(self._doubt)
+        column.addWidget(self._make_area(), 1)
+        column.addWidget(self._make_buttons())
+        column.addStretch(0)
+        self.editor = MeasureEditor()
+        for each in (page, self.editor):
+            self.addWidget(each)
+        self.set_rows([])
+
+    def _make_area(self) -> QScrollArea:
         self._note = sentence(tr("The bars show the change: blue less, orange more."), "caption")
         self._note.setContentsMargins(4, 8, 4, 8)
-        inside = QWidget()
-        inside.setProperty("scrolled", "true")
-        rows = QVBoxLayout(inside)
-        rows.setContentsMargins(0, 0, 0, 0)
         self._waiting = sentence("", "caption")
         self._waiting.setContentsMargins(4, 6, 4, 6)
         self._waiting.hide()
-        self.sizes = SizeCard()
-        rows.addWidget(self.sizes)
-        rows.addWidget(self._waiting)
-        rows.addWidget(self._table)
-        rows.addWidget(self._note)
-        rows.addStretch(1)
+        inside = QWidget()
+        inside.setProperty("scrolled", "true")
+        self._column = QVBoxLayout(inside)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        for each in (self.sizes, self._waiting, self._table, self._note):
+            self._column.addWidget(each)
+        self._column.addStretch(1)
         self._area = QScrollArea()
         self._area.setAccessibleName(tr("Measures"))
         self._area.setWidgetResizable(True)
         self._area.setFrameShape(QFrame.Shape.NoFrame)
         self._area.setWidget(inside)
-        for each in (self._empty, self._doubt):
-            column.addWidget(each)
-        column.addWidget(self._area, 1)
-        column.addWidget(self._make_buttons())
-        column.addStretch(0)
-        self.set_rows([])
+        return self._area
 
     def set_rows(self, rows: Sequence[MeasureView], doubt: str = "") -> None:
         """Show these figures of the model, or that there is none; ``doubt`` says why they are no result."""
@@ -96,6 +108,17 @@ class ResultPanel(QWidget):
         """Fade what was measured while the body is another one, or let it count again."""
         self._stale = stale
         self._show()
+
+    @property
+    def editing(self) -> bool:
+        """Whether the form for one's own measure is there."""
+        return self.currentWidget() is self.editor
+
+    def set_editing(self, editing: bool) -> None:
+        """Show the form in the place of the table, or the table."""
+        self.setCurrentIndex(int(editing))
+        if not editing and self.isVisible():
+            self._table.setFocus()
 
     @property
     def mark(self) -> str:
@@ -128,7 +151,10 @@ class ResultPanel(QWidget):
         return self._stale
 
     def _show(self) -> None:
+        there = self._table.place_of(self.mark)
         self._table.set_rows([*self._measured, *self._live], self._stale)
+        if self.mark and there.isNull():  # one's own that was added has come
+            self._scroll_to(self.mark)
 
     @property
     def doubt(self) -> str:
@@ -136,16 +162,24 @@ class ResultPanel(QWidget):
         return self._doubt.text()
 
     def _mark(self, key: str) -> None:
-        place = self._table.place_of(key).translated(self._table.pos())
         if key:
-            self._area.ensureVisible(0, place.bottom(), 0, 0)
-            self._area.ensureVisible(0, place.top(), 0, 0)
+            self._scroll_to(key)
         self.marked.emit(key)
+
+    def _scroll_to(self, key: str) -> None:
+        self._column.activate()  # the table may have grown by what is shown now
+        place = self._table.place_of(key).translated(self._table.pos())
+        self._area.ensureVisible(0, place.bottom(), 0, 0)
+        self._area.ensureVisible(0, place.top(), 0, 0)
 
     def _make_buttons(self) -> QWidget:
         copied = tr("Copy the table, to paste into a spreadsheet or a letter")
         written = tr("Write the table to a file (CSV)")
-        choices = (tr("Copy"), copied, self.copy_asked), (tr("CSV…"), written, self.table_asked)
+        choices = (
+            (tr("Add a measure…"), tr("Measure between two landmarks, or round the body"), self.adding),
+            (tr("Copy"), copied, self.copy_asked),
+            (tr("CSV…"), written, self.table_asked),
+        )
         self._buttons = press_row(choices, top=4)
         return self._buttons
 
@@ -156,3 +190,4 @@ class ResultPanel(QWidget):
     def hideEvent(self, event: QHideEvent) -> None:
         """Leave the body to what is done next."""
         self.unmark()
+        self.hidden.emit()

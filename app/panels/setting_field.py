@@ -73,7 +73,7 @@ class MenuField(Field):
             action.triggered.connect(lambda _=False, chosen=value: self.chosen.emit(chosen))
             self._menu.addAction(action)
             self.actions_by_value[value] = action
-        self._button = _PullDown()
+        self._button = PullDown()
         self._button.clicked.connect(self._open)
         self.hold(self._button)
 
@@ -92,7 +92,7 @@ class MenuField(Field):
         self._menu.popup(self._button.mapToGlobal(self._button.rect().bottomLeft()))
 
 
-class _PullDown(QPushButton):
+class PullDown(QPushButton):
     """A button that opens a menu."""
 
     def __init__(self) -> None:

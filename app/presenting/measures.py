@@ -8,8 +8,8 @@ from typing import Any
 
 from app.panels.measure_view import MeasureView
 from app.presenting.lines import line_title
-from app.presenting.scan import landmark_title
-from app.wording.words import number, say, tr
+from app.presenting.own_measures import own_words
+from app.wording.words import say, tr
 from core.design_measures import OwnMeasure
 from core.live import Frame
 from core.measures import Measures, measure_rows
@@ -57,27 +57,6 @@ def _measured(row: dict[str, Any], told: Mapping[str, str]) -> MeasureView:
         sure=row["confidence"],
         own=own,
     )
-
-
-def own_words(own: OwnMeasure, low: float) -> str:
-    """Return how a measure of the designer's own is taken; ``low`` is the lowest point of the scan [mm]."""
-    places = [landmark_title(name) for name in own.marks]
-    if own.kind != "girth":
-        ways = {
-            "straight": tr("Yours: straight from {start} to {end}."),
-            "skin": tr("Yours: the shortest way over the skin from {start} to {end}."),
-        }
-        return ways[own.kind].format(start=places[0], end=places[1])
-    if not places:
-        height = number(own.level - low, 0)
-        return tr("Yours: a tape, level, {mm} mm above the lowest point of the scan.").format(mm=height)
-    at, above, below = (
-        tr("Yours: a tape, level, at {place}."),
-        tr("Yours: a tape, level, {mm} mm above {place}."),
-        tr("Yours: a tape, level, {mm} mm below {place}."),
-    )
-    words = above if own.level > 0.0 else below if own.level < 0.0 else at
-    return words.format(place=places[0], mm=number(abs(own.level), 0))
 
 
 def as_table(views: Sequence[MeasureView]) -> list[list[str]]:

@@ -124,6 +124,12 @@ class Overlay(QWidget):
         nearest = int(np.argmin(away))
         return self._pins[nearest].name if away[nearest] <= GRIP else ""
 
+    def chosen_at(self, place: QPointF) -> str:
+        """Return the name of the pin that is under the pointer, or whose label is, or an empty string."""
+        labels = zip(self._pins, self.pills() if self._pins else (), strict=True)
+        labelled = (pin.name for pin, pill in labels if pill.contains(place))
+        return self.pin_at(place) or next(labelled, "")
+
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
         """Draw leaders first, then pins, then labels, so that no line crosses a word."""
         painter = QPainter(self)

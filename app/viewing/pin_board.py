@@ -28,6 +28,7 @@ class PinBoard:
         self._selected = ""
         self._hovered = ""
         self._carried: Mapping[str, Points] = {}
+        self._offered: tuple[str, ...] | None = None
 
     def set_viewports(self, viewports: Sequence[Viewport]) -> None:
         """Show the pins on these from now on."""
@@ -54,6 +55,12 @@ class PinBoard:
         """Draw the curve that a landmark was read from instead of the selected one's; no name ends it."""
         if name != self._hovered:
             self._hovered = name
+            self._show()
+
+    def offer(self, chosen: tuple[str, ...] | None) -> None:
+        """Show every landmark in front, to choose from; some are ``chosen`` already. None ends it."""
+        if chosen != self._offered:
+            self._offered = chosen
             self._show()
 
     def carry(self, places: Mapping[str, Points]) -> None:
@@ -83,6 +90,9 @@ class PinBoard:
 
     def _show(self) -> None:
         """Show the pins of the bust and of the selected landmark, with the curve that this was read from."""
+        if self._offered is not None:
+            self._show_offered(self._offered)
+            return
         found = self._landmarks if self._shown else {}
         pins = {
             mark.name: self._pin(mark)
@@ -96,6 +106,17 @@ class PinBoard:
             if viewport.scene.body is not None:
                 viewport.scene.show_trace(chosen.evidence if chosen else np.empty((0, 3)))
             viewport.set_pins(pins.values(), self._selected)
+
+    def _show_offered(self, chosen: tuple[str, ...]) -> None:
+        """Show all pins on the first viewport alone: there is the hand that chooses."""
+        pins = [
+            Pin(name, landmark_title(name), mark.position, "accent" if name in chosen else "control", "")
+            for name, mark in self._landmarks.items()
+        ]
+        for viewport in self._viewports:
+            if viewport.scene.body is not None:
+                viewport.scene.show_trace(np.empty((0, 3)))
+            viewport.set_pins(pins if viewport is self._viewports[0] else (), chosen[-1] if chosen else "")
 
     def _pin(self, mark: Landmark) -> Pin:
         said = landmark_view(mark.name, mark, self.accepted)
