@@ -27,6 +27,7 @@ from app.keeping.keeping_desk import KeepingDesk
 from app.keeping.measures_desk import MeasuresDesk
 from app.keeping.own_measures_desk import OwnMeasuresDesk
 from app.keeping.pressure_desk import PressureDesk
+from app.keeping.pressure_desk import PressureDesk
 from app.keeping.recovery_desk import RecoveryDesk
 from app.keeping.variant_desk import VariantDesk
 from app.keeping.variant_figures import VariantFigures
@@ -95,6 +96,7 @@ class MainWindow(QMainWindow):
         self.variant_figures = VariantFigures(self, self.variants)
         self.measures_desk = MeasuresDesk(self, self.result)
         self.own_measures_desk = OwnMeasuresDesk(self, self.result)
+        self.pressure_desk = PressureDesk(self)
         self.pressure_desk = PressureDesk(self)
         self.map_desk, self.section_desk = MapDesk(self), SectionDesk(self)
         self.start_desk, self.plot_desk = StartDesk(self), PlotDesk(self)

@@ -41,12 +41,14 @@ LEFT_OUT = (
 class LinePressure:
     """What a band presses with at places along it, every ``step`` [mm], shape (k,).
 
-    ``places`` (k, 3) [mm] of the taut band, ``normals`` of the skin below; ``tension`` [N] (a slack band has
-    none), ``turns`` [rad] towards the skin, how far the band is ``off`` it [mm], ``front`` where it is the
-    front part; ``width`` [mm]. A ``closed`` one ends beside its beginning. ``told`` is what was put in.
+    ``places`` (k, 3) [mm] of the taut band, the ``skin`` below it and its ``normals``; ``tension`` [N] (a
+    slack band has none), ``turns`` [rad] towards the skin, how far the band is ``off`` it [mm], ``front``
+    where it is the front part; ``width`` [mm]. A ``closed`` one ends beside its beginning. ``told`` is what
+    was put in.
     """
 
     places: Points
+    skin: Points
     normals: Points
     tension: Floats
     turns: Floats
@@ -85,6 +87,15 @@ class LinePressure:
     def bridges(self) -> tuple[Bridge, ...]:
         """Where it goes straight over a hollow so that it shows; a slack band does not."""
         return bridges(self.off, self.step, self.closed) if self.tension.any() else ()
+
+    @cached_property
+    def bridged(self) -> Flags:
+        """Whether each place belongs to a hollow that the band goes straight over, shape (k,)."""
+        flags = np.zeros(len(self.places), dtype=np.bool_)
+        for bridge in self.bridges:
+            inside = np.arange(np.ceil(bridge.begin / self.step), bridge.end / self.step).astype(np.int64)
+            flags[inside % len(flags)] = True
+        return flags
 
     @property
     def bridged_length(self) -> float:
@@ -154,7 +165,9 @@ def band_pressure(course: Course, width: float) -> LinePressure:
     places, off = straight(course.points, smooth.normals, touched, course.closed)
     tension = np.maximum(course.tension, 0.0)  # a band cannot push
     front, step, closed = course.front, course.step, course.closed
-    return LinePressure(places, smooth.normals, tension, turns, off, front, width, step, closed)
+    return LinePressure(
+        places, course.points, smooth.normals, tension, turns, off, front, width, step, closed
+    )
 
 
 def pressures(stages: Stages, control_points: Points) -> Mapping[str, LinePressure]:

@@ -80,6 +80,8 @@ def test_ranges_are_round_and_colours_start_at_the_material() -> None:
     assert automatic_range("strain", np.array([0.0, 11.0])) == (0.0, 15.0)
     assert automatic_range("sides", np.array([0.1])) == (-5.0, 5.0)
     assert automatic_range("pull", np.empty(0)) == (0.0, 100.0)
+    assert automatic_range("pressure", np.array([1.2, np.nan])) == (0.0, 5.0)  # both limits are seen
+    assert automatic_range("pressure", np.array([11.2])) == (0.0, 15.0)
     for name in MAPS:
         low, high = automatic_range(name, np.array([8.0]))
         assert ramp_of(name, low, high, "#8F949B")(np.zeros(1))[0] == pytest.approx(rgb("#8F949B"))

@@ -119,13 +119,13 @@ def the_key_goes_through_all_maps_and_back(window: MainWindow, clay: np.ndarray)
     window.activateWindow()
     yield window.isActiveWindow
     seen = []
-    for _ in range(5):
+    for _ in range(6):
         QTest.keyClick(window, Qt.Key.Key_C)
         seen.append(window.map_desk.name)
         assert window.map_desk.legend.isVisible() == bool(seen[-1])
         assert window.view.tools.actions_by_name["map"].isChecked() == bool(seen[-1])
-        assert np.array_equal(colours(window), clay) == (seen[-1] in ("", "pull"))
-    assert seen == ["displacement", "strain", "sides", "pull", ""]
+        assert np.array_equal(colours(window), clay) == (seen[-1] in ("", "pull", "pressure"))
+    assert seen == ["displacement", "strain", "sides", "pull", "pressure", ""]
     assert window.view.viewport.scene.is_visible("bands")  # the map of the pull needs them
     window.view.set_layer("bands", False)
 

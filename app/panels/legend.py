@@ -26,6 +26,7 @@ WIDTH = 152
 BAR = QRectF(2.0, 12.0, 14.0, 168.0)
 """Where the colours are, within their widget [px]."""
 
+_WORD = 13.0  # height of a word at a limit [px]
 _PULL = 120.0  # pixels that an end is dragged to make the range smaller or larger by a factor of e
 
 
@@ -33,7 +34,8 @@ _PULL = 120.0  # pixels that an end is dragged to make the range smaller or larg
 class MapKind:
     """A map that can be chosen: title, unit, what it means, in words a tooltip long, and a line below.
 
-    ``both_ways``: its values go both ways from zero, and so does its range.
+    ``both_ways``: its values go both ways from zero, and so does its range. ``marks`` are limits on its
+    bar: value, tone and word.
     """
 
     name: str
@@ -43,6 +45,7 @@ class MapKind:
     note: str
     digits: int = 1
     both_ways: bool = False
+    marks: tuple[tuple[float, str, str], ...] = ()
 
 
 class Legend(FloatingPanel):
@@ -150,6 +153,7 @@ class LegendBar(QWidget):
         self._by_hand = False
         self._grip: tuple[bool, float, tuple[float, float]] | None = None
         self._digits, self._signed = 1, False
+        self._marks: tuple[tuple[float, str, str], ...] = ()
         ends = (
             (tr("Highest value of the colours"), BAR.top()),
             (tr("Lowest value of the colours"), BAR.bottom()),
@@ -168,7 +172,7 @@ class LegendBar(QWidget):
 
     def set_kind(self, kind: MapKind) -> None:
         """Write the numbers of another map."""
-        self._digits, self._signed = kind.digits, kind.both_ways
+        self._digits, self._signed, self._marks = kind.digits, kind.both_ways, kind.marks
         for field in (self.high, self.low):
             field.set_unit("", kind.digits, kind.both_ways)
         self.show_ends()
@@ -218,14 +222,27 @@ class LegendBar(QWidget):
             if low < value < high:
                 painter.setPen(QColor(tokens.text_quiet))
                 painter.drawText(QRectF(27, y - 10, 60, 20), left, number(float(value), digits, self._signed))
+        self._paint_marks(painter)
         if self._value is not None:
             self._paint_value(painter, self._value)
+
+    def _paint_marks(self, painter: QPainter) -> None:
+        """Paint the limits that lie within the range: a line over the colours, and a word that has room."""
+        tokens, above = tokens_of(self), BAR.bottom() + _WORD
+        left = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+        for value, tone, word in self._marks:
+            if self.range_[0] < value < self.range_[1]:
+                y = self.y_of(value)
+                above = min(y, above - _WORD)
+                painter.setPen(QPen(QColor(getattr(tokens, tone)), 2.0))
+                painter.drawLine(QPointF(BAR.left(), y), QPointF(BAR.right() + 4, y))
+                painter.drawText(QRectF(62, above - 10, 90, 20), left, word)
 
     def _paint_value(self, painter: QPainter, value: float) -> None:
         tokens, y = tokens_of(self), self.y_of(value)
         painter.setPen(QPen(QColor(tokens.text), 2.0))
         painter.drawLine(QPointF(BAR.left() - 2, y), QPointF(BAR.right() + 6, y))
-        pill = QRectF(86, y - 9, 56, 18)
+        pill = QRectF(96, y - 9, 54, 18)
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(QColor(tokens.ink))
         painter.drawRoundedRect(pill, 4.0, 4.0)

@@ -9,14 +9,22 @@ import numpy as np
 
 from app.panels.legend import MapKind
 from app.presenting.bust import BustMove, BustStep, bust_sentence, forward_words, step_words
+from app.presenting.pressure import light_limits, light_word, tone_of
 from app.seeing.paint import Ramp
 from app.wording.tokens import MAP_AMOUNT, MAP_LESS, MAP_MORE
-from app.wording.words import tr
+from app.wording.words import number, tr
 from core.mesh import Floats
+from core.press_list import PressList
+from core.pressure import mmhg
+from core.sewing.comfort import comfort
 
-MAPS = ("displacement", "strain", "sides", "pull")
+LINE_MAPS = ("pull", "pressure")
+"""Maps that lie on the bands."""
+
+MAPS = ("displacement", "strain", "sides", *LINE_MAPS)
 """Maps in the order in which a key goes through them."""
 
+_LEAST = {"sides": 5.0, "pressure": 5.0}  # no map shows less than this [mm, kPa]; both limits are seen
 _ROUND = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 
 
@@ -72,7 +80,43 @@ def _line_maps() -> list[MapKind]:
             tr("of the strongest part"),
             digits=0,
         ),
+        MapKind(
+            "pressure",
+            tr("Contact pressure"),
+            "kPa",
+            _pressure_tip(),
+            tr("An estimate, rather too much. Dashed: straight over a hollow."),
+            marks=tuple((kpa, tone_of(light), light_word(light)) for kpa, light in light_limits()),
+        ),
     ]
+
+
+def _pressure_tip() -> str:
+    limits = comfort()
+    amber, red = (
+        f"{number(kpa, 0)} kPa ({number(mmhg(kpa), 0)} mmHg)" for kpa in (limits.amber_kpa, limits.red_kpa)
+    )
+    return tr(
+        "What the worn bands press the skin with: their pull over their width and the radius that they bend "
+        "with. 1 kPa is 7.5 mmHg. Marked: snug from {amber}, tight from {red}. An estimate: tissue gives "
+        "way, and sensors read less."
+    ).format(amber=amber, red=red)
+
+
+def pressure_note(listed: PressList | None, stale: bool) -> str:
+    """Return what is to be said under the legend of pressure before all; ``stale`` is of a former shape."""
+    if listed is None:
+        return tr("Worked out as soon as the run rests.")
+    if stale:
+        return tr("Of the former shape: worked out again as soon as the run rests.")
+    if not listed.worn:
+        return tr("No worn line presses whose tension is known.")
+    return ""
+
+
+def bridge_words(off: float) -> str:
+    """Return what is said of a place at which a band goes straight over a hollow, ``off`` the skin [mm]."""
+    return tr("bridges, {mm} mm off").format(mm=number(off, 0))
 
 
 def ramp_of(name: str, low: float, high: float, clay: str) -> Ramp:
@@ -87,7 +131,7 @@ def automatic_range(name: str, values: Floats) -> tuple[float, float]:
     if name == "pull":
         return 0.0, 100.0
     seen = np.abs(values[np.isfinite(values)])
-    high = rounded_up(max(float(seen.max(initial=0.0)), 5.0 if name == "sides" else 1.0))
+    high = rounded_up(max(float(seen.max(initial=0.0)), _LEAST.get(name, 1.0)))
     return (-high, high) if name in ("displacement", "sides") else (0.0, high)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -14,8 +14,11 @@ from app.seeing.sight import Sight
 from app.seeing.smooth import smooth_actor
 from app.seeing.stage import rgb
 from core.centre_line import NO_BACK
-from core.mesh import Flags, Floats, Indices, Points, unit
+from core.mesh import Flags, Floats, Points, unit
 from core.moving import moving_faces
+
+Rise = Callable[[Floats], Points]
+"""Returns how far a band is off the skin, (rows, 3) [mm], at places along its line, (rows,) 0 to 1."""
 
 _SHADE = np.array([0.62, 0.62, 0.86, 1.0, 1.0, 0.86, 0.62, 0.62])
 _SEAM = 0.72  # how dark the seam is where front part and back part meet
@@ -42,6 +45,7 @@ class RibbonActor:
 
     def __init__(self, plotter: pv.BasePlotter, ribbon: Ribbon, name: str) -> None:
         self.ribbon = ribbon
+        self._raised = np.zeros_like(ribbon.mesh.vertices)
         self._moving = moving_faces(ribbon.mesh, np.empty(0, dtype=np.int64))
         mesh = ribbon.mesh
         self.data, self.actor = smooth_actor(
@@ -70,20 +74,17 @@ class RibbonActor:
         back = self.ribbon.part < 0
         seam = back & ~(np.roll(back, 1) & np.roll(back, -1))
         rows = rgb(colour) + _QUIET * back[:, None] * (rgb(_CLOTH) - rgb(colour))
-        self._paint_rows(np.where(seam[:, None], _SEAM * rgb(colour), rows))
+        self.paint_rows(np.where(seam[:, None], _SEAM * rgb(colour), rows))
 
-    def paint_parts(self, colours: Floats, back: str) -> None:
-        """Give each segment of the line's path a colour of its own, shape (k, 3) 0..255, and the back one."""
-        self._paint_rows(np.where(self.ribbon.part[:, None] < 0, rgb(back), colours[self.ribbon.part]))
-
-    def _paint_rows(self, rows: Floats) -> None:
+    def paint_rows(self, rows: Floats) -> None:
+        """Give each row a colour of its own, shape (rows, 3) 0..255."""
         colours = _SHADE[None, :, None] * rows[:, None]
         self.data.point_data["Colour"][:] = np.round(colours.reshape(-1, 3))
         self.data.GetPointData().GetArray("Colour").Modified()
 
     def move(self, displacement: Points) -> None:
         """Follow the body: displacement of each body vertex, shape (n, 3) [mm]."""
-        shift = self.ribbon.follow @ displacement
+        shift = self.ribbon.follow @ displacement + self._raised
         known = self._moving.vertices[: self._moving.count]
         moved: Flags = np.asarray(shift.any(axis=1))
         moved[known] = True
@@ -96,6 +97,17 @@ class RibbonActor:
         self.data.GetPoints().Modified()
         self.data.GetPointData().GetNormals().Modified()
         self.sight.forget()
+
+    def raise_to(self, off: Rise | None) -> bool:
+        """Hold the ribbon off the skin from its next move on; returns whether that is another way than now.
+
+        ``off`` gives that for places along the line, 0 to 1; None lets it lie as it was laid.
+        """
+        rows = np.zeros_like(self.ribbon.lifted) if off is None else off(self.ribbon.at) - self.ribbon.lifted
+        raised = np.repeat(rows, len(ACROSS), axis=0)
+        changed = not np.array_equal(raised, self._raised)
+        self._raised = raised
+        return changed
 
     def spine(self) -> tuple[Points, Points]:
         """Return the middle of the top of the ribbon as shown and its normals, both (rows, 3)."""
@@ -114,6 +126,7 @@ class Bands:
         self._bands: dict[str, Band] = {}
         self._ribbons: dict[str, RibbonActor] = {}
         self._casings: dict[str, RibbonActor] = {}
+        self._rises: dict[str, Rise] = {}
         self._surface: Surface | None = None
         self._displacement: Points = np.zeros((0, 3))
         self._visible = True
@@ -137,10 +150,10 @@ class Bands:
         """Take all ribbons away."""
         for drawn in (*self._ribbons.values(), *self._casings.values()):
             self._plotter.remove_actor(drawn.actor, reset_camera=False, render=False)
-        self._bands, self._ribbons, self._casings = {}, {}, {}
+        self._bands, self._ribbons, self._casings, self._rises = {}, {}, {}, {}
 
     def paint(self, colours: Mapping[str, Floats] | None, blank: str = "") -> None:
-        """Colour each segment of the lines' paths, shape (k, 3) 0..255, and ``blank`` what has no colours.
+        """Colour each row of the lines' bands, shape (rows, 3) 0..255, and ``blank`` what has no colours.
 
         None gives the lines their own colours back.
         """
@@ -148,8 +161,20 @@ class Bands:
             if colours is None:
                 ribbon.paint(self._bands[name].colour)
             else:
-                plain = np.tile(rgb(blank), (len(self._bands[name].path), 1))
-                ribbon.paint_parts(colours.get(name, plain), blank)
+                ribbon.paint_rows(colours.get(name, np.tile(rgb(blank), (ribbon.ribbon.rows, 1))))
+
+    def raise_to(self, off: Mapping[str, Rise]) -> None:
+        """Hold bands off the skin, by line: (rows,) places along it, 0 to 1, give (rows, 3) [mm].
+
+        A line that is not named lies as it was laid.
+        """
+        self._rises = dict(off)
+        for name, ribbon in self._ribbons.items():
+            if ribbon.raise_to(self._rises.get(name)):
+                ribbon.move(self._displacement)
+        for name, casing in self._casings.items():
+            if casing.raise_to(self._rises.get(name)) and casing.actor.GetVisibility():
+                casing.move(self._displacement)
 
     def move(self, displacement: Points) -> None:
         """Follow the body: displacement of each body vertex, shape (n, 3) [mm]."""
@@ -191,9 +216,9 @@ class Bands:
         """Return the colour of a line, ``"#rrggbb"``."""
         return self._bands[name].colour
 
-    def parts(self, name: str) -> Indices:
-        """Return the segment of the line's path at each row of its ribbon, -1 on the back, (rows,)."""
-        return self._ribbons[name].ribbon.part
+    def ribbon(self, name: str) -> Ribbon:
+        """Return the ribbon of a line as it was laid."""
+        return self._ribbons[name].ribbon
 
     def spine(self, name: str) -> tuple[Points, Points]:
         """Return the middle of the top of a ribbon as shown and its normals, both (rows, 3)."""
@@ -222,5 +247,6 @@ class Bands:
             ribbon = build_casing(band.path, self._surface, band.width, band.back)
             casing = RibbonActor(self._plotter, ribbon, f"casing {name}")
             casing.actor.prop.lighting = False
+            casing.raise_to(self._rises.get(name))
             self._casings[name] = casing
         return self._casings[name]

@@ -31,12 +31,15 @@ class Ribbon:
     """A ribbon at rest, rows of eight points across, and the matrix that moves it with the body.
 
     ``follow`` averages body displacements, shape (r, n), so that points = vertices + follow @ displacement.
-    ``part`` (rows,) is the segment of the line's path that each row lies on, -1 on the back.
+    ``part`` (rows,) is the segment of the line's path that each row lies on, -1 on the back; ``at`` (rows,)
+    how far along the line it lies, 0 to 1, and ``lifted`` (rows, 3) how far it is held off the skin [mm].
     """
 
     mesh: Mesh
     follow: sparse.csr_array
     part: Indices
+    at: Floats
+    lifted: Points
 
     @property
     def rows(self) -> int:
@@ -90,9 +93,11 @@ def _puffed(line: CentreLine, surface: Surface, width: float, sink: float) -> Ri
     if closed:
         laid, up = smooth(laid, 3, closed), smooth(up, 3, closed)
     raised = laid + (lift + surface.bumps(laid, up))[..., None] * unit(up)
-    raised += (line.lift[:, None] * line.normals)[:, None]
-    vertices = raised.reshape(-1, 3)
-    return Ribbon(Mesh(vertices, _grid_faces(len(points), closed)), surface.follow(vertices), line.part)
+    lifted = line.lift[:, None] * line.normals
+    raised += lifted[:, None]
+    vertices, faces = raised.reshape(-1, 3), _grid_faces(len(points), closed)
+    at = np.arange(len(points)) / len(points) if closed else arc_length(points) / arc_length(points)[-1]
+    return Ribbon(Mesh(vertices, faces), surface.follow(vertices), line.part, at, lifted)
 
 
 def _rounded(line: CentreLine, radius: float) -> tuple[CentreLine, Floats]:

@@ -4,20 +4,28 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
-from weakref import WeakKeyDictionary, WeakSet
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.panels.legend import Legend
 from app.presenting.body_now import BodyNow
-from app.presenting.maps import MAPS, automatic_range, map_kinds, ramp_of
-from app.seeing.bands import Bands
+from app.presenting.maps import (
+    LINE_MAPS,
+    MAPS,
+    automatic_range,
+    bridge_words,
+    map_kinds,
+    pressure_note,
+    ramp_of,
+)
 from app.seeing.body import BodyActor
 from app.seeing.material import look_of
 from app.seeing.paint import Ramp
 from app.seeing.scene import Scene
 from app.showing.value_flags import ValueFlag, ValueFlags
+from app.viewing.band_map import BandPainter, BandValues, pressures_on, pulls_on
 from app.viewing.body_view import BodyView
 from app.wording.words import number, tr
 from core.live import Frame
@@ -25,6 +33,7 @@ from core.mesh import Floats
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
+    from core.press_list import PressList
 
 
 @dataclass(frozen=True)
@@ -54,11 +63,12 @@ class MapDesk(QObject):
         self._by_hand: dict[str, tuple[float, float]] = {}
         self._range, self._range_of = (0.0, 1.0), ""
         self._values: Floats = np.empty(0)
-        self._pulls: dict[str, Floats] = {}
+        self._on_bands: dict[BodyView, BandValues] = {}
+        self._pressed: WeakKeyDictionary[BodyNow, PressList | None] = WeakKeyDictionary()
         self._others: WeakKeyDictionary[BodyView, BodyNow] = WeakKeyDictionary()
         self._laid = False
         self._painted: WeakKeyDictionary[BodyActor, tuple[str, Ramp, bool]] = WeakKeyDictionary()
-        self._tinted: WeakSet[Bands] = WeakSet()
+        self._painter = BandPainter()
         self.legend = Legend(list(self._kinds.values()), self._view)
         self.legend.hide()
         self._view.place(self.legend, "top-right", explains=True)
@@ -74,6 +84,7 @@ class MapDesk(QObject):
         self.legend.theme_changed.connect(lambda: QTimer.singleShot(0, self, self.refresh))
         self.flags.pinned.connect(self.pin)
         self.flags.pulled.connect(self.unpin)
+        self._window.pressure_desk.found.connect(self.refresh)
 
     # -- what is asked
 
@@ -85,7 +96,7 @@ class MapDesk(QObject):
     def choose(self, name: str) -> None:
         """Show a map by name, or none; what is pinned stays on its spot and tells the new map's value."""
         self.name = name
-        if name == "pull":
+        if name in LINE_MAPS:
             self._view.set_layer("bands", True)
         if name:
             self.legend.show_map(name)
@@ -105,9 +116,10 @@ class MapDesk(QObject):
     def pin(self, place: Floats, line: str) -> None:
         """Pin the value at a place of the shown body, (3,) [mm], or of the line that lies there."""
         body = self._view.viewport.scene.body
-        if self.now is None or body is None or (line and self.name != "pull"):
+        on_lines = self.name in LINE_MAPS
+        if self.now is None or body is None or (line and not on_lines):
             return
-        if self.name == "pull":
+        if on_lines:
             at = self._row_near(line, place)
             new = () if at is None else (Pinned(at, line),)
         else:
@@ -129,7 +141,8 @@ class MapDesk(QObject):
             return None
         spine, _ = bands.spine(line)
         row = int(np.linalg.norm(spine - place, axis=1).argmin())
-        return None if bands.parts(line)[row] < 0 else row
+        value, _ = self._on_bands[self._view.beside.bodies[0]].at(line, row)
+        return None if np.isnan(value) else row
 
     # -- what is shown
 
@@ -176,24 +189,45 @@ class MapDesk(QObject):
         now = self._now_of(view)
         return self._values if now is None or now is self.now else now.values(self.name)
 
-    def _read(self, frame: Frame) -> None:
-        """Read the values off the body and choose the range that they are shown in."""
-        assert self.now is not None
+    def _bands_of(self, view: BodyView) -> BandValues:
+        """Return the values on the bands of one of the bodies: its own, or those of its former shape."""
+        bands, now = view.viewport.scene.bands, self._now_of(view)
+        if now is None:
+            return BandValues({})
         if self.name == "pull":
-            self._pulls, self._values = self.now.pulls(), np.empty(0)
-            silent = tr("No worn line pulls like a spring.")
-            self.legend.show_note(self._kinds[self.name].note if self._pulls else silent)
-        else:
-            self._pulls, self._values = {}, self.now.values(self.name)
+            return pulls_on(bands, now.pulls())
+        known = self._window.pressure_desk.of(now.frame)
+        self._pressed[now] = listed = known or self._pressed.get(now)
+        return pressures_on(bands, listed.worn if listed else {}, stale=known is None)
+
+    def _read(self, frame: Frame) -> None:
+        """Read the values off the bodies and choose the range that they are shown in."""
+        assert self.now is not None
+        bodies = self._view.beside.bodies
         # Bodies beside each other are compared: the same colour is the same value on all of them.
-        beside = [self._values] + [self._values_of(view) for view in self._view.beside.bodies[1:]]
-        values = np.concatenate(beside) if self.name != "pull" else self._values
+        if self.name in LINE_MAPS:
+            self._values = np.empty(0)
+            self._on_bands = {view: self._bands_of(view) for view in bodies}
+            beside = [each for shown in self._on_bands.values() for each in shown.values.values()]
+            self.legend.show_note(self._note(self._on_bands[bodies[0]]))
+        else:
+            self._values, self._on_bands = self.now.values(self.name), {}
+            beside = [self._values] + [self._values_of(view) for view in bodies[1:]]
+        values = np.concatenate([np.empty(0), *beside])
         by_hand, (low, high) = self._by_hand.get(self.name), automatic_range(self.name, values)
         if frame.at_work and self._range_of == self.name:  # while a body moves the colours only widen
             low, high = min(low, self._range[0]), max(high, self._range[1])
         self._range, self._range_of = by_hand or (low, high), "" if by_hand else self.name
         ramp = self._ramp(self._view.viewport.scene)
         self.legend.show_range(*self._range, ramp.stops, by_hand is not None)
+
+    def _note(self, shown: BandValues) -> str:
+        assert self.now is not None
+        if self.name == "pressure":
+            said = pressure_note(self._pressed.get(self.now), shown.stale)
+        else:
+            said = "" if shown.values else tr("No worn line pulls like a spring.")
+        return said or self._kinds[self.name].note
 
     def _ramp(self, scene: Scene) -> Ramp:
         return ramp_of(self.name, *self._range, look_of(scene.dark, scene.material).clay)
@@ -204,7 +238,7 @@ class MapDesk(QObject):
         body = scene.body
         if body is None or now is None:
             return
-        if self.name in ("", "pull") or not (view.after or self.name == "sides"):
+        if self.name in ("", *LINE_MAPS) or not (view.after or self.name == "sides"):
             if self._painted.pop(body, None) is not None:
                 body.show_map(None)
             return
@@ -220,46 +254,45 @@ class MapDesk(QObject):
             body.recolour(rows, ramp(self._values))
 
     def _paint_bands(self, view: BodyView) -> None:
-        """Colour the bands by how they pull, or give them their own colours back."""
-        bands, now = view.viewport.scene.bands, self._now_of(view)
+        """Colour the bands by their values, or give them their own colours back."""
+        bands, shown = view.viewport.scene.bands, self._on_bands.get(view)
         # What lies on the skin is looked at: the bands, which say where the lines are, let it through.
-        bands.fade(self.name not in ("", "pull"))
-        if self.name == "pull" and view.after and now is not None:
-            ramp = self._ramp(view.viewport.scene)
-            found = self._pulls if now is self.now else now.pulls()
-            bands.paint({name: ramp(pulls) for name, pulls in found.items()}, ramp.blank)
-            self._tinted.add(bands)
-        elif bands in self._tinted:
-            bands.paint(None)
-            self._tinted.discard(bands)
+        bands.fade(bool(self.name) and shown is None)
+        if shown is not None and view.after:
+            self._painter.paint(bands, shown, self._ramp(view.viewport.scene))
+        else:
+            self._painter.give_back(bands)
 
     def _show_flags(self) -> None:
         """Show the values that are pinned, where there are any."""
-        if not self.name:
-            self.flags.show_flags(())
-            return
-        kind, values = self._kinds[self.name], {each: self._value_at(each) for each in self.pinned}
-        self._flagged = tuple(each for each, (_, value) in values.items() if not np.isnan(value))
-        said = [values[each] for each in self._flagged]
-        self.flags.show_flags(
-            ValueFlag(place, f"{number(value, kind.digits, kind.both_ways)} {kind.unit}")
-            for place, value in said
-        )
+        told = {each: self._told(each) for each in self.pinned} if self.name else {}
+        self._flagged = tuple(each for each, said in told.items() if said is not None)
+        said = [each for each in told.values() if each is not None]
+        self.flags.show_flags(flag for flag, _ in said)
         self.legend.show_value(said[-1][1] if said else None)
 
-    def _value_at(self, pinned: Pinned) -> tuple[Floats, float]:
-        """Return where a flag stands now, (3,) [mm], and the value there; NaN where there is none."""
+    def _told(self, pinned: Pinned) -> tuple[ValueFlag, float] | None:
+        """Return the flag that stands on a place now, and the value there, if there is one."""
         scene, now = self._view.viewport.scene, self.now
         assert now is not None
         assert scene.body is not None
+        if bool(pinned.line) != (self.name in LINE_MAPS):
+            return None
         if pinned.line:
-            if pinned.line not in self._pulls or pinned.line not in scene.bands.names:
-                return np.zeros(3), np.nan
-            part = scene.bands.parts(pinned.line)[pinned.at]
-            return scene.bands.spine(pinned.line)[0][pinned.at], float(self._pulls[pinned.line][part])
-        if self.name == "pull":
-            return np.zeros(3), np.nan
+            shown = self._on_bands[self._view.beside.bodies[0]]
+            value, off = shown.at(pinned.line, pinned.at)
+            if np.isnan(value) or not self._view.after:
+                return None
+            place = scene.bands.spine(pinned.line)[0][pinned.at]
+            words = self._words(value) if np.isnan(off) else bridge_words(off)
+            return ValueFlag(place, words), value
         values = now.at_rest(self.name)
         if self._view.after:
             values[now.rows(self.name)] = self._values
-        return scene.body.shown_points[pinned.at], float(values[pinned.at])
+        value = float(values[pinned.at])
+        place = scene.body.shown_points[pinned.at]
+        return None if np.isnan(value) else (ValueFlag(place, self._words(value)), value)
+
+    def _words(self, value: float) -> str:
+        kind = self._kinds[self.name]
+        return f"{number(value, kind.digits, kind.both_ways)} {kind.unit}"

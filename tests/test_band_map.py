@@ -1,0 +1,125 @@
+"""Values along bands in 3D: pressure on rows, dashes and height over hollows. No window is opened here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from app.presenting.frame import bands
+from app.seeing.paint import Ramp
+from app.seeing.scene import Scene
+from app.seeing.stage import rgb
+from app.viewing.band_map import BandPainter, BandValues, pressures_on, pulls_on
+from core.elastics import find_elastic
+from core.maps import pulls
+from core.pipeline import Stages, build, targets_of
+from core.presets import built_in, with_preset
+from core.pressure import LinePressure, pressures
+from core.solution import Solution, run
+
+RAMP = Ramp(("#EDD8C9", "#8A3408"), 0.0, 5.0, "#EDD8C9")
+
+
+@pytest.fixture(scope="module")
+def solution(built: Callable[[str], Stages]) -> Solution:
+    stages = built("mannequin")
+    design = replace(with_preset(stages.design, built_in()[0]), volume="adaptive")
+    design = design.with_line("mid-bust", 0.8).with_elastic("mid-bust", find_elastic("picot 10"))
+    return run(build(design, stages))
+
+
+@pytest.fixture
+def scene(solution: Solution) -> Iterator[Scene]:
+    plotter = pv.Plotter(off_screen=True, window_size=(300, 300), lighting="none")
+    scene, stages = Scene(plotter), solution.stages
+    scene.show_body(stages.body.mesh)
+    scene.show_bands(bands(stages, ()))
+    scene.move_body(stages.moving.vertices, *stages.shape(solution.control_points))
+    yield scene
+    plotter.close()
+
+
+@pytest.fixture(scope="module")
+def worn(solution: Solution) -> dict[str, LinePressure]:
+    return dict(pressures(solution.stages, solution.control_points))
+
+
+def drawn(scene: Scene, name: str) -> np.ndarray:
+    rows = scene.plotter.actors[f"band {name}"].mapper.dataset["Colour"]
+    return np.array(rows, dtype=float).reshape(-1, 8, 3)[:, 3]
+
+
+def test_a_row_of_a_band_has_the_pressure_of_its_place(scene: Scene, worn: dict[str, LinePressure]) -> None:
+    shown = pressures_on(scene.bands, worn, stale=False)
+    band = worn["mid-bust"]
+    # The band is drawn as wide as it is reckoned: each row is a place.
+    assert shown.values["mid-bust"] == pytest.approx(band.kpa)
+    assert np.isnan(shown.off["mid-bust"]).tolist() == (~band.bridged).tolist()
+    strap = worn["strap left"]
+    assert not strap.closed
+    assert shown.values["strap left"][[0, -1]] == pytest.approx(strap.kpa[[0, -1]])
+    assert shown.values["strap left"].max() == strap.largest
+
+
+def test_a_band_is_coloured_by_pressure_and_dashed_over_a_hollow(
+    scene: Scene, worn: dict[str, LinePressure]
+) -> None:
+    shown, band = pressures_on(scene.bands, worn, stale=False), worn["mid-bust"]
+    own = drawn(scene, "mid-bust")
+    BandPainter().paint(scene.bands, shown, RAMP)
+    colours = drawn(scene, "mid-bust")
+    lies = np.flatnonzero(~band.bridged)
+    assert colours[lies] == pytest.approx(RAMP(band.kpa[lies]), abs=1.0)
+    over = np.flatnonzero(band.bridged)
+    pale, plain = (colours[over[(over // 2) % 2 == half]] for half in (0, 1))
+    assert plain == pytest.approx(np.tile(rgb("#EDD8C9"), (len(plain), 1)), abs=15.0)
+    assert (pale.min(axis=1) > 230.0).all()
+    assert not np.allclose(own, colours)
+
+
+def test_over_a_hollow_the_band_is_drawn_where_it_is_taut(
+    scene: Scene, worn: dict[str, LinePressure]
+) -> None:
+    band, painter = worn["mid-bust"], BandPainter()
+    laid, _ = scene.bands.spine("mid-bust")
+    painter.paint(scene.bands, pressures_on(scene.bands, worn, stale=False), RAMP)
+    taut, _ = scene.bands.spine("mid-bust")
+    far = np.linalg.norm(taut - band.places, axis=1)
+    assert far.max() < 4.5, "it lies about 2 mm over the middle of the band"
+    deep = band.off > 8.0
+    assert deep.any()
+    assert np.linalg.norm(laid - band.places, axis=1)[deep].max() > 6.0
+    scene.mark_bands("mid-bust")
+    casing, _ = scene.bands._casings["mid-bust"].spine()
+    assert np.linalg.norm(casing - taut, axis=1)[deep].max() < 2.0, "its casing goes with it"
+    painter.give_back(scene.bands)
+    assert scene.bands.spine("mid-bust")[0] == pytest.approx(laid)
+
+
+def test_colours_of_a_former_shape_are_faint_and_tell_no_figure(
+    scene: Scene, worn: dict[str, LinePressure]
+) -> None:
+    fresh, stale = (pressures_on(scene.bands, worn, stale=old) for old in (False, True))
+    blank, row = rgb("#EDD8C9"), worn["mid-bust"].peak
+    full, faint = (np.abs(each.colours("mid-bust", RAMP)[row] - blank) for each in (fresh, stale))
+    assert faint == pytest.approx(0.42 * full)
+    assert fresh.at("mid-bust", row)[0] == pytest.approx(worn["mid-bust"].largest)
+    assert np.isnan(stale.at("mid-bust", row)).all()
+    assert np.isnan(fresh.at("mid-bust", 100_000)).all()
+    assert np.isnan(fresh.at("waist", 0)).all()
+
+
+def test_the_back_of_a_band_has_pressure_but_no_pull(
+    scene: Scene, worn: dict[str, LinePressure], solution: Solution
+) -> None:
+    stages = solution.stages
+    found = pulls(stages.model, solution.control_points, targets_of(stages.design, stages).ratios)
+    pulling: BandValues = pulls_on(scene.bands, found)
+    back = scene.bands.ribbon("mid-bust").part < 0
+    assert back.any()
+    assert np.isnan(pulling.values["mid-bust"]).tolist() == back.tolist()
+    assert not np.isnan(pressures_on(scene.bands, worn, stale=False).values["mid-bust"]).any()

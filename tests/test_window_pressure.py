@@ -1,0 +1,141 @@
+"""Contact pressure in the real window: the map on the bands, once a run rests and only where it is seen."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from window_tools import Script, drag, run_main, settled, undrawn
+
+import app.keeping.pressure_desk as desk_module
+from app.main_window import MainWindow
+from app.presenting.maps import pressure_note
+from app.viewing.band_map import BandValues
+from core.elastics import find_elastic
+from core.press_list import PressList, press_list
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+@pytest.fixture
+def asked(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """The lengths that the mid-bust line was pressed with, one for each time that it was worked out."""
+    told: list[float] = []
+
+    def counted(stages: object, points: np.ndarray) -> PressList:
+        told.append(stages.design.ratio("mid-bust"))  # type: ignore[attr-defined]
+        return press_list(stages, points)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(desk_module, "press_list", counted)
+    return told
+
+
+def wear(window: MainWindow) -> None:
+    """Let the mid-bust line be an elastic at 80 %."""
+    picot = find_elastic("picot 10")
+    window.session.edit(
+        lambda design: design.with_line("mid-bust", 0.8).with_elastic("mid-bust", picot), "Wear it"
+    )
+
+
+def known(window: MainWindow) -> PressList:
+    frame = window.session.frame
+    assert frame is not None
+    return press_list(frame.stages, frame.control_points)
+
+
+def pressed(window: MainWindow) -> BandValues:
+    return window.map_desk._on_bands[window.view.beside.bodies[0]]
+
+
+def test_the_map_of_pressure_is_worked_out_at_rest_and_where_it_is_seen(asked: list[float]) -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        wear(window)
+        yield settled(window)
+        yield lambda: not window.jobs.at_work()
+        assert asked == [], "nobody looks"
+        maps = window.map_desk
+        maps.choose("pressure")
+        assert maps.legend._note.text() == "Worked out as soon as the run rests."
+        yield lambda: bool(pressed(window).values)
+        assert len(asked) == 1
+        listed = known(window)
+        assert pressed(window).values["mid-bust"] == pytest.approx(listed.worn["mid-bust"].kpa)
+        assert maps.legend.bar.range_ == (0.0, 5.0)
+        assert [value for value, *_ in maps.legend.bar._marks] == [2.0, 4.0]
+        a_click_tells_the_value_there(window, listed)
+        yield from while_the_body_moves_it_is_that_of_the_former_shape(window, asked)
+        maps.choose("")
+        drag(window, "mid-bust", 40)
+        yield settled(window)
+        yield lambda: not window.jobs.at_work()
+        assert len(asked) == 2, "nobody looks any more"
+
+    run_main([], script)
+
+
+def a_click_tells_the_value_there(window: MainWindow, listed: PressList) -> None:
+    maps, bands, band = window.map_desk, window.view.viewport.scene.bands, listed.worn["mid-bust"]
+    spine, _ = bands.spine("mid-bust")
+    maps.pin(spine[band.peak], "mid-bust")
+    (flag,) = maps.flags.flags
+    assert flag.text == f"{band.largest:.1f} kPa"
+    assert np.linalg.norm(flag.place - band.places[band.peak]) < 4.5
+    hollow = int(band.off.argmax())
+    maps.pin(spine[hollow], "mid-bust")
+    assert maps.flags.flags[1].text == f"bridges, {band.off[hollow]:.0f} mm off"
+    maps.choose("pull")
+    # Pull is that of the front: only what lies there has one.
+    assert len(maps.flags.flags) == int(band.front[band.peak]) + int(band.front[hollow])
+    maps.choose("pressure")
+    window.view.set_after(False)
+    assert maps.flags.flags == (), "at rest nothing presses"
+    window.view.set_after(True)
+    assert len(maps.flags.flags) == 2
+
+
+def while_the_body_moves_it_is_that_of_the_former_shape(window: MainWindow, asked: list[float]) -> Script:
+    maps, former = window.map_desk, pressed(window).values["mid-bust"]
+    drag(window, "mid-bust", 20, release=False)
+    yield lambda: pressed(window).stale
+    assert pressed(window).values["mid-bust"] == pytest.approx(former)
+    assert maps.flags.flags == ()
+    assert maps.legend._note.text().startswith("Of the former shape")
+    assert len(asked) == 1
+    slider = window.lines.rows["mid-bust"].slider
+    QTest.mouseRelease(slider, Qt.MouseButton.LeftButton)
+    yield settled(window)
+    yield lambda: not pressed(window).stale
+    assert len(asked) == 2
+    assert pressed(window).values["mid-bust"] == pytest.approx(known(window).worn["mid-bust"].kpa)
+    assert len(maps.flags.flags) == 2
+
+
+def test_variants_side_by_side_are_pressed_in_one_range(asked: list[float]) -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        wear(window)
+        yield settled(window)
+        window.variant_desk.choose("B")
+        window.session.commit_line("mid-bust", "Mid-bust", 0.7)
+        yield settled(window)
+        window.variant_desk.show_side_by_side()
+        yield lambda: len(window.view.beside.bodies) == 2
+        window.map_desk.choose("pressure")
+        yield lambda: all(window.map_desk._on_bands[view].values for view in window.view.beside.bodies)
+        shown = window.map_desk._on_bands
+        here, there = (shown[view].values["mid-bust"].max() for view in window.view.beside.bodies)
+        assert here > 1.2 * there, "B is shorter"
+        assert sorted(asked) == [0.7, 0.8]
+
+    run_main([], script)
+
+
+def test_the_legend_says_why_nothing_presses() -> None:
+    nothing = PressList((), {})
+    assert pressure_note(nothing, stale=False) == "No worn line presses whose tension is known."
+    assert pressure_note(None, stale=True).startswith("Worked out")
