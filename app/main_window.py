@@ -35,6 +35,8 @@ from app.layout import Layout
 from app.lining.band_pull import BandPull
 from app.lining.elastic_choice import ElasticChoice
 from app.lining.elastics_desk import ElasticsDesk
+from app.lining.elastic_choice import ElasticChoice
+from app.lining.elastics_desk import ElasticsDesk
 from app.lining.garment_desk import GarmentDesk
 from app.lining.limits_desk import LimitsDesk
 from app.lining.line_drawing import LineDrawing
