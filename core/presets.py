@@ -148,6 +148,11 @@ def preset_from(design: Design, title: str) -> Preset:
     """Return the lines of a design as a preset: those that are worn, and all own ones."""
     template = read_template(design.template)
     own = {line.name: line for line in design.own_lines}
+    if design.worn_elastics():
+        raise LineError(
+            "The lengths of elastics belong to one body: they cannot be kept as a preset.",
+            "Make the lines of no elastic first; then their lengths are those of the shape.",
+        )
     names = sorted(design.worn() - own.keys()) + list(own)
     lines = tuple(_as_preset(name, design, own.get(name), template) for name in names)
     if not lines:
@@ -169,8 +174,9 @@ def _as_preset(name: str, design: Design, line: OwnLine | None, template: Templa
 def with_preset(design: Design, preset: Preset) -> Design:
     """Return the design with the lines of a preset; its other lines stay, and are taken off unless locked.
 
-    Ready-made lines that are there stay as they were led; those through places are led through these.
-    Raises LineError if the preset's places are those of another template, or a line of it is locked.
+    Ready-made lines that are there stay as they were led; those through places are led through these. Its
+    lengths are those of lines of the model: elastics are chosen anew. Raises LineError if the preset's places
+    are those of another template, or a line of it is locked.
     """
     if preset.template not in ("", design.template):
         raise LineError(
@@ -207,11 +213,12 @@ def is_worn(design: Design, preset: Preset) -> bool:
 
 
 def _dressed(traits: LineTraits, line: PresetLine) -> LineTraits:
+    usual = replace(traits, elastic="", width=None) if traits.elastic else traits
     return replace(
-        traits,
+        usual,
         title=line.title or traits.title,
         colour=line.colour or traits.colour,
-        width=line.width if line.width is not None else traits.width,
+        width=line.width if line.width is not None else usual.width,
         stiffness=line.stiffness if line.stiffness is not None else traits.stiffness,
         linked=line.linked,
     )

@@ -7,6 +7,7 @@ import pytest
 
 from core.comparison import shape_of
 from core.design_lines import LineTraits, OwnLine
+from core.elastics import find_elastic
 from core.errors import LineError
 from core.exact import solve_exact
 from core.own_lines import place_of, ready_made
@@ -98,6 +99,15 @@ def test_the_lines_of_a_design_come_back_from_their_preset(built, monkeypatch, t
     assert problems[0].message.startswith("The preset broken.json cannot be read")
     with pytest.raises(LineError, match="no lines"):
         preset_from(bare, "none")
+
+
+def test_lengths_of_elastics_are_no_preset_and_a_preset_is_made_of_none(built):
+    design = replace(built("mannequin").design, lines=()).with_line("mid-bust", 0.66)
+    made = design.with_elastic("mid-bust", find_elastic("strap 15"))
+    with pytest.raises(LineError, match="cannot be kept as a preset"):
+        preset_from(made, "Mine")
+    worn = with_preset(made, Preset("X", (PresetLine("mid-bust", "", 0.97),)))
+    assert worn == design.with_line("mid-bust", 0.97)
 
 
 @pytest.mark.parametrize(

@@ -27,8 +27,7 @@ def fill_elastics(menu: QMenu, chosen: str, kept: Iterable[Elastic], choose: Cho
     known = {each.name: each for each in (*built_in(), *own)}
     for kind, elastics in _kinds(each for each in built_in() if known[each.name] == each).items():
         widths = menu.addMenu(kind)
-        widths.menuAction().setCheckable(True)
-        widths.menuAction().setChecked(chosen in {each.name for each in elastics})
+        _tick(widths.menuAction(), chosen in {each.name for each in elastics})
         for each in elastics:
             words = tr("{width} mm").format(width=f"{each.width_mm:g}")
             _add(widths, words, each.name == chosen, partial(choose, each))
@@ -60,8 +59,11 @@ def _group(menu: QMenu, title: str, elastics: list[Elastic], chosen: str, choose
         _add(menu, each.name, each.name == chosen, partial(choose, each))
 
 
-def _add(menu: QMenu, words: str, ticked: bool, do: Callable[[], None]) -> QAction:
-    action = menu.addAction(words, do)
-    action.setCheckable(True)
+def _add(menu: QMenu, words: str, ticked: bool, do: Callable[[], None]) -> None:
+    _tick(menu.addAction(words, do), ticked)
+
+
+def _tick(action: QAction, ticked: bool) -> None:
+    """Tick what is chosen; empty boxes beside all the others would say that several may be."""
+    action.setCheckable(ticked)
     action.setChecked(ticked)
-    return action

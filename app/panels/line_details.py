@@ -56,7 +56,11 @@ class LineDetails(QWidget):
         outside.addWidget(self._set)
         self._elastic = ElasticPull()
         self._elastic.clicked.connect(lambda: self.elastic_asked.emit(self._elastic))
-        outside.addWidget(self._elastic)
+        made = QHBoxLayout()
+        made.setContentsMargins(0, 3, 0, 0)
+        made.addWidget(label(tr("Elastic"), "caption"))
+        made.addWidget(self._elastic, 1)
+        outside.addLayout(made)
         outside.addLayout(self._foot())
 
     def show_lengths(self, view: LineView, ratio: float) -> None:

@@ -55,12 +55,19 @@ def bands(stages: Stages, hidden: Collection[str]) -> list[Band]:
 
 
 def band_label(design: Design, frame: Frame, name: str) -> tuple[str, str]:
-    """Return what stands beside a line on the body: its name and length, and how much shorter that is."""
+    """Return what stands beside a line on the body: its name and length, and how much shorter that is.
+
+    Of an elastic, which is stretched far, the length that it reaches.
+    """
     line = next(line for line in frame.stages.model.lines if line.name == name)
     title = line_title(name, design)
     if not line.constrains:
         return title, f"{number(line.rest_length)} mm"
     ratio = design.ratio(name)
+    if design.traits_of(name).elastic:
+        stretch = frame.lengths[name] / (ratio * line.rest_length) - 1.0
+        said = tr("stretched by {value}").format(value=f"{number(100.0 * stretch)} %")
+        return f"{title} {number(frame.lengths[name])} mm", said
     change = (ratio - 1.0) * line.rest_length
     return f"{title} {number(100.0 * ratio)} %", f"{number(change, 1, signed=True)} mm"
 
