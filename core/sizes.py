@@ -147,6 +147,7 @@ def sizes_text(answer: SizeAnswer, language: str = "en") -> dict[str, Any]:
             for each in answer.neighbours
         ],
         "sisters": [{"size": each.label, "bust_mm": round(each.bust_mm, 2)} for each in answer.sisters],
+        "caution": table.caution.told(language) if table.caution else None,
         "doubts": [each.told(language) for each in answer.doubts],
         "sources": [{"name": each.name, "says": each.words.told(language)} for each in table.sources],
     }

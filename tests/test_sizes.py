@@ -127,6 +127,16 @@ def test_sister_sizes_are_those_of_the_sources():
     assert [each.label for each in made("jp", 70, 85).sisters] == ["D65", "B75"]
 
 
+def test_where_others_find_quite_another_size_a_few_words_say_so():
+    told = {key: sizes_text(answer, "en")["caution"] for key, answer in sizes(720.0, 870.0).items()}
+    assert {key for key, caution in told.items() if caution} == {"uk", "us", "it", "au"}
+    assert sizes_text(made("uk", 28, 34), "ja")["caution"] == "4 インチ足さず"
+    for table in TABLES.values():
+        assert table.caution is None or (table.doubts and len(table.caution.en) < 20), (
+            "it stands beside a size"
+        )
+
+
 def test_what_a_tight_tape_takes_off_is_told():
     answer = made("eu", 68.2, 84, 10.0)
     assert answer.label == "65C"

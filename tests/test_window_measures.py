@@ -88,11 +88,15 @@ def test_band_and_cup_follow_the_system_and_the_allowance_that_are_remembered() 
         tight = sizes(*girths, 20.0)["uk"]
         assert card.main.text() == f"UK {tight.label}"
         assert " ".join(tight.rule) == card.rule.text()
-        assert not card.near.isVisible()
-        card.fold.click()
-        assert card.near.isVisible()
-        assert tight.sisters[0].label in card.near.text()
-        assert tight.doubts[0].en in card.main.toolTip()
+        assert card.near.isVisible(), "what lies near stands there, as the doubt does"
+        assert all(each.label in card.near.text() for each in (*tight.neighbours, *tight.sisters))
+        assert card.doubt.text() == tight.doubts[0].en
+        assert tight.doubts[1].en in card.main.toolTip()
+        assert card.caution.text() == "4 in not added"
+        assert card.button("us").accessibleName().endswith("4 in not added")
+        card.button("jp").click()
+        assert (card.caution.text(), card.doubt.isVisible()) == ("", False)
+        card.button("uk").click()
         typed(card.allowance, "21")
         assert "0 to 20" in card.allowance.accessibleDescription()
 

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
-from app.dress.parts import Disclosure, button, hairline, sentence
-from app.dress.theme import font, label
+from app.dress.parts import button, hairline, sentence
+from app.dress.theme import font, label, set_tag
 from app.panels.figure_field import FigureField
 from app.wording.words import number, tr
 from core.sizes import ALLOWANCE
@@ -22,7 +22,8 @@ COLUMNS = 3
 class SizeView:
     """The size in one system: how it is written, the rule that found it, and what lies ``near`` it.
 
-    ``short`` is the system in a few letters; ``tip`` tells its name and what is uncertain in it.
+    ``short`` is the system in a few letters; ``tip`` tells its name and what is uncertain in it. Where others
+    may find quite another size, ``caution`` says so in a few words and ``doubt`` in a sentence.
     """
 
     key: str
@@ -31,6 +32,8 @@ class SizeView:
     rule: str
     near: tuple[str, ...]
     tip: str
+    caution: str = ""
+    doubt: str = ""
 
     @property
     def title(self) -> str:
@@ -47,23 +50,21 @@ class SizeCard(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.views: tuple[SizeView, ...] = ()
-        self.main = label("", "hero")
+        self.main, self.caution = label("", "hero"), _caution()
         self.others = QWidget()
         self._grid = QGridLayout(self.others)
         self._grid.setContentsMargins(0, 0, 0, 0)
         self._grid.setSpacing(2)
-        self.rule, self.near = sentence("", "secondary"), sentence("", "secondary")
-        self.fold = Disclosure(tr("Next sizes and sister sizes"))
-        self.fold.toggled.connect(self.near.setVisible)
-        self.near.setContentsMargins(24, 0, 0, 4)
-        self.near.hide()
+        self.rule, self.doubt, self.near = (sentence("", "secondary") for _ in range(3))
+        set_tag(self.doubt, "tone", "warn")
         self.allowance = _AllowanceField("mm", tr("Taken off the under-bust, worn tight"), widest="20.0")
         self.allowance.entered.connect(self.allowed)
         column = QVBoxLayout(self)
         column.setContentsMargins(4, 2, 4, 6)
         column.setSpacing(4)
         column.addWidget(label(tr("Band and cup, of the body at rest"), "caption"))
-        for each in (self.main, self.others, self.rule, self._make_allowance(), self.fold, self.near):
+        column.addLayout(self._make_head())
+        for each in (self.others, self.rule, self.doubt, self.near, self._make_allowance()):
             column.addWidget(each)
         column.addWidget(hairline())
         self.hide()
@@ -72,9 +73,8 @@ class SizeCard(QWidget):
         """Show sizes, the ``chosen`` system large; without any, ``why`` there is none, or nothing at all."""
         self.views = tuple(views)
         self.setVisible(bool(views or why))
-        for each in (self.main, self.others, self.fold, self._allowed):
+        for each in (self.main, self.caution, self.others, self.doubt, self.near, self._allowed):
             each.setVisible(bool(views))
-        self.near.setVisible(bool(views) and self.fold.isChecked())
         self.allowance.show_value(allowance_mm)
         if not views:
             self.rule.setText(why)
@@ -82,7 +82,10 @@ class SizeCard(QWidget):
         main = next((view for view in views if view.key == chosen), views[0])
         self.main.setText(main.title)
         self.main.setToolTip(main.tip)
+        self.caution.setText(main.caution)
         self.rule.setText(main.rule)
+        self.doubt.setText(main.doubt)
+        self.doubt.setVisible(bool(main.doubt))
         self.near.setText("\n".join(main.near))
         self._show_others([view for view in views if view is not main])
 
@@ -93,15 +96,21 @@ class SizeCard(QWidget):
     def _show_others(self, views: Sequence[SizeView]) -> None:
         keys = [view.key for view in views]
         if keys != [each.objectName() for each in self.others.findChildren(QPushButton)]:
-            for each in self.others.findChildren(QPushButton):
+            for each in self.others.findChildren(QWidget, options=Qt.FindChildOption.FindDirectChildrenOnly):
                 each.setParent(None)
                 each.deleteLater()
+            self._cautions = {view.key: _caution() for view in views}
             for place, view in enumerate(views):
-                self._grid.addWidget(self._make_other(view.key), *divmod(place, COLUMNS))
+                row, column = divmod(place, COLUMNS)
+                self._grid.addWidget(self._make_other(view.key), 2 * row, column)
+                self._grid.addWidget(self._cautions[view.key], 2 * row + 1, column)
         for view in views:
             press = self.button(view.key)
             press.setText(view.title)
             press.setToolTip(view.tip)
+            press.setAccessibleName(f"{view.title} {view.caution}".rstrip())
+            self._cautions[view.key].setText(view.caution)
+            self._cautions[view.key].setVisible(bool(view.caution))
 
     def _make_other(self, key: str) -> QPushButton:
         press = button("", "word")
@@ -111,6 +120,13 @@ class SizeCard(QWidget):
         press.clicked.connect(lambda: self.chosen.emit(key))
         return press
 
+    def _make_head(self) -> QHBoxLayout:
+        row = QHBoxLayout()
+        row.setSpacing(8)
+        row.addWidget(self.main)
+        row.addWidget(self.caution, 1, Qt.AlignmentFlag.AlignVCenter)
+        return row
+
     def _make_allowance(self) -> QWidget:
         self._allowed = QWidget()
         row = QHBoxLayout(self._allowed)
@@ -118,6 +134,14 @@ class SizeCard(QWidget):
         row.addWidget(label(self.allowance.accessibleName(), "secondary"), 1, Qt.AlignmentFlag.AlignLeft)
         row.addWidget(self.allowance)
         return self._allowed
+
+
+def _caution() -> QLabel:
+    """Return a place for the few words beside a size that others may find otherwise."""
+    result = label("", "caption")
+    result.setAlignment(Qt.AlignmentFlag.AlignHCenter)
+    set_tag(result, "tone", "warn")
+    return result
 
 
 class _AllowanceField(FigureField):

@@ -23,29 +23,35 @@ def size_views(measured: Measures, allowance_mm: float) -> tuple[list[SizeView],
 
 
 def _view(key: str, answer: SizeAnswer) -> SizeView:
-    doubts = [f"• {each.told(language())}" for each in answer.doubts]
+    doubts, caution = [each.told(language()) for each in answer.doubts], answer.table.caution
     return SizeView(
         key,
         key.upper() if len(key) == 2 else answer.table.system,
         answer.label or "\N{EN DASH}",
         " ".join(say(each) for each in answer.rule),
         tuple(_near(answer)),
-        "\n".join([answer.table.title.told(language()), *doubts]),
+        "\n".join([answer.table.title.told(language()), *(f"• {each}" for each in doubts)]),
+        caution.told(language()) if caution else "",
+        doubts[0] if caution and doubts else "",
     )
 
 
 def _near(answer: SizeAnswer) -> Iterator[str]:
-    for each in answer.neighbours:
-        missing = number(each.missing_mm, 1)
-        yield _words(each).format(size=each.label or each.name, mm=missing)
+    """Yield a line on the next bands, one on the next cups and one on the sister sizes."""
+    lines = {
+        "band": tr("Under-bust {sizes}"),
+        "cup": tr("Bust {sizes}"),
+    }
+    for part, words in lines.items():
+        near = [_away(each) for each in answer.neighbours if each.part == part]
+        if near:
+            yield words.format(sizes=" · ".join(near))
     if answer.sisters:
         labels = ", ".join(each.label for each in answer.sisters)
         yield tr("Sister sizes: {sizes}").format(sizes=labels)
 
 
-def _words(neighbour: Neighbour) -> str:
-    if neighbour.part == "band":
-        more, less = tr("{size}: under-bust {mm} mm more"), tr("{size}: under-bust {mm} mm less")
-    else:
-        more, less = tr("{size}: bust {mm} mm more"), tr("{size}: bust {mm} mm less")
-    return more if neighbour.up else less
+def _away(neighbour: Neighbour) -> str:
+    """Return how far a size beside this one is, and which it is."""
+    missing = neighbour.missing_mm if neighbour.up else -neighbour.missing_mm
+    return f"{number(missing, 1, signed=True)} mm: {neighbour.label or neighbour.name}"

@@ -101,7 +101,9 @@ class SizeTable:
     """A system of sizes as its sources tell it.
 
     ``label`` is how a size is written, with {band} and {cup}; ``cup_from`` is UNDERBUST or BAND.
-    ``doubts`` say what in it is uncertain, ``sources`` where it comes from, ``examples`` what these work out.
+    ``doubts`` say what in it is uncertain, the gravest first, ``sources`` where it comes from, ``examples``
+    what these work out. ``caution`` is that doubt in a few words, to stand beside each size, where others
+    may find quite another one.
     """
 
     key: str
@@ -115,6 +117,7 @@ class SizeTable:
     sources: tuple[Source, ...]
     doubts: tuple[Words, ...]
     examples: tuple[Example, ...] = ()
+    caution: Words | None = None
 
     @property
     def unit_mm(self) -> float:

@@ -17,6 +17,7 @@ FORMAT = 1
 _LARGEST = 1_000_000  # bytes
 _KEYS: tuple[str, ...] = ("format", "system", "names", "unit", "label", "cup_from", "borders")
 _KEYS += ("bands", "cups", "sources", "doubts", "examples")
+_MAY = ("caution",)
 _MOST = 10_000.0
 """No number of a table is larger [unit]."""
 
@@ -43,7 +44,7 @@ def table_of(key: str, text: str) -> SizeTable:
         values = json.loads(text, parse_constant=_no_number)
     except RecursionError as problem:
         raise ValueError("it is nested too deeply") from problem
-    _same_keys("it", values, _KEYS)
+    _same_keys("it", values, _KEYS, _MAY)
     if values["format"] != FORMAT or isinstance(values["format"], bool):
         raise ValueError(f"it is not of format {FORMAT}")
     borders = values["borders"]
@@ -60,6 +61,7 @@ def table_of(key: str, text: str) -> SizeTable:
         sources=_list("sources", values["sources"], _source, least=1),
         doubts=_list("doubts", values["doubts"], _words),
         examples=_list("examples", values["examples"], _example),
+        caution=_words("caution", values["caution"]) if "caution" in values else None,
     )
     for each in table.examples:
         _come_out(table, each)
@@ -78,11 +80,11 @@ def _no_number(text: str) -> float:
     raise ValueError(f"{text} is no number")
 
 
-def _same_keys(what: str, values: Any, keys: tuple[str, ...]) -> None:
+def _same_keys(what: str, values: Any, keys: tuple[str, ...], may: tuple[str, ...] = ()) -> None:
     if not isinstance(values, dict):
         raise ValueError(f"{what} must be a JSON object")
     missing = [key for key in keys if key not in values]
-    unknown = [key for key in values if key not in keys]
+    unknown = [key for key in values if key not in (*keys, *may)]
     if missing:
         raise ValueError(f"{what} lacks '{missing[0]}'")
     if unknown:
