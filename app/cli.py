@@ -195,6 +195,18 @@ def press(options: argparse.Namespace) -> int:
     return SETTLED if found.settled else NOT_SETTLED
 
 
+def report(options: argparse.Namespace) -> int:
+    """Write the sheet to work from: measures, sizes, cut list, pressures and pictures."""
+    from app.commands.reported import SheetWishes, run_report
+
+    wishes = SheetWishes(**{name: getattr(options, name) for name in SheetWishes.__dataclass_fields__})
+    design = design_of(options.input, options)
+    found = run_report(options.input, design, options.line or [], options.elastic or [], wishes)
+    print(f"written to {', '.join(found.files)}", flush=True)
+    _warn(found.warnings)
+    return SETTLED if found.settled else NOT_SETTLED
+
+
 def export(options: argparse.Namespace) -> int:
     """Write what other programs open: a body, its lines, strips, measures, a turntable."""
     from app.commands.exported import KINDS, run_export
@@ -276,6 +288,7 @@ COMMANDS: dict[str, Callable[[argparse.Namespace], int]] = {
     "export": export,
     "cut": cut,
     "press": press,
+    "report": report,
     "picture": picture,
     "demo": demo,
     "figures": figures,

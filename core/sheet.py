@@ -18,7 +18,7 @@ from core.mesh import Floats, Points
 from core.pipeline import Stages
 from core.press_list import PressRow, press_list
 from core.pressure import LEFT_OUT
-from core.profile import Curve, Plane, Slicer
+from core.profile import AXES, Curve, Plane, Slicer
 from core.progress import Progress, quiet
 from core.report import Shown, shape_warnings, still_lines, warnings
 from core.sizes import sizes, sizes_text
@@ -82,12 +82,16 @@ Line2 = tuple[tuple[float, float], ...]
 
 @dataclass(frozen=True)
 class SectionCurves:
-    """A cut of the body across ``axis`` at ``at_mm``, before and after; ``box`` is the part that can move."""
+    """A cut of the body across ``axis`` at ``at_mm``, before and after; ``box`` is the part that can move.
+
+    ``bust_point`` is where that is in the cut before; of a level cut the middle of both.
+    """
 
     name: str
     axis: str
     at_mm: float
     box: tuple[tuple[float, float], tuple[float, float]]
+    bust_point: tuple[float, float]
     before: tuple[Line2, ...]
     after: tuple[Line2, ...]
 
@@ -209,15 +213,16 @@ def _sections(stages: Stages, control_points: Points) -> tuple[SectionCurves, ..
     control, marks = stages.control, stages.landmarks.points
     laid = control.mesh.vertices[list(control.bust_points)]  # a side without a breast has these
     both = [marks[name].position for name in ("bust_point_left", "bust_point_right") if name in marks]
-    left, level = (both[0], np.mean(both, axis=0)) if both else (laid[0], laid.mean(axis=0))
+    left, middle = (both[0], np.mean(both, axis=0)) if both else (laid[0], laid.mean(axis=0))
     rest, places = stages.body.mesh, deform(stages.binding, control_points)
     free = control.mesh.vertices[~control.fixed]
     found = []
-    for name, plane in (("side", Plane("x", float(left[0]))), ("bust", Plane("z", float(level[2])))):
+    for name, axis, mark in (("side", "x", left), ("bust", "z", middle)):
+        plane = Plane(axis, float(mark[AXES.index(axis)]))
         slicer, flat = Slicer(rest, plane), plane.flat(free)
         box = _pair(flat.min(axis=0) - AROUND), _pair(flat.max(axis=0) + AROUND)
         curves = (tuple(map(_line, slicer.curves(each))) for each in (rest.vertices, places))
-        found.append(SectionCurves(name, plane.axis, plane.at, box, *curves))
+        found.append(SectionCurves(name, axis, plane.at, box, _pair(plane.flat(mark)), *curves))
     return tuple(found)
 
 

@@ -28,6 +28,7 @@ APP_FLOORS = (
     "showing",
     "presenting",
     "exporting",
+    "reporting",
     "keeping",
     "viewing",
 )
@@ -64,6 +65,7 @@ OUTSIDE = {
     "showing": {"numpy", "pyvista", "pyvistaqt", "pyqtgraph", "vtkmodules", "PySide6.QtCore", "PySide6.QtGui"}
     | {"PySide6.QtWidgets", "PySide6.QtOpenGLWidgets"},
     "presenting": {"numpy"},
+    "reporting": {"numpy", "PySide6.QtCore", "PySide6.QtGui"},
     "exporting": set(),
     "keeping": QT,
     "viewing": QT | {"numpy"},

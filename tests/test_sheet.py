@@ -83,6 +83,7 @@ def test_the_sections_go_through_the_bust(worn: Solution, sheet: Sheet) -> None:
     side, level = sheet.sections
     left = worn.stages.landmarks.points["bust_point_left"].position
     assert (side.name, side.axis, side.at_mm) == ("side", "x", left[0])
+    assert side.bust_point == pytest.approx((-left[1], left[2]), abs=0.01)
     assert (level.name, level.axis) == ("bust", "z")
     for each in sheet.sections:
         assert len(each.before) >= 1

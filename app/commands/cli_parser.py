@@ -24,6 +24,7 @@ COMMANDS = {
     "measure": "measure a scan, or a project before and after",
     "cut": "tell how long the elastic of each worn line is to be cut",
     "press": "tell what each worn line presses the skin with, in kPa and mmHg, and whether that is much",
+    "report": "write a sheet to work from (PDF): sizes, lengths to cut, measures, pressures, pictures",
     "export": "write a body, its lines, strips, measures or a turntable for other programs",
     "picture": "render a scan or project to a PNG file",
     "demo": "do the sample session off-screen and write what comes out",
@@ -34,7 +35,7 @@ COMMANDS = {
 }
 """Every command with what it does, in a few words."""
 
-_OF_A_SCAN = ("solve", "limits", "detect", "measure", "cut", "press", "picture")
+_OF_A_SCAN = ("solve", "limits", "detect", "measure", "cut", "press", "report", "picture")
 
 _AXIS = "like {axis}, or a direction x,y,z of the file for a body that stands askew"
 
@@ -102,6 +103,8 @@ def _parser(command: str) -> argparse.ArgumentParser:
     if command in ("measure", "cut", "press"):
         parser.add_argument("--csv", action="store_true", help="print a table of comma-separated values")
         parser.add_argument("--out", metavar="FILE", help="write it to a file, by its ending .json or .csv")
+    if command == "report":
+        _add_sheet(parser)
     if command == "measure":
         parser.add_argument("--own", action="append", metavar="NAME=KIND:PLACES", help=MEASURE_HELP)
     if command == "picture":
@@ -125,17 +128,17 @@ def _parser(command: str) -> argparse.ArgumentParser:
 
 def _add_design(parser: argparse.ArgumentParser, command: str) -> None:
     """Add what can be said of a design: its settings, its lines and what they are made of."""
-    if command in ("solve", "limits", "cut", "press", "export", "picture"):
+    if command in ("solve", "limits", "cut", "press", "report", "export", "picture"):
         parser.add_argument("--settings", action="append", metavar="KEY=VALUE", help=help_text())
         parser.add_argument("--path", action="append", metavar="NAME=POINTS", help=LINE_HELP)
-    if command in ("solve", "limits", "cut", "press", "export"):
+    if command in ("solve", "limits", "cut", "press", "report", "export"):
         parser.add_argument(
             "--line",
             action="append",
             metavar="NAME=LENGTH",
             help="97%% of the rest length, -20mm shorter, 400mm absolute; of the front part, side to side",
         )
-    if command in ("solve", "cut", "press", "export"):
+    if command in ("solve", "cut", "press", "report", "export"):
         parser.add_argument("--elastic", action="append", metavar="LINE=ELASTIC", help=ELASTIC_HELP)
     if command == "cut":
         same = "let lines of elastic reach what they reach without it: lengths are then those on the body"
@@ -154,6 +157,25 @@ def _add_scan(parser: argparse.ArgumentParser) -> None:
         "--front", metavar="AXIS", help=f"where the body faces in the scan: {_AXIS.format(axis='-y')}"
     )
     parser.add_argument("--landmark", action="append", metavar="NAME=x,y,z", help=LANDMARK_HELP)
+
+
+def _add_sheet(parser: argparse.ArgumentParser) -> None:
+    """Add what can be said of a sheet."""
+    parser.add_argument("--out", required=True, metavar="FILE", help="the sheet: .pdf")
+    parser.add_argument("--json", default="", metavar="FILE", help="all of it as data: .json")
+    parser.add_argument("--csv", default="", metavar="FILE", help="all its figures as one long table: .csv")
+    parser.add_argument("--language", choices=("en", "ja"), default="en")
+    parser.add_argument("--customer", metavar="TEXT", help="whose it is, else as the project says")
+    parser.add_argument(
+        "--system", default="jp", metavar="KEY", help="the sizes that come first: jp, eu, uk, us, fr, it, au"
+    )
+    parser.add_argument(
+        "--allowance",
+        type=float,
+        default=0.0,
+        metavar="MM",
+        help="taken off the under-bust for a tape that is worn tight, 0 to 20; an estimate",
+    )
 
 
 def _add_files(parser: argparse.ArgumentParser) -> None:

@@ -24,20 +24,25 @@ class Worn:
     warnings: list[str]
 
 
-def run_worn(design: Design, lines: Sequence[str], elastics: Sequence[str], same: bool = False) -> Worn:
-    """Solve a design with lines and elastics as requested. Raises UserError.
+def run_worn(
+    design: Design, lines: Sequence[str], elastics: Sequence[str], *, same: bool = False, bare: bool = False
+) -> Worn:
+    """Solve a design with lines and elastics as requested. Raises UserError, for one without lines unless
+    it may be ``bare``.
 
     If ``same`` lines made of elastics reach what they reach without them.
     """
     stages = build(design)
     design = dressed(design, stages.model.lines, lines)
     if same:
-        bare = build(reduce(lambda bare, name: bare.with_elastic(name, None), design.worn_elastics(), design))
+        plain = build(
+            reduce(lambda each, name: each.with_elastic(name, None), design.worn_elastics(), design)
+        )
         made = made_of(design, elastics).worn_elastics()
-        design = as_worn(bare, run(bare).control_points, made)
+        design = as_worn(plain, run(plain).control_points, made)
     else:
         design = made_of(design, elastics)
-    if not design.lines:
+    if not design.lines and not bare:
         raise LineError("No line is worn.", "Set one: --line mid-bust=75% --elastic 'mid-bust=plush 12'.")
     solution = run(build(design, stages))
     motion = solution.verdict.motion

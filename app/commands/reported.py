@@ -1,0 +1,135 @@
+"""The sheet to work from as the command line writes it: PDF, JSON and one long table, with no display."""
+
+from __future__ import annotations
+
+import datetime
+import logging
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.commands.worn import run_worn
+from app.wording.display import off_screen
+from core.design import Design
+from core.errors import UserError
+from core.progress import in_one_go
+from core.project import is_project, open_project, whole_file
+from core.sheet import Heading, Sheet, sheet_of
+from core.sizes import sizes
+from core.solution import Solution
+from core.writing_out.sheet_file import sheet_csv, sheet_json
+
+if TYPE_CHECKING:
+    from PySide6.QtGui import QImage
+
+
+@dataclass(frozen=True)
+class SheetWishes:
+    """Where to write: ``out`` the PDF, in a ``language``, ``json`` and ``csv`` if they are named.
+
+    ``customer`` is None where that of the project holds; ``system`` and ``allowance`` [mm] are about sizes.
+    """
+
+    out: str
+    json: str = ""
+    csv: str = ""
+    language: str = "en"
+    customer: str | None = None
+    system: str = "jp"
+    allowance: float = 0.0
+
+
+@dataclass(frozen=True)
+class Reported:
+    """What came of it: whether the design settled, the files, and what to say."""
+
+    settled: bool
+    files: list[str]
+    warnings: list[str]
+
+
+def run_report(
+    source: str, design: Design, lengths: Sequence[str], elastics: Sequence[str], wishes: SheetWishes
+) -> Reported:
+    """Solve a design with ``lengths``, NAME=LENGTH, and ``elastics``, LINE=ELASTIC, and write its sheet.
+
+    Each file is whole or not there. Raises UserError, before anything is solved if a name cannot be.
+    """
+    _check(wishes)
+    worn = run_worn(design, lengths, elastics, bare=True)
+    solution = worn.solution
+    sheet = sheet_of(solution, solution.records, _heading(source, design, wishes))
+    for name, text in ((wishes.json, sheet_json), (wishes.csv, sheet_csv)):
+        if name:
+            with whole_file(Path(name).absolute()) as partial:
+                partial.write_text(text(sheet), encoding="utf-8")
+    said = _write(solution, sheet, wishes)
+    files = [name for name in (wishes.out, wishes.json, wishes.csv) if name]
+    return Reported(worn.settled, files, [*dict.fromkeys((*worn.warnings, *sheet.warnings)), *said])
+
+
+def _check(wishes: SheetWishes) -> None:
+    """Raise UserError if something is wished that cannot be."""
+    for name, ending in ((wishes.out, ".pdf"), (wishes.json, ".json"), (wishes.csv, ".csv")):
+        if name and Path(name).suffix.lower() != ending:
+            raise UserError(f"'{name}' is no name for such a file.", f"Choose one that ends in {ending}.")
+        if name and not Path(name).absolute().parent.is_dir():
+            raise UserError(
+                f"There is no folder {Path(name).absolute().parent}.", "Make it, or choose another one."
+            )
+    if not wishes.out:
+        raise UserError("The place to write to has no name.", "Name a file: --out sheet.pdf.")
+    known = sizes(750.0, 900.0, wishes.allowance)
+    if wishes.system not in known:
+        raise UserError(
+            f"There is no table of sizes '{wishes.system}'.", f"Choose one of: {', '.join(known)}."
+        )
+
+
+def _heading(source: str, design: Design, wishes: SheetWishes) -> Heading:
+    document = open_project(source) if is_project(source) else None
+    return Heading(
+        project=Path(source).stem,
+        date=datetime.date.today().isoformat(),
+        customer=design.customer if wishes.customer is None else wishes.customer,
+        variant=document.shown if document is not None and len(document.designs) > 1 else "",
+        system=wishes.system,
+        allowance_mm=wishes.allowance,
+    )
+
+
+def _write(solution: Solution, sheet: Sheet, wishes: SheetWishes) -> list[str]:
+    """Write the PDF, and return what is to be said of it."""
+    os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")  # a sheet needs no screen, even if there is one
+    off_screen()
+    from app.application import application  # noqa: PLC0415 (brings Qt along)
+    from app.presenting.lines import line_colours  # noqa: PLC0415
+    from app.reporting.handout import Handout  # noqa: PLC0415
+    from app.reporting.pages import pages_of  # noqa: PLC0415
+    from app.reporting.pdf import write_pdf  # noqa: PLC0415
+
+    application()
+    names = [line.name for line in solution.stages.model.lines]
+    handout = Handout(sheet, {}, line_colours(names, solution.stages.design))
+    title = " ".join(filter(None, (sheet.heading.customer, sheet.heading.project)))
+    # Graphics that do not work may end the program: the sheet without pictures is there by then.
+    write_pdf(wishes.out, pages_of(handout, wishes.language), title)
+    pictures = _pictures(solution)
+    if not pictures:
+        return ["The pictures of the body could not be drawn: the sheet shows its curves alone."]
+    write_pdf(wishes.out, pages_of(replace(handout, pictures=pictures), wishes.language), title)
+    return []
+
+
+def _pictures(solution: Solution) -> Mapping[str, QImage]:
+    """Return the pictures of a sheet, or none where they cannot be drawn."""
+    try:
+        from app.reporting.pictures import shots  # noqa: PLC0415 (brings VTK along)
+        from app.seeing.occlusion import bake_occlusion  # noqa: PLC0415
+
+        return in_one_go(shots(solution, bake_occlusion(solution.stages.body.mesh)))
+    except Exception:
+        logging.exception("no pictures for the sheet")
+        return {}

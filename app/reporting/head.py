@@ -1,0 +1,195 @@
+"""The head of a sheet: whose it is, the few figures that are looked for first, and the pictures."""
+
+from __future__ import annotations
+
+from app.presenting.bust import forward_words
+from app.reporting.flow import Block
+from app.reporting.handout import SHOTS, Handout
+from app.reporting.marks import paint_chip, paint_state
+from app.reporting.paper import A4, MARGIN, Paper, elided, line_height, text_width, wrapped
+from app.reporting.telling import cut_pieces, other_sizes, project_words, state_words
+from app.wording.tokens import LIGHT
+from app.wording.words import number, say, tr
+from core.sheet import Sheet
+
+WIDE = A4[0] - 2 * MARGIN
+"""What is between the margins of a page [mm]."""
+
+_CELLS = (0.0, 28.0, 58.0, 121.0, 154.0)  # where band, cup, lengths to cut, lift and volume begin [mm]
+_HERO, _LARGE, _SHOTS = 25.5, 3, 60.0
+_USUAL = LIGHT.control  # of a line that has no colour
+
+
+def head_blocks(handout: Handout) -> list[Block]:
+    """Return the head: title, a doubt if there is one, the great figures, the pictures."""
+    word, doubt = state_words(handout.sheet)
+    blocks = [_title(handout.sheet, word, sound=not doubt)]
+    if doubt:
+        blocks.append(_doubt(doubt))
+    return [*blocks, _hero(handout), _pictures(handout)]
+
+
+def _title(sheet: Sheet, word: str, *, sound: bool) -> Block:
+    heading, title = sheet.heading, tr("Fitting sheet")
+    customer = elided(heading.customer, "name", 100.0)
+    gap = text_width(customer, "name") + 3.0 if customer else 0.0
+    project = elided(project_words(sheet), "quiet", WIDE - gap - 30.0)
+
+    def paint(paper: Paper, x: float, y: float) -> None:
+        paper.text(x, y + 5.2, title, "title")
+        paper.text(x + WIDE, y + 5.2, heading.date, "quiet", align="right")
+        paper.text(x, y + 12.0, customer, "name")
+        paper.text(x + gap, y + 12.0, project, "quiet")
+        paper.text(x + WIDE, y + 12.0, word, "quiet", align="right")
+        paint_state(paper, x + WIDE - text_width(word, "quiet") - 2.6, y + 11.0, sound=sound)
+
+    return Block(15.5, paint)
+
+
+def _doubt(doubt: str) -> Block:
+    lines = wrapped(doubt, "warning", WIDE - 6.0)
+    height = len(lines) * line_height("warning") + 3.0
+
+    def paint(paper: Paper, x: float, y: float) -> None:
+        paper.box(x, y, WIDE, height, LIGHT.bad_fill, 1.2)
+        paper.lines(x + 3.0, y + 1.5, lines, "warning")
+
+    return Block(height + 2.0, paint)
+
+
+def _hero(handout: Handout) -> Block:
+    """Return the row of great figures between two rules."""
+    parts = _size(handout.sheet), _cuts(handout), _lift(handout.sheet), _volume(handout.sheet)
+
+    def paint(paper: Paper, x: float, y: float) -> None:
+        paper.rule(x, y, WIDE, ink=LIGHT.outline)
+        for part in parts:
+            part.paint(paper, x, y)
+        for left in _CELLS[2:]:
+            paper.stroke(x + left - 4.0, y + 3.0, y + _HERO - 3.0, ink=LIGHT.line)
+        paper.rule(x, y + _HERO, WIDE, ink=LIGHT.outline)
+
+    return Block(_HERO, paint)
+
+
+def _great(left: float, width: float, caption: str, figure: str, below: str, unit: str = "") -> Block:
+    """Return one figure with what it is over it and what belongs to it below."""
+    lines, end = wrapped(below, "caption", width)[:3], text_width(figure, "hero") + 1.2
+
+    def paint(paper: Paper, x: float, y: float) -> None:
+        paper.text(x + left, y + 4.6, caption, "caption")
+        paper.text(x + left, y + 12.8, figure, "hero")
+        paper.text(x + left + end, y + 12.8, unit, "name")
+        paper.lines(x + left, y + 14.8, lines, "caption")
+
+    return Block(_HERO, paint)
+
+
+def _size(sheet: Sheet) -> Block:
+    chosen = sheet.sizes[0] if sheet.sizes else {"band": None, "cup": None}
+    below = other_sizes(sheet) if sheet.sizes else say(sheet.no_size)
+    nothing = "\N{EN DASH}"
+    band = _great(_CELLS[0], _CELLS[2] - 6.0, tr("Band"), chosen["band"] or nothing, below)
+    cup = _great(_CELLS[1], 20.0, tr("Cup"), chosen["cup"] or nothing, "")
+
+    def paint(paper: Paper, x: float, y: float) -> None:
+        band.paint(paper, x, y)
+        cup.paint(paper, x, y)
+
+    return Block(_HERO, paint)
+
+
+def _cuts(handout: Handout) -> Block:
+    """Return the lengths to cut: one as large as the size, up to three below each other."""
+    pieces, left = cut_pieces(handout.sheet, list(handout.colours)), _CELLS[2]
+    guessed = any(row.cut_mm is not None and row.estimate for row in handout.sheet.cuts.rows)
+    caption = tr("Cut length of the elastic, an estimate") if guessed else tr("Cut length of the elastic")
+    room = _CELLS[3] - left - 6.0
+    if len(pieces) == 1:
+        line, title, length = pieces[0]
+        one = _great(left, room, caption, length, "", "mm")
+        colour, name = handout.colours.get(line, _USUAL), elided(title, "strong", room - 5.0)
+
+        def paint_one(paper: Paper, x: float, y: float) -> None:
+            one.paint(paper, x, y)
+            paint_chip(paper, x + left, y + 17.3, colour)
+            paper.text(x + left + 4.6, y + 18.2, name, "strong")
+
+        return Block(_HERO, paint_one)
+    if not pieces:
+        missing = (
+            tr("No elastic is chosen yet: choose one for each line to get its length to cut.")
+            if handout.sheet.cuts.rows
+            else tr("No line is worn: there is nothing to cut.")
+        )
+        return _sentence(left, room, caption, missing)
+    rows = [
+        (handout.colours.get(line, _USUAL), elided(title, "strong", room - 31.0), length)
+        for line, title, length in pieces[:_LARGE]
+    ]
+    more, end = len(pieces) - len(rows), max(text_width(length, "large") for *_, length in rows)
+    if more:
+        caption = tr("{what}; {count} more below").format(what=caption, count=more)
+
+    def paint(paper: Paper, x: float, y: float) -> None:
+        paper.text(x + left, y + 4.6, caption, "caption")
+        for place, (colour, title, length) in enumerate(rows):
+            base = y + 10.8 + 6.2 * place
+            paper.text(x + left + end, base, length, "large", align="right")
+            paper.text(x + left + end + 1.0, base, "mm", "strong")
+            paint_chip(paper, x + left + end + 9.0, base - 1.4, colour)
+            paper.text(x + left + end + 13.6, base - 0.3, title, "strong")
+
+    return Block(_HERO, paint)
+
+
+def _sentence(left: float, room: float, caption: str, said: str) -> Block:
+    lines = wrapped(said, "body", room)[:4]
+
+    def paint(paper: Paper, x: float, y: float) -> None:
+        paper.text(x + left, y + 4.6, caption, "caption")
+        paper.lines(x + left, y + 6.8, lines, "body")
+
+    return Block(_HERO, paint)
+
+
+def _lift(sheet: Sheet) -> Block:
+    left, room, caption = _CELLS[3], _CELLS[4] - _CELLS[3] - 6.0, tr("Lift of the bust points")
+    if sheet.lift is None:
+        return _sentence(left, room, caption, tr("No figure: the shape is no result."))
+    below = forward_words(sheet.lift.forward)
+    return _great(left, room, caption, number(sheet.lift.up, 1, signed=True), below, "mm")
+
+
+def _volume(sheet: Sheet) -> Block:
+    kept = sheet.volume
+    of = tr("of {ml} ml in the model").format(ml=number(kept.rest_ml, 0))
+    figure = number(kept.error_ml, 1, signed=True)
+    return _great(_CELLS[4], WIDE - _CELLS[4], tr("Change of volume"), figure, of, "ml")
+
+
+def _pictures(handout: Handout) -> Block:
+    """Return front and side, before and after, or a sentence where they could not be drawn."""
+    if not all(name in handout.pictures for name in SHOTS):
+        lines = wrapped(
+            tr("The pictures of the body could not be drawn here: the curves show what changes."),
+            "small",
+            WIDE,
+        )
+        height = len(lines) * line_height("small")
+        return Block(height, lambda paper, x, y: paper.lines(x, y, lines, "small"), gap=3.0)
+    titles = dict(zip(SHOTS, _shot_titles(), strict=True))
+    wide = WIDE / len(SHOTS)
+
+    def paint(paper: Paper, x: float, y: float) -> None:
+        for place, (name, title) in enumerate(titles.items()):
+            left = x + place * wide
+            paper.picture(left + 1.0, y, wide - 2.0, _SHOTS, handout.pictures[name])
+            paper.text(left + 0.5 * wide, y + _SHOTS + 3.6, title, "caption", align="middle")
+
+    return Block(_SHOTS + 4.6, paint, gap=3.0)
+
+
+def _shot_titles() -> list[str]:
+    front, side, before, after = tr("Front"), tr("Left side"), tr("Before"), tr("After")
+    return [f"{view} · {when}" for view in (front, side) for when in (before, after)]

@@ -1,0 +1,237 @@
+"""The tables of a sheet, row by row, and what is to be known of their figures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from app.reporting.flow import Block, Paint
+from app.reporting.handout import Handout
+from app.reporting.head import WIDE
+from app.reporting.marks import paint_chip, paint_light
+from app.reporting.paper import Paper, elided, line_height, text_width, wrapped
+from app.reporting.telling import (
+    CutView,
+    MeasureRow,
+    cut_views,
+    definitions,
+    light_legend,
+    measure_rows,
+    note_groups,
+)
+from app.wording.tokens import LIGHT
+from app.wording.words import tr
+from core.sheet import Sheet
+
+HALF = 88.0
+"""The width of a column where two stand beside each other [mm]."""
+
+_ROW, _CUT_ROW = 4.75, 5.6
+_FEW = 3  # footnotes that stand below each other
+_EDGES = (81.0, 97.0, 113.5, 127.0, 139.0, 149.5, 160.0)  # right ends of the figures of a cut
+_ELASTIC, _LIGHT, _WORD = 35.0, 164.5, 168.0
+_MEASURED = (HALF - 29.0, HALF - 14.5, HALF)  # right ends of before, after, change
+
+
+def heading(title: str, width: float, *, gap: float = 5.0) -> Block:
+    """Return the title of what follows, which stays with it."""
+    said = elided(title, "heading", width)
+    return Block(5.4, lambda paper, x, y: paper.text(x, y + 3.6, said, "heading"), gap=gap, keep=True)
+
+
+def cut_blocks(handout: Handout) -> list[Block]:
+    """Return the cut list with what each band presses with, or what is missing for it."""
+    title = heading(tr("Cut list"), WIDE)
+    if not handout.sheet.cuts.rows:
+        said = tr("No line is worn: set a line shorter, and it stands here with its length and pressure.")
+        return [title, _paragraph(said, "body", WIDE)]
+    views, footnotes = cut_views(handout.sheet, list(handout.colours))
+    blocks = [title, _cut_head(), *(_cut_row(view, handout.colours.get(view.line, "")) for view in views)]
+    blocks.append(_legend())
+    return [*blocks, *_footnotes(footnotes)]
+
+
+def measure_blocks(sheet: Sheet) -> Iterator[Block]:
+    """Give the table of measures before and after, group by group."""
+    yield heading(tr("Measures"), HALF)
+    yield _measure_head()
+    for group, rows in measure_rows(sheet):
+        said = elided(group, "strong", HALF)
+        yield Block(5.0, _ruled(said, "strong", HALF, 5.0), gap=1.2, keep=True)
+        for row in rows:
+            yield _measure(row) if row.figures else _paragraph(f"{row.title}: {row.note}", "small", HALF, 0.9)
+
+
+def note_blocks(sheet: Sheet) -> Iterator[Block]:
+    """Give what is to be known of the figures."""
+    yield heading(tr("What the figures rest on"), HALF)
+    for title, sentences in note_groups(sheet):
+        yield _title(title)
+        for sentence in filter(None, sentences):
+            yield _bullet(sentence)
+
+
+def definition_blocks(sheet: Sheet) -> Iterator[Block]:
+    """Give how every measure is taken."""
+    yield heading(tr("How measures are taken"), HALF)
+    for title, text in definitions(sheet):
+        yield _definition(title, text)
+
+
+def _cut_head() -> Block:
+    titles = (
+        tr("width mm"),
+        tr("worn mm"),
+        tr("cut mm"),
+        tr("stretch %"),
+        tr("tension N"),
+        tr("kPa"),
+        tr("mmHg"),
+    )
+    named = (
+        (0.0, tr("Line")),
+        (_ELASTIC, tr("Elastic")),
+        (_LIGHT - 1.2, elided(tr("pressure"), "caption", WIDE - _LIGHT + 1.2)),
+    )
+
+    def paint(paper: Paper, x: float, y: float) -> None:
+        for left, title in named:
+            paper.text(x + left, y + 2.8, title, "caption")
+        for edge, title in zip(_EDGES, titles, strict=True):
+            paper.text(x + edge, y + 2.8, title, "caption", align="right")
+        paper.rule(x, y + 4.2, WIDE, ink=LIGHT.outline)
+
+    return Block(4.2, paint, keep=True)
+
+
+def _cut_row(view: CutView, colour: str) -> Block:
+    marks = " ".join(map(str, view.marks))
+    title = elided(view.title, "strong", _ELASTIC - 7.0 - text_width(marks, "axis"))
+    elastic = elided(view.elastic, "body", _EDGES[0] - _ELASTIC - 7.0)
+    word = elided(view.word, "body", WIDE - _WORD)
+
+    def paint(paper: Paper, x: float, y: float) -> None:
+        base, middle = y + 3.75, y + 2.8
+        paint_chip(paper, x, middle, colour or LIGHT.control)
+        paper.text(x + 4.6, base, title, "strong")
+        paper.text(x + 5.1 + text_width(title, "strong"), base - 0.9, marks, "axis")
+        paper.text(x + _ELASTIC, base, elastic, "body")
+        for place, (edge, figure) in enumerate(zip(_EDGES, view.figures, strict=True)):
+            paper.text(x + edge, base, figure, "figure strong" if place == 2 else "figure", align="right")
+        if view.light:
+            paint_light(paper, x + _LIGHT, middle, view.light)
+            paper.text(x + _WORD, base, word, "body")
+        paper.rule(x, y + _CUT_ROW, WIDE)
+
+    return Block(_CUT_ROW, paint)
+
+
+def _legend() -> Block:
+    """Return what the lights say, on one line."""
+    said = light_legend()
+    before = tr("Tension and pressure are estimates. Largest pressure:")
+
+    def paint(paper: Paper, x: float, y: float) -> None:
+        paper.text(x, y + 2.6, before, "small")
+        x += text_width(before, "small") + 3.5
+        for light, words in said:
+            paint_light(paper, x, y + 1.8, light)
+            paper.text(x + 2.2, y + 2.6, words, "small")
+            x += text_width(words, "small") + 7.5
+
+    return Block(3.8, paint, gap=1.6)
+
+
+def _footnotes(notes: list[str]) -> Iterator[Block]:
+    """Give footnotes, two beside each other where there are many."""
+    count = 2 if len(notes) > _FEW else 1
+    width = (WIDE - 5.0 * (count - 1)) / count
+    numbered = [(str(k), wrapped(note, "small", width - 3.4)) for k, note in enumerate(notes, start=1)]
+    for first in range(0, len(numbered), count):
+        yield _footnote_row(numbered[first : first + count], width)
+
+
+def _footnote_row(notes: list[tuple[str, list[str]]], width: float) -> Block:
+    def paint(paper: Paper, x: float, y: float) -> None:
+        for place, (number, lines) in enumerate(notes):
+            left = x + place * (width + 5.0)
+            paper.text(left + 1.8, y + 2.3, number, "axis", align="right")
+            paper.lines(left + 3.4, y, lines, "small")
+
+    return Block(max(len(lines) for _, lines in notes) * line_height("small"), paint)
+
+
+def _measure_head() -> Block:
+    titles = tr("before"), tr("after"), tr("change")
+    unit = tr("mm, if not told otherwise")
+
+    def paint(paper: Paper, x: float, y: float) -> None:
+        paper.text(x, y + 2.6, unit, "caption")
+        for edge, title in zip(_MEASURED, titles, strict=True):
+            paper.text(x + edge, y + 2.6, title, "caption", align="right")
+
+    return Block(3.4, paint, keep=True)
+
+
+def _measure(row: MeasureRow) -> Block:
+    room = _MEASURED[0] - 13.0
+    unit = elided(row.unit, "caption", room)
+    room -= text_width(unit, "caption") + 1.6 if unit else 0.0
+    name = "body" if text_width(row.title, "body") <= room else "small"
+    title = elided(row.title, name, room)
+
+    def paint(paper: Paper, x: float, y: float) -> None:
+        base = y + 3.3
+        paper.text(x, base, title, name, ink=LIGHT.text)
+        paper.text(x + text_width(title, name) + 1.6, base, unit, "caption")
+        for edge, figure, kind in zip(
+            _MEASURED, row.figures, ("before", "figure strong", "figure"), strict=True
+        ):
+            paper.text(x + edge, base, figure, kind, align="right")
+        paper.rule(x, y + _ROW, HALF, weight=0.1)
+
+    return Block(_ROW, paint)
+
+
+def _title(title: str) -> Block:
+    said = elided(title, "small strong", HALF)
+    return Block(3.6, lambda paper, x, y: paper.text(x, y + 2.5, said, "small strong"), gap=1.4, keep=True)
+
+
+def _bullet(sentence: str) -> Block:
+    lines = wrapped(sentence, "small", HALF - 3.0)
+
+    def paint(paper: Paper, x: float, y: float) -> None:
+        paper.disc(x + 0.9, y + 0.52 * line_height("small"), 0.22, LIGHT.text_caption)
+        paper.lines(x + 3.0, y, lines, "small")
+
+    return Block(len(lines) * line_height("small"), paint, gap=0.3)
+
+
+def _definition(title: str, text: str) -> Block:
+    """Return a name and, going on behind it, how that is taken."""
+    lead = wrapped(title, "small strong", HALF)
+    start = text_width(lead[-1], "small strong") + 1.4
+    first = wrapped(text, "small", HALF - start)[0] if HALF - start > 25.0 else ""
+    rest = wrapped(text.removeprefix(first).strip(), "small", HALF) if text != first else []
+    step = line_height("small")
+
+    def paint(paper: Paper, x: float, y: float) -> None:
+        paper.lines(x, y, lead, "small strong")
+        last = y + (len(lead) - 1) * step
+        paper.text(x + start, last + 0.74 * step, first, "small")
+        paper.lines(x, last + step, rest, "small")
+
+    return Block((len(lead) + len(rest)) * step, paint, gap=0.8)
+
+
+def _paragraph(text: str, kind: str, width: float, gap: float = 0.0) -> Block:
+    lines = wrapped(text, kind, width)
+    return Block(len(lines) * line_height(kind), lambda paper, x, y: paper.lines(x, y, lines, kind), gap=gap)
+
+
+def _ruled(text: str, kind: str, width: float, height: float) -> Paint:
+    def paint(paper: Paper, x: float, y: float) -> None:
+        paper.text(x, y + 3.6, text, kind)
+        paper.rule(x, y + height, width, ink=LIGHT.outline)
+
+    return paint

@@ -1,0 +1,247 @@
+"""What a sheet says, in words of the language in use: plain values for the painter."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from typing import Any
+
+from app.presenting.lines import line_title
+from app.presenting.pressure import light_word
+from app.showing.verdict_chip import state_title
+from app.wording.words import language, number, say, tr
+from core.cutting import CutRow
+from core.design_lines import partner_of
+from core.measuring.definitions import definition_of
+from core.measuring.own import OWN
+from core.press_list import PressRow
+from core.sewing.comfort import comfort
+from core.sheet import SOUND, Sheet
+
+NOTHING = "\N{EN DASH}"
+"""What stands in a table where nothing is known."""
+
+
+@dataclass(frozen=True)
+class CutView:
+    """A row of the cut list, as it is printed; ``marks`` are the numbers of its footnotes."""
+
+    line: str
+    title: str
+    elastic: str
+    figures: tuple[str, ...]
+    light: str
+    word: str
+    marks: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class MeasureRow:
+    """A row of the measures, as it is printed; one that is missing has no ``figures`` but a ``note``."""
+
+    title: str
+    unit: str
+    figures: tuple[str, ...]
+    note: str = ""
+
+
+def piece_title(line: str, title: str) -> str:
+    """Return what a line is called: as the designer named it, else in the language in use."""
+    if title == line:
+        return line_title(line)
+    side = {"left": tr("left"), "right": tr("right")}.get(line.rpartition(" ")[2]) if partner_of(line) else ""
+    return f"{title}, {side}" if side else title
+
+
+def project_words(sheet: Sheet) -> str:
+    """Return of what the sheet is: the project, and which variant of it."""
+    heading = sheet.heading
+    variant = tr("Variant {name}").format(name=heading.variant) if heading.variant else ""
+    return " · ".join(filter(None, (heading.project, variant)))
+
+
+def state_words(sheet: Sheet) -> tuple[str, str]:
+    """Return the word for the run, and why its figures are no result, if they are none."""
+    word = state_title(sheet.state)
+    if sheet.state in SOUND and sheet.state != "settling":
+        return word, ""
+    return word, tr("{state}: these figures are no result to sew for.").format(state=word)
+
+
+def other_sizes(sheet: Sheet) -> str:
+    """Return the size as it is written in each system, the chosen one first."""
+    said = (f"{_system(each)} {each['size'] or NOTHING}" for each in sheet.sizes)
+    # What belongs together is not parted at the end of a line, nor does a line begin with a dot.
+    return "\N{NO-BREAK SPACE}· ".join(each.replace(" ", "\N{NO-BREAK SPACE}") for each in said)
+
+
+def size_rule(sheet: Sheet) -> str:
+    """Return how the size in the chosen system was found, and its sister sizes."""
+    if not sheet.sizes:
+        return say(sheet.no_size)
+    chosen = sheet.sizes[0]
+    rule = _joined([say(sentence) for sentence in chosen["rule"]])
+    sisters = ", ".join(each["size"] for each in chosen["sisters"])
+    more = tr("Sister sizes: {sizes}").format(sizes=sisters) if sisters else ""
+    return _joined([f"{_system(chosen)}{_colon()}{rule}", more])
+
+
+def cut_views(sheet: Sheet, order: Sequence[str]) -> tuple[list[CutView], list[str]]:
+    """Return the rows of the cut list in the ``order`` of the lines, and their footnotes."""
+    footnotes: list[str] = []
+    views = []
+    rows = zip(sheet.cuts.rows, sheet.pressures, strict=True)
+    for cut, press in sorted(rows, key=lambda row: _place(row[0].line, order)):
+        notes = list(dict.fromkeys(map(say, (*cut.notes, *press.notes))))
+        footnotes += [note for note in notes if note not in footnotes]
+        views.append(_cut_view(cut, press, tuple(footnotes.index(note) + 1 for note in notes)))
+    return views, footnotes
+
+
+def cut_pieces(sheet: Sheet, order: Sequence[str]) -> list[tuple[str, str, str]]:
+    """Return line, title and length [mm] of all that is to be cut, in the ``order`` of the lines."""
+    return [
+        (row.line, piece_title(row.line, row.title), number(row.cut_mm, 0))
+        for row in sorted(sheet.cuts.rows, key=lambda row: _place(row.line, order))
+        if row.cut_mm is not None
+    ]
+
+
+def measure_rows(sheet: Sheet) -> list[tuple[str, list[MeasureRow]]]:
+    """Return the measures in groups; those that are missing for one reason stand in one row."""
+    rows = [(_group(row["key"]), row) for row in sheet.measures]
+    order = list(dict.fromkeys(group for group, _ in rows))
+    found = []
+    for group in order:
+        those = [row for name, row in rows if name == group]
+        known = [_measure_row(row) for row in those if _known(row)]
+        missing = [row for row in those if not _known(row)]
+        for note, same in groupby(missing, key=lambda row: row["note"]):
+            title = ", ".join(_measure_title(row) for row in same)
+            known.append(MeasureRow(title, "", (), say(note)))
+        found.append((group, known))
+    return found
+
+
+def definitions(sheet: Sheet) -> list[tuple[str, str]]:
+    """Return measures and how they are taken; those that are taken alike stand together."""
+    told: dict[tuple[str, str], list[str]] = {}
+    for each in sheet.definitions:
+        told.setdefault((each["text"], each["iso"]), []).append(say(each["title"]))
+    found = []
+    for (text, iso), titles in told.items():
+        standard = tr("ISO 8559-1: {name}.").format(name=iso) if iso else ""
+        found.append((", ".join(titles), _joined([say(text), standard])))
+    return found
+
+
+def note_groups(sheet: Sheet) -> Iterator[tuple[str, list[str]]]:
+    """Give what is to be known of the figures: what to look at, how sure they are, what is left out."""
+    if sheet.warnings:
+        yield tr("To look at"), [say(each) for each in sheet.warnings]
+    yield (
+        tr("Measured"),
+        [tr("Before: on the scan. After: on the body as the model reshapes it."), size_rule(sheet)],
+    )
+    estimated = [*sheet.cuts.notes] if sheet.cuts.rows else []
+    limits = _limits() if sheet.cuts.rows else []
+    yield tr("Estimated"), [*map(say, estimated), *limits, *_unsure(sheet)]
+    yield tr("Not modelled"), [say(each) for each in sheet.left_out]
+
+
+def light_legend() -> list[tuple[str, str]]:
+    """Return each light with what it says of the largest pressure."""
+    limits = comfort()
+    amber, red = number(limits.amber_kpa, 0), number(limits.red_kpa, 0)
+    told = {
+        "green": tr("below {kpa} kPa").format(kpa=amber),
+        "amber": tr("from {kpa} kPa").format(kpa=amber),
+        "red": tr("from {kpa} kPa").format(kpa=red),
+    }
+    return [(light, f"{light_word(light)}, {words}") for light, words in told.items()]
+
+
+def foot_words(sheet: Sheet) -> str:
+    """Return what was at work, for the foot of each page."""
+    mesh = tr("control mesh {count}").format(count=sheet.model["template"])
+    return " · ".join((f"Busk {sheet.versions['busk']}", mesh, sheet.scan))
+
+
+def _cut_view(cut: CutRow, press: PressRow, marks: tuple[int, ...]) -> CutView:
+    stretch = None if cut.elongation is None else 100.0 * cut.elongation
+    width = None if cut.width_mm is None else f"{cut.width_mm:g}"
+    figures = (
+        width or NOTHING,
+        _figure(cut.reached_whole_mm, 0),
+        _figure(cut.cut_mm, 0),
+        _figure(stretch, 0),
+        _figure(cut.tension_n, 1),
+        _figure(press.max_kpa, 1),
+        _figure(press.max_mmhg, 0),
+    )
+    word = light_word(press.light) if press.light else ""
+    title = piece_title(cut.line, cut.title)
+    return CutView(cut.line, title, cut.elastic or NOTHING, figures, press.light, word, marks)
+
+
+def _measure_row(row: dict[str, Any]) -> MeasureRow:
+    digits = 0 if row["unit"] == "ml" else 1
+    figures = (
+        _figure(row["before"], digits),
+        _figure(row["after"], digits),
+        NOTHING if row["difference"] is None else number(row["difference"], digits, signed=True),
+    )
+    unit = row["unit"].replace("2", "\N{SUPERSCRIPT TWO}")
+    unit = "" if unit == "mm" else unit
+    if row["estimate"]:
+        off = f" ± {number(row['plus_minus'], digits)}" if row["plus_minus"] >= 0.5 else ""
+        unit = f"{unit} {tr('est.')}{off}".strip()
+    return MeasureRow(_measure_title(row), unit, figures)
+
+
+def _measure_title(row: dict[str, Any]) -> str:
+    sides = {"left": tr("{what}, left"), "right": tr("{what}, right")}
+    title = row["title"] if row["key"].startswith(OWN) else say(row["title"])
+    return sides.get(row["side"], "{what}").format(what=title)
+
+
+def _group(key: str) -> str:
+    return tr("Your own") if key.startswith(OWN) else say(definition_of(key)[0].group)
+
+
+def _known(row: dict[str, Any]) -> bool:
+    return row["before"] is not None or row["after"] is not None
+
+
+def _limits() -> list[str]:
+    """Return how sure the limits of the lights are, and between whose figures they stand."""
+    limits = comfort()
+    sources = "; ".join(each.name for each in limits.sources)
+    return [limits.doubts[0].told(language()), tr("Sources: {names}.").format(names=sources)]
+
+
+def _unsure(sheet: Sheet) -> list[str]:
+    notes = (row["note"] for row in sheet.measures if row["estimate"] and _known(row) and row["note"])
+    return [say(note) for note in dict.fromkeys(notes)]
+
+
+def _system(size: dict[str, Any]) -> str:
+    key = str(size["key"])
+    return key.upper() if len(key) == 2 else str(size["system"])
+
+
+def _place(line: str, order: Sequence[str]) -> int:
+    return order.index(line) if line in order else len(order)
+
+
+def _figure(value: float | None, digits: int) -> str:
+    return NOTHING if value is None else number(value, digits)
+
+
+def _colon() -> str:
+    return "：" if language() == "ja" else ": "
+
+
+def _joined(sentences: list[str]) -> str:
+    return ("" if language() == "ja" else " ").join(filter(None, sentences))
