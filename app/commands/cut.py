@@ -29,7 +29,7 @@ def run_cut(design: Design, lines: Sequence[str], elastics: Sequence[str], same:
 
     If ``same`` lines made of elastics reach what they reach without them.
     """
-    worn = run_worn(design, lines, elastics, same)
+    worn = run_worn(design, lines, elastics, same=same)
     solution = worn.solution
     return Cut(cut_list(solution.stages, solution.control_points), worn.settled, worn.warnings)
 
