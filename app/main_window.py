@@ -11,6 +11,7 @@ from app.asking.housekeeping import Housekeeping
 from app.asking.jobs import Jobs
 from app.asking.session import Session
 from app.desks.desk import Desk
+from app.desks.export_desk import ExportDesk
 from app.desks.job_desk import JobDesk
 from app.desks.landmark_desk import LandmarkDesk
 from app.desks.picture_desk import PictureDesk
@@ -27,14 +28,11 @@ from app.keeping.keeping_desk import KeepingDesk
 from app.keeping.measures_desk import MeasuresDesk
 from app.keeping.own_measures_desk import OwnMeasuresDesk
 from app.keeping.pressure_desk import PressureDesk
-from app.keeping.pressure_desk import PressureDesk
 from app.keeping.recovery_desk import RecoveryDesk
 from app.keeping.variant_desk import VariantDesk
 from app.keeping.variant_figures import VariantFigures
 from app.layout import Layout
 from app.lining.band_pull import BandPull
-from app.lining.elastic_choice import ElasticChoice
-from app.lining.elastics_desk import ElasticsDesk
 from app.lining.elastic_choice import ElasticChoice
 from app.lining.elastics_desk import ElasticsDesk
 from app.lining.garment_desk import GarmentDesk
@@ -81,7 +79,7 @@ class MainWindow(QMainWindow):
         self.jobs = Jobs(self)
         self.view = ViewArea(self.jobs)
         do = self.actions_ = Actions(self, session.undo_stack, self.view.tool_actions)
-        self.top = TopBar(do.bar, do.undo, do.redo, do.export)
+        self.top = TopBar(do.bar, do.undo, do.redo, do.export_any)
         self.rail, self.notices, self.strip, self.status = Rail(), NoticeBar(), Strip(), StatusBar()
         self.scan, self.landmarks = ScanPanel(), LandmarksPanel()
         self.lines, self.result, self.garment = LinesPanel(), ResultPanel(), GarmentPanel()
@@ -98,11 +96,10 @@ class MainWindow(QMainWindow):
         self.variant_figures = VariantFigures(self, self.variants)
         self.measures_desk = MeasuresDesk(self, self.result)
         self.own_measures_desk = OwnMeasuresDesk(self, self.result)
-        self.pressure_desk = PressureDesk(self)
-        self.pressure_desk = PressureDesk(self)
+        self.pressure_desk = PressureDesk(self, self.garment)
         self.map_desk, self.section_desk = MapDesk(self), SectionDesk(self)
         self.start_desk, self.plot_desk = StartDesk(self), PlotDesk(self)
-        self.picture_desk = PictureDesk(self)
+        self.picture_desk, self.export_desk = PictureDesk(self), ExportDesk(self)
         self.lines_desk, self.line_maker = LinesDesk(self), LineMaker(self)
         self.line_drawing, self.line_routing = LineDrawing(self), LineRouting(self)
         self.preset_desk, self.band_pull = PresetDesk(self), BandPull(self)

@@ -55,6 +55,8 @@ def _connect_session(window: MainWindow) -> None:
     session, desk, scan_desk = window.session, window.desk, window.scan_desk
     session.opened.connect(desk.show_opened)
     session.frame_ready.connect(desk.show_frame)
+    session.frame_ready.connect(lambda *_: window.pressure_desk.follow())
+    session.frame_ready.connect(window.export_desk.show_frame)
     session.design_changed.connect(desk.show_design)
     session.failed.connect(desk.show_failure)
     session.not_saved.connect(desk.show_not_saved)
@@ -169,7 +171,8 @@ def _connect_actions(window: MainWindow) -> None:
     do.open.triggered.connect(desk.open)
     do.save.triggered.connect(desk.save)
     do.save_as.triggered.connect(desk.save_as)
-    do.export.triggered.connect(desk.export)
+    do.export.triggered.connect(window.export_desk.export_body)
+    do.export_any.triggered.connect(window.export_desk.show)
     do.quit.triggered.connect(window.close)
     do.reset.triggered.connect(session.reset_lines)
     _connect_layout(window)

@@ -9,13 +9,11 @@ from pathlib import Path
 
 from core.control_mesh import ControlMesh
 from core.errors import UserError
-from core.live import Frame
 from core.mesh import Mesh, Points
 from core.profile import Curve, Plane
 from core.progress import Progress, quiet
 from core.project import whole_file
 from core.space import Space, space_of
-from core.tffd import deform
 
 FORMATS = ("ply", "obj", "stl", "glb")
 
@@ -51,15 +49,6 @@ def kind_of(path: str | os.PathLike[str]) -> str:
     if kind not in FORMATS:
         raise UserError(f"Busk does not write .{kind} files.", f"Choose one of: {', '.join(FORMATS)}.")
     return kind
-
-
-def write_frame(
-    path: str | os.PathLike[str], frame: Frame, progress: Progress = quiet, space: Space | None = None
-) -> None:
-    """Write the whole body as a frame shows it; see ``write_mesh``. Raises UserError or Cancelled."""
-    places = deform(frame.stages.binding, frame.control_points)
-    progress("writing", 0.1)
-    write_mesh(path, Mesh(places, frame.stages.body.mesh.faces), progress, space)
 
 
 def write_control_points(

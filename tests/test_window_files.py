@@ -13,6 +13,7 @@ from PySide6.QtGui import QImage
 from window_tools import Script, drag, points, run_main, settled, undrawn
 
 import app.desks.desk
+import app.desks.export_desk
 from app.main_window import MainWindow
 from app.wording.samples import sample_design
 from core.document import Document
@@ -56,7 +57,7 @@ def test_the_shown_body_is_exported(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         yield settled(window)
         for ending in ("ply", "obj", "stl"):
             path = tmp_path / f"body.{ending}"
-            monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_, path=path: str(path))
+            monkeypatch.setattr(app.desks.export_desk, "ask_save", lambda *_, path=path: str(path))
             window.actions_.export.trigger()
             yield path.exists
             body = trimesh.load(path, process=False)
@@ -82,7 +83,7 @@ def test_an_export_that_failed_is_told_until_it_succeeds(
 
         undrawn(window)
         yield settled(window)
-        monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(nowhere))
+        monkeypatch.setattr(app.desks.export_desk, "ask_save", lambda *_: str(nowhere))
         window.actions_.export.trigger()
         yield lambda: tone() == "bad"
         monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(project))
@@ -91,7 +92,7 @@ def test_an_export_that_failed_is_told_until_it_succeeds(
         assert window.session.finish_saving()
         yield lambda: "Saved" in window.status._saved.text()
         assert tone() == "bad", "a save writes no body"
-        monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(body))
+        monkeypatch.setattr(app.desks.export_desk, "ask_save", lambda *_: str(body))
         window.actions_.export.trigger()
         yield lambda: tone() == "ok"
         window.notices.close_notice()

@@ -14,8 +14,9 @@ from PySide6.QtTest import QTest
 from test_window_scan import doubtful
 from window_tools import Script, drag, run_main, settled
 
-import app.desks.desk
+import app.desks.export_desk
 import app.desks.scan_desk
+import app.exporting.ready
 import app.lining.limits_desk
 import app.view_area
 import core.body
@@ -52,8 +53,12 @@ def test_an_export_is_named_and_can_be_left_by_card_key_and_status_bar(
 ) -> None:
     body, left = tmp_path / "body.ply", []
     body.write_text("what stood there")
-    monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(body))
-    write = app.desks.desk.write_frame
+    monkeypatch.setattr(app.desks.export_desk, "ask_save", lambda *_: str(body))
+    write, begun = app.exporting.ready.write_mesh, []
+
+    def never_written(path: Path, mesh: Any, hear: Progress, space: Any) -> None:
+        begun.append(path)
+        endless(left)(hear)
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
@@ -61,11 +66,11 @@ def test_an_export_is_named_and_can_be_left_by_card_key_and_status_bar(
         yield window.isActiveWindow
         busy, status = window.view.busy, window.status
         busy._wait.setInterval(0)
-        monkeypatch.setattr(app.desks.desk, "write_frame", endless(left))
+        monkeypatch.setattr(app.exporting.ready, "write_mesh", never_written)
         for count, way in enumerate(("card", "key", "status bar"), start=1):
             window.actions_.export.trigger()
-            yield lambda: busy.isVisible() and status.stop.isVisible()
-            assert status._job_name.text() == "Writing the body"
+            yield lambda n=count: busy.isVisible() and status.stop.isVisible() and len(begun) == n
+            assert status._job_name.text() == "Writing body.ply"
             if way == "card":
                 QTest.mouseClick(busy.stop, Qt.MouseButton.LeftButton)
             elif way == "key":
@@ -73,13 +78,13 @@ def test_an_export_is_named_and_can_be_left_by_card_key_and_status_bar(
             else:
                 QTest.mouseClick(status.stop, Qt.MouseButton.LeftButton)
             assert not busy.isVisible(), "the window is free at once"
-            assert status._job_name.text() != "Writing the body", "limits may be at work beside it"
+            assert status._job_name.text() != "Writing body.ply", "limits may be at work beside it"
             assert not window.actions_.cancel.isEnabled()
             yield jobs_end
             assert len(left) == count
             assert body.read_text() == "what stood there"
             assert window.notices.notice() is None
-        monkeypatch.setattr(app.desks.desk, "write_frame", write)
+        monkeypatch.setattr(app.exporting.ready, "write_mesh", write)
         window.actions_.export.trigger()
         yield lambda: window.notices.notice() is not None
         assert body.read_bytes().startswith(b"ply")

@@ -26,7 +26,6 @@ from app.wording.samples import sample_design
 from app.wording.words import tr
 from core.design import Design
 from core.errors import UserError
-from core.export import write_frame
 from core.live import Frame
 from core.report import warnings
 
@@ -208,22 +207,6 @@ class Desk(QObject):
         name = str(self._session.path or f"{self._session.name}.busk")
         path = ask_save(self._window, tr("Save as"), name, kinds, ".busk")
         return bool(path) and self._session.save(path, self._preview())
-
-    def export(self) -> None:
-        """Ask for a place and write the body as it is shown."""
-        kinds = "PLY (*.ply);;OBJ (*.obj);;STL (*.stl)"
-        path = ask_save(self._window, tr("Export body"), f"{self._session.name}-busk.ply", kinds, ".ply")
-        frame = self._session.frame
-        if not path or frame is None:
-            return
-        said = tr("Body written to {name}.").format(name=Path(path).name)
-        self._window.jobs.run(
-            tr("Writing the body"),
-            lambda progress: write_frame(path, frame, progress),
-            lambda _: self.show_written("body", said, path),
-            lambda error: self.show_failure(error, "body"),
-            waited=True,
-        )
 
     def may_leave(self) -> bool:
         """Ask about unsaved changes; returns whether the document may be left. A save is waited for."""

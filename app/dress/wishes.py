@@ -12,6 +12,7 @@ UNTIL_THEN = {
     "material": "clay",  # one of app.seeing.material.MATERIALS
     "motion": "full",  # or reduced
     "autosave": "10",  # seconds after an edit
+    "export": "{}",  # what was chosen to export, as app.exporting.choices keeps it
     "size_system": "jp",  # the key of a table of sizes
     "size_allowance": "0",  # mm taken off the under-bust for a tape that is worn tight
 }

@@ -44,7 +44,7 @@ def exports() -> tuple[Export, ...]:
             "lines",
             tr("Lines as curves"),
             "lines",
-            tr("The worn lines where they lie on the body: smooth curves in space, front and back."),
+            tr("The worn lines as smooth curves in space. What to cut is told by the strips."),
             {
                 "dxf": tr("For CAD and pattern programs: a layer for each part of a line."),
                 "obj": tr("For 3D programs, to lie on the body that is exported likewise."),
@@ -53,14 +53,14 @@ def exports() -> tuple[Export, ...]:
         Export(
             "flat",
             tr("Bands as flat strips"),
-            "bands",
+            "strips",
             tr("A strip for each worn line at its size, to cut where its elastic is known, with marks."),
             {
                 "svg": tr("Prints at its size: Inkscape, Illustrator, cutters, browsers."),
                 "dxf": tr("For CAD, pattern programs and plotters, in millimetres."),
             },
         ),
-        Export("measures", tr("Measures"), "result", tr("What the body measures."), _measure_formats(table)),
+        Export("measures", tr("Measures"), "ruler", tr("What the body measures."), _measure_formats(table)),
         Export(
             "picture",
             tr("Picture"),
@@ -100,7 +100,7 @@ def _measure_formats(table: str) -> dict[str, str]:
 
 def settings_of(export: Export, kind: str) -> tuple[Choice, ...]:
     """Return what can be chosen for something in one of its formats; where there are more, the format too."""
-    formats = tuple((each, each.upper()) for each in export.formats)
+    formats = tuple((each, format_title(each)) for each in export.formats)
     format_ = Choice("format", tr("Format"), export.formats[kind], formats)
     chosen = {
         "body": (_shape(), _unit(), _axes()),
@@ -111,6 +111,11 @@ def settings_of(export: Export, kind: str) -> tuple[Choice, ...]:
         "turntable": (_shows(), _ground(), _frames(), _seconds(), _size(_TURNTABLE_SIZES)),
     }.get(export.what, ())
     return (format_, *chosen) if len(formats) > 1 else chosen
+
+
+def format_title(kind: str) -> str:
+    """Return a format as it is written."""
+    return {"webp": "WebP"}.get(kind, kind.upper())
 
 
 def usual(what: str, kind: str, key: str) -> str:

@@ -1,0 +1,224 @@
+"""What the window does to export: it shows the choices, asks for a place, and writes beside the work."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from PySide6.QtCore import QObject
+
+from app.asking.jobs import Job
+from app.dress.ask import ask
+from app.dress.wishes import wish, wish_for
+from app.exporting.choices import Choices
+from app.exporting.outcome import Manner, Outcome
+from app.exporting.ready import Ready, make_ready
+from app.keeping.dialogs import ask_save
+from app.keeping.last_folders import free_name, last_folder
+from app.panels.export_sheet import ExportSheet
+from app.presenting.verdict import is_result, state_of
+from app.printing.turntable import turntable_files
+from app.showing.verdict_chip import state_title
+from app.wording.export_choices import exports, format_title
+from app.wording.words import say, tr
+from core.errors import UserError
+from core.live import Frame
+from core.progress import Progress
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+
+
+class ExportDesk(QObject):
+    """Opens the sheet of what can be exported, tells what will be in a file, and writes it."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._choices = Choices(wish("export"))
+        self._sheet: ExportSheet | None = None
+        self._outcome: Outcome | None = None
+        self._job: Job | None = None
+
+    def show(self) -> None:
+        """Show all that can be exported."""
+        sheet = self._sheet = ExportSheet(self._window, exports())
+        sheet.chosen.connect(self._choose_export)
+        sheet.changed.connect(self._choose)
+        sheet.save_asked.connect(self._save)
+        sheet.finished.connect(self._forget)
+        self._refresh()
+        sheet.open()
+        sheet.items[self._choices.export.what].setFocus()
+
+    def export_body(self) -> None:
+        """Ask for a place and write the reshaped body, else as it was chosen last."""
+        self._ask_and_write("body", tr("Export body"), reshaped=True)
+
+    def show_frame(self, frame: Frame) -> None:
+        """Tell of the body as it is now, if somebody looks and it rests."""
+        if self._sheet is not None and not frame.at_work:
+            self._tell()
+
+    # -- the sheet
+
+    def _choose_export(self, what: str) -> None:
+        self._choices.choose_export(what)
+        self._refresh()
+
+    def _choose(self, key: str, value: str) -> None:
+        self._choices.choose(self._choices.export.what, key, value)
+        self._refresh()
+
+    def _refresh(self) -> None:
+        """Show the choices of what is to be exported, and what they come to."""
+        wish_for("export", self._choices.text)
+        export = self._choices.export
+        if self._sheet is not None:
+            settings = self._choices.settings(export.what)
+            self._sheet.show_export(export, settings, self._choices.values(export.what))
+            self._tell()
+
+    def _tell(self) -> None:
+        """Work out beside the window what will be in the file, and say so."""
+        window, frame, sheet = self._window, self._window.session.frame, self._sheet
+        window.jobs.cancel(self._job)
+        if frame is None or sheet is None:
+            return
+        what = self._choices.export.what
+        name, doubt = self._file_name(what), self._doubt(what, frame)
+        outcome, manner = self._outcome_of(frame), self._manner(what)
+        sheet.show_contents(name, tr("Looking what will be in it…"), doubt)
+        self._job = window.jobs.run(
+            tr("Preparing the export"),
+            lambda progress: make_ready(what, name, outcome, manner),
+            lambda ready: sheet.show_contents(name, _sentence(cast(Ready, ready)), doubt),
+            partial(self._show_refused, name),
+        )
+
+    def _show_refused(self, name: str, error: Exception) -> None:
+        if isinstance(error, UserError) and self._sheet is not None:
+            self._sheet.show_contents(name, "", f"{say(error.message)} {say(error.hint)}", possible=False)
+        else:
+            self._window.desk.show_failure(error)
+
+    def _forget(self) -> None:
+        self._sheet = None
+        self._window.jobs.cancel(self._job)
+
+    # -- a file
+
+    def _save(self) -> None:
+        export, sheet = self._choices.export, self._sheet
+        if self._ask_and_write(export.what, tr("Export: {what}").format(what=export.title)) and sheet:
+            sheet.accept()
+
+    def _ask_and_write(self, what: str, title: str, reshaped: bool = False) -> bool:
+        """Ask for a place and begin to write; returns whether it begins."""
+        frame, usual = self._window.session.frame, self._choices.kind(what)
+        kinds = sorted(self._choices.find(what).formats, key=lambda kind: kind != usual)
+        filters = ";;".join(f"{format_title(kind)} (*.{kind})" for kind in kinds)
+        path = ask_save(self._parent, title, f"{self._stem(what)}.{usual}", filters, f".{usual}")
+        if not path or frame is None:
+            return False
+        manner = self._manner(what, Path(path).suffix.lower().lstrip("."))
+        if reshaped:
+            manner = replace(manner, before=False)
+        if what == "turntable" and not self._may_number(Path(path), manner):
+            return False
+        self._write(what, Path(path), self._outcome_of(frame), manner)
+        return True
+
+    def _write(self, what: str, path: Path, outcome: Outcome, manner: Manner) -> None:
+        """Make a file ready in a thread; draw what has to be drawn in pieces here; write it in a thread."""
+        window, words = self._window, tr("Writing {name}").format(name=path.name)
+        failed = partial(window.desk.show_failure, about=f"export {what}")
+
+        def prepare(progress: Progress) -> tuple[Ready, list[Path] | None]:
+            ready = make_ready(what, path, outcome, manner)
+            progress("writing", 0.05)
+            return ready, None if ready.draw else written(ready, None, progress)
+
+        def written(ready: Ready, drawn: Any, progress: Progress) -> list[Path]:
+            return ready.write(path, drawn, progress) or [path]
+
+        def prepared(found: object) -> None:
+            ready, files = cast(tuple[Ready, list[Path] | None], found)
+            if files is not None:
+                done(ready, files)
+            elif ready.draw is not None:
+                drawing = tr("Drawing {name}").format(name=path.name)
+                then = partial(drawn, ready)
+                window.jobs.run_pieces(drawing, ready.draw(), then, failed, waited=True)
+
+        def drawn(ready: Ready, pictures: Any) -> None:
+            write = partial(written, ready, pictures)
+            window.jobs.run(
+                words, write, lambda files: done(ready, cast(list[Path], files)), failed, waited=True
+            )
+
+        def done(ready: Ready, files: list[Path]) -> None:
+            first, last = files[0].name, files[-1].name
+            name = first if len(files) == 1 else tr("{first} to {last}").format(first=first, last=last)
+            said = tr("{name} written, {how}.") if ready.how else tr("{name} written.")
+            window.desk.show_written(f"export {what}", said.format(name=name, how=ready.how), str(files[0]))
+
+        window.jobs.run(words, prepare, prepared, failed, waited=True)
+
+    def _may_number(self, path: Path, manner: Manner) -> bool:
+        """Ask before a series of pictures takes the place of another, which the dialog has not seen."""
+        there = [each.name for each in turntable_files(path, manner.frames) if each != path and each.exists()]
+        if not there:
+            return True
+        question = tr("{name} is there already. Replace it?").format(name=there[0])
+        return ask(self._parent, question, "", [("replace", tr("Replace"))]) == "replace"
+
+    # -- what is known
+
+    @property
+    def _parent(self) -> Any:
+        return self._sheet or self._window
+
+    def _outcome_of(self, frame: Frame) -> Outcome:
+        """Return what came out: while nothing changes the same one, with all that it has worked out."""
+        view, known = self._window.view, self._outcome
+        material = view.viewport.scene.material
+        looks = view.hidden_lines, material
+        if (
+            known is None
+            or known.control_points is not frame.control_points
+            or looks
+            != (
+                known.hidden,
+                known.material,
+            )
+        ):
+            tracks = frame.tracks
+            records = tracks.get(frame.stages.design.volume) or next(iter(tracks.values()), ())
+            known = self._outcome = Outcome(frame.stages, frame.control_points, records, *looks)
+        return known
+
+    def _manner(self, what: str, kind: str = "") -> Manner:
+        return self._choices.manner(what, kind, self._window.view.viewport.scene.view)
+
+    def _stem(self, what: str) -> str:
+        return f"{self._window.session.name}-{what}"
+
+    def _file_name(self, what: str) -> str:
+        return free_name(last_folder("written"), f"{self._stem(what)}.{self._choices.kind(what)}").name
+
+    def _doubt(self, what: str, frame: Frame) -> str:
+        """Return what to mind of the body that would be written, or nothing."""
+        if self._manner(what).before and what != "flat":
+            return ""
+        if frame.at_work:
+            return tr("The run is still under way: what is written is how far it is.")
+        if is_result(frame):
+            return ""
+        return tr("{state}: this is no shape to work from.").format(state=state_title(state_of(frame)))
+
+
+def _sentence(ready: Ready) -> str:
+    return f"{ready.contents}, {ready.how}" if ready.how else ready.contents
