@@ -6,14 +6,18 @@ import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QLabel
 from window_tools import Script, drag, run_main, settled, undrawn
 
 import app.keeping.pressure_desk as desk_module
 from app.main_window import MainWindow
+from app.panels.pressure_card import PressureCard
 from app.presenting.maps import pressure_note
 from app.viewing.band_map import BandValues
 from core.elastics import find_elastic
 from core.press_list import PressList, press_list
+from core.pressure import LEFT_OUT
+from core.sewing.comfort import comfort
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -49,6 +53,12 @@ def pressed(window: MainWindow) -> BandValues:
     return window.map_desk._on_bands[window.view.beside.bodies[0]]
 
 
+def colours(window: MainWindow) -> np.ndarray:
+    """The colours of the mid-bust line's band."""
+    actor = window.view.viewport.scene.plotter.actors["band mid-bust"]
+    return np.array(actor.mapper.dataset["Colour"])
+
+
 def test_the_map_of_pressure_is_worked_out_at_rest_and_where_it_is_seen(asked: list[float]) -> None:
     def script(window: MainWindow) -> Script:
         undrawn(window)
@@ -57,7 +67,7 @@ def test_the_map_of_pressure_is_worked_out_at_rest_and_where_it_is_seen(asked: l
         yield settled(window)
         yield lambda: not window.jobs.at_work()
         assert asked == [], "nobody looks"
-        maps = window.map_desk
+        maps, own = window.map_desk, colours(window)
         maps.choose("pressure")
         assert maps.legend._note.text() == "Worked out as soon as the run rests."
         yield lambda: bool(pressed(window).values)
@@ -68,7 +78,9 @@ def test_the_map_of_pressure_is_worked_out_at_rest_and_where_it_is_seen(asked: l
         assert [value for value, *_ in maps.legend.bar._marks] == [2.0, 4.0]
         a_click_tells_the_value_there(window, listed)
         yield from while_the_body_moves_it_is_that_of_the_former_shape(window, asked)
+        assert not np.array_equal(colours(window), own)
         maps.choose("")
+        assert np.array_equal(colours(window), own)
         drag(window, "mid-bust", 40)
         yield settled(window)
         yield lambda: not window.jobs.at_work()
@@ -139,3 +151,79 @@ def test_the_legend_says_why_nothing_presses() -> None:
     nothing = PressList((), {})
     assert pressure_note(nothing, stale=False) == "No worn line presses whose tension is known."
     assert pressure_note(None, stale=True).startswith("Worked out")
+
+
+def test_beside_the_cut_list_stands_what_each_line_presses_with(asked: list[float]) -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        wear(window)
+        yield settled(window)
+        desk, panel, card = window.pressure_desk, window.garment, window.pressure_desk.card
+        assert asked == []
+        window.desk.go_to("result")
+        window.inspector.open("garment")
+        yield lambda: desk.shown is not None
+        assert asked == [0.8]
+        listed = known(window)
+        (row,) = listed.rows
+        assert row.max_kpa is not None
+        mark = panel.rows["mid-bust"].pressure.view
+        assert (mark.kpa, mark.light, mark.word) == (f"{row.max_kpa:.1f}", "green", "gentle")
+        assert f"{row.max_kpa:.1f} kPa · {row.max_mmhg:.0f} mmHg" in mark.tip
+        assert f"{row.mean_kpa:.1f} kPa · {row.mean_mmhg:.0f} mmHg" in mark.tip
+        assert f"straight over hollows for {row.bridged_mm:.0f} mm" in mark.tip
+        assert card.largest.text() == f"{row.max_kpa:.1f} kPa · {row.max_mmhg:.0f} mmHg"
+        assert (card.light.light, card.light.word) == ("green", "gentle")
+        assert card.place.text() == f"Mid-bust, {row.where}"
+        assert f"{listed.force_n:.1f} N" in card.force.text()
+        assert card.scale.marks == (("Mid-bust", "#E5536B", row.max_kpa),)
+        limits_and_what_is_left_out_are_told(card)
+        yield from a_click_turns_to_the_place(window, listed)
+        drag(window, "mid-bust", 20, release=False)
+        yield lambda: desk.shown is None
+        assert panel.rows["mid-bust"].pressure.view.light == "", "of a former shape there is no light"
+        assert not card.place.isEnabled()
+        QTest.mouseRelease(window.lines.rows["mid-bust"].slider, Qt.MouseButton.LeftButton)
+        yield settled(window)
+        yield lambda: desk.shown is not None
+        assert card.largest.text().startswith(f"{known(window).rows[0].max_kpa:.1f} kPa")
+        window.session.commit_line("mid-bust", "Mid-bust", 1.0)
+        yield settled(window)
+        yield lambda: desk.shown is not None
+        assert not card.isVisible()
+
+    run_main([], script)
+
+
+def limits_and_what_is_left_out_are_told(card: PressureCard) -> None:
+    limits = comfort()
+    assert limits.sources[0].name in card.limits.text()
+    assert "estimate" in card.sure.text()
+    assert card.scale._limits.words == ("gentle", "snug", "tight")
+    for fold, sentences in zip(card.folds, ([each.name for each in limits.sources], LEFT_OUT), strict=True):
+        shut = {each.text() for each in card.findChildren(QLabel) if each.isVisible()}
+        fold.click()
+        (words,) = (
+            each.text() for each in card.findChildren(QLabel) if each.isVisible() and each.text() not in shut
+        )
+        assert all(sentence in words for sentence in sentences)
+
+
+def a_click_turns_to_the_place(window: MainWindow, listed: PressList) -> Script:
+    view, (row,) = window.view.viewport, listed.rows
+    view.set_view("back")
+    place = np.array(row.place)
+    QTest.mouseClick(window.pressure_desk.card.place, Qt.MouseButton.LeftButton)
+    yield lambda: bool(window.map_desk.flags.flags)
+    assert window.map_desk.name == "pressure"
+    (flag,) = window.map_desk.flags.flags
+    assert flag.text == f"{row.max_kpa:.1f} kPa"
+    assert np.linalg.norm(flag.place - place) < 4.5
+    assert not view.scene.hidden(flag.place), "the camera has come round"
+    x, y, *_ = view.scene.view.to_picture(place[None], view.width(), view.height())[0]
+    assert 0 < x < view.width()
+    assert 0 < y < view.height()
+    QTest.mouseClick(window.pressure_desk.card.place, Qt.MouseButton.LeftButton)
+    assert len(window.map_desk.flags.flags) == 1, "it is pinned already"
+    window.map_desk.choose("")

@@ -7,6 +7,9 @@ from weakref import WeakKeyDictionary, WeakSet
 
 from PySide6.QtCore import QObject, Signal
 
+from app.panels.garment import GarmentPanel
+from app.panels.pressure_card import PressureCard
+from app.presenting.pressure import light_limits, pressure_summary, pressure_views
 from app.wording.words import tr
 from core.live import Frame
 from core.press_list import PressList, press_list
@@ -16,15 +19,29 @@ if TYPE_CHECKING:
 
 
 class PressureDesk(QObject):
-    """Keeps what the lines of frames press with; ``found`` says that there is more of it."""
+    """Keeps what the lines of frames press with, and shows it beside the cut list.
+
+    ``found`` says that there is more of it; ``place_asked`` that the place which is pressed most is to be
+    looked at.
+    """
 
     found = Signal()
+    place_asked = Signal()
 
-    def __init__(self, window: MainWindow) -> None:
+    def __init__(self, window: MainWindow, panel: GarmentPanel) -> None:
         super().__init__(window)
-        self._window = window
+        self._window, self._panel = window, panel
+        self.card = PressureCard(light_limits())
+        self.card.hide()
+        panel.cards.addWidget(self.card)
+        self._shown: PressList | None = None
+        self._stale: bool | None = None
+        self._body: object = None
         self._known: WeakKeyDictionary[Frame, PressList] = WeakKeyDictionary()
         self._asked: WeakSet[Frame] = WeakSet()
+        self.found.connect(self.follow)
+        self.card.place_asked.connect(self.place_asked)
+        panel.opened.connect(self.follow)
 
     def of(self, frame: Frame) -> PressList | None:
         """Return what the lines of a frame press with; if that is not known yet it is worked out beside.
@@ -40,6 +57,28 @@ class PressureDesk(QObject):
                 lambda found: self._take(frame, found),
             )
         return self._known.get(frame)
+
+    @property
+    def shown(self) -> PressList | None:
+        """What is shown beside the cut list, if that is of now."""
+        return None if self._stale else self._shown
+
+    def follow(self) -> None:
+        """Bring the figures beside the cut list up to date, if they are seen."""
+        frame = self._window.session.frame
+        if frame is None or not self._panel.isVisible():
+            return
+        known = self.of(frame)
+        if frame.stages.body is not self._body:
+            self._body, self._shown, self._stale = frame.stages.body, None, None
+        stale = known is None
+        if (known or self._shown) is self._shown and stale == self._stale:
+            return
+        self._shown, self._stale = known or self._shown, stale
+        design = frame.stages.design
+        self._panel.set_pressures(pressure_views(self._shown, design, stale) if self._shown else {})
+        self.card.show_summary(pressure_summary(self._shown, design), stale and self._shown is not None)
+        self.card.setVisible(bool(design.worn()))
 
     def _take(self, frame: Frame, found: object) -> None:
         self._known[frame] = cast(PressList, found)

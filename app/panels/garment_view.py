@@ -9,13 +9,15 @@ from dataclasses import dataclass
 class PressureView:
     """What a line presses with: ``kpa`` as it is read, ``light`` "green", "amber" or "red", empty for none.
 
-    ``word`` says in short what the light means, ``tip`` where it comes from.
+    ``word`` says in short what the light means, ``tip`` where it comes from. ``stale`` figures are those of
+    a former shape.
     """
 
     kpa: str
     light: str
     word: str
     tip: str
+    stale: bool = False
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ import numpy as np
 
 from app.panels.legend import MapKind
 from app.presenting.bust import BustMove, BustStep, bust_sentence, forward_words, step_words
-from app.presenting.pressure import light_limits, light_word, tone_of
+from app.presenting.pressure import limit_marks
 from app.seeing.paint import Ramp
 from app.wording.tokens import MAP_AMOUNT, MAP_LESS, MAP_MORE
 from app.wording.words import number, tr
@@ -86,7 +86,7 @@ def _line_maps() -> list[MapKind]:
             "kPa",
             _pressure_tip(),
             tr("An estimate, rather too much. Dashed: straight over a hollow."),
-            marks=tuple((kpa, tone_of(light), light_word(light)) for kpa, light in light_limits()),
+            marks=limit_marks(),
         ),
     ]
 

@@ -1,8 +1,14 @@
-"""What the window says of contact pressure: lights and limits, as plain values."""
+"""What the window says of contact pressure: lights and limits, figures and places, as plain values."""
 
 from __future__ import annotations
 
-from app.wording.words import tr
+from app.panels.garment_view import PressureView
+from app.panels.pressure_card import TONES, LightLimits, PressureSummary
+from app.presenting.lines import line_colours, line_title, titled
+from app.wording.words import language, number, say, tr
+from core.design import Design
+from core.press_list import PressList, PressRow
+from core.pressure import LEFT_OUT, mmhg
 from core.sewing.comfort import AMBER, GREEN, RED, comfort
 
 
@@ -11,12 +17,107 @@ def light_word(light: str) -> str:
     return {GREEN: tr("gentle"), AMBER: tr("snug"), RED: tr("tight")}[light]
 
 
-def tone_of(light: str) -> str:
-    """Return the tone in which a light is shown, see ``app.wording.tokens``."""
-    return {GREEN: "ok", AMBER: "warn", RED: "bad"}[light]
-
-
-def light_limits() -> tuple[tuple[float, str], ...]:
-    """Return from which pressure [kPa] which light is shown, where it is not green."""
+def light_limits() -> LightLimits:
+    """Return the limits of the light in words."""
     limits = comfort()
-    return (limits.amber_kpa, AMBER), (limits.red_kpa, RED)
+    told = [f"{each.name}: {each.words.told(language())}" for each in limits.sources]
+    doubts = [words.told(language()) for words in limits.doubts]
+    return LightLimits(
+        limits.amber_kpa,
+        limits.red_kpa,
+        (light_word(GREEN), light_word(AMBER), light_word(RED)),
+        limits.sources[0].name,
+        (*doubts, *told),
+        tuple(say(each) for each in LEFT_OUT),
+    )
+
+
+def limit_marks() -> tuple[tuple[float, str, str], ...]:
+    """Return the limits as marks on a legend: pressure [kPa], tone and word."""
+    limits = comfort()
+    marks = (limits.amber_kpa, AMBER), (limits.red_kpa, RED)
+    return tuple((kpa, TONES[light], light_word(light)) for kpa, light in marks)
+
+
+def pressure_views(listed: PressList, design: Design, stale: bool) -> dict[str, PressureView]:
+    """Return what each line presses with, by line; figures of a former shape are ``stale`` and no light."""
+    return {row.line: _view(row, design, stale) for row in listed.rows}
+
+
+def _view(row: PressRow, design: Design, stale: bool) -> PressureView:
+    notes = [say(titled(note, design)) for note in row.notes]
+    if row.max_kpa is None:
+        return PressureView("", "", "", "\n".join(notes))
+    light = "" if stale else row.light
+    word = light_word(row.light) if light else ""
+    told = [*_figures(row), *notes, comfort().lights[row.light].told(language())]
+    return PressureView(number(row.max_kpa), light, word, "\n".join(told), stale)
+
+
+def _figures(row: PressRow) -> list[str]:
+    assert row.max_kpa is not None
+    assert row.mean_kpa is not None
+    most = tr("Largest {kpa}").format(kpa=kpa_words(row.max_kpa))
+    mean = tr("Mean where it lies on the skin {kpa}").format(kpa=kpa_words(row.mean_kpa))
+    force = tr("Presses with {force} N, whichever way").format(force=number(row.force_n or 0.0))
+    where = f"{most}, {place_words(row)}" if row.where else most
+    return [where, mean, force]
+
+
+def kpa_words(kpa: float) -> str:
+    """Return a pressure in kPa and in mmHg."""
+    return f"{number(kpa)} kPa · {number(mmhg(kpa), 0)} mmHg"
+
+
+def side_words(where: str) -> str:
+    """Return which side of the body is meant by one of ``core.sewing.whereabouts``."""
+    return {
+        "front": tr("front"),
+        "front left": tr("front left"),
+        "left side": tr("left side"),
+        "back left": tr("back left"),
+        "back": tr("back"),
+        "back right": tr("back right"),
+        "right side": tr("right side"),
+        "front right": tr("front right"),
+        "left shoulder": tr("left shoulder"),
+        "right shoulder": tr("right shoulder"),
+    }[where]
+
+
+def place_words(row: PressRow) -> str:
+    """Return where a line presses most, in words."""
+    height = number(row.height_mm or 0.0, 0)
+    words = tr("{side}, {mm} mm above the lowest point of the scan")
+    return words.format(side=side_words(row.where), mm=height)
+
+
+def pressure_summary(listed: PressList | None, design: Design) -> PressureSummary:
+    """Return what all bands press with together; None is not known yet."""
+    if listed is None:
+        return _nothing(tr("Worked out as soon as the run rests."))
+    most = listed.hardest
+    if most is None or most.max_kpa is None:
+        return _nothing(tr("No worn line presses whose tension is known."))
+    colours = line_colours([row.line for row in listed.rows], design)
+    marks = tuple(
+        (line_title(row.line, design), colours[row.line], row.max_kpa)
+        for row in listed.rows
+        if row.max_kpa is not None
+    )
+    place = tr("{line}, {side}").format(line=line_title(most.line, design), side=side_words(most.where))
+    look = tr("Look at it, with the map of pressure")
+    return PressureSummary(
+        kpa_words(most.max_kpa),
+        most.light,
+        light_word(most.light),
+        place,
+        f"{place_words(most)}\n{look}",
+        comfort().lights[most.light].told(language()),
+        tr("All bands press with {force} N, whichever way").format(force=number(listed.force_n)),
+        marks,
+    )
+
+
+def _nothing(why: str) -> PressureSummary:
+    return PressureSummary("", "", "", "", "", why, "", ())

@@ -16,6 +16,9 @@ LENS = 20.0
 STEEPEST = 89.0
 """Largest elevation [degrees]: the up direction stays defined, so that the picture never rolls."""
 
+SLANTED = 35.0
+"""The steepest view of a place that is turned to by itself [degrees]."""
+
 NEAREST, FARTHEST = 120.0, 9000.0
 """Limits of the distance between the eye and the focus [mm]."""
 
@@ -82,6 +85,13 @@ class View:
         """Return the view from the side called ``name`` in ``VIEWS``; raises KeyError for another name."""
         azimuth, elevation = VIEWS[name]
         return replace(self, azimuth=azimuth, elevation=elevation)
+
+    def facing(self, way: npt.ArrayLike) -> View:
+        """Return the view from where ``way``, shape (3,), points, but neither steeply down nor up."""
+        x, y, z = np.asarray(way, dtype=np.float64)
+        elevation = np.degrees(np.arctan2(z, np.hypot(x, y)))
+        azimuth = float(np.degrees(np.arctan2(x, -y)))
+        return replace(self, azimuth=azimuth, elevation=float(np.clip(elevation, -SLANTED, SLANTED)))
 
     def pan(self, dx: float, dy: float, height: int) -> View:
         """Return the view dragged by (dx, dy) pixels, y downwards, in a picture ``height`` pixels high."""

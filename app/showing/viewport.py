@@ -241,6 +241,15 @@ class Viewport(QWidget):
         self._fit = None
         self._go(framing_points(self.scene.view, points, self._aspect()))
 
+    def turn_to(self, place: Floats, normal: Floats) -> None:
+        """Glide round to where a place of the skin, (3,) [mm], faces the eye; it comes into the picture."""
+        view = self.scene.view.facing(normal)
+        x, y, *_ = view.to_picture(place[None], self.width(), self.height())[0]
+        if not (0.1 < x / self.width() < 0.9 and 0.1 < y / self.height() < 0.9):
+            self._fit = None
+            view = view.centred(place)
+        self._go(view)
+
     def frame_bust(self) -> None:
         """Glide to the bust, and keep it framed when the size changes."""
         self._fit = self.scene.framing_bust

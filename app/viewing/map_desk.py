@@ -11,29 +11,21 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.panels.legend import Legend
 from app.presenting.body_now import BodyNow
-from app.presenting.maps import (
-    LINE_MAPS,
-    MAPS,
-    automatic_range,
-    bridge_words,
-    map_kinds,
-    pressure_note,
-    ramp_of,
-)
+from app.presenting.maps import LINE_MAPS, MAPS, automatic_range, bridge_words, map_kinds, ramp_of
 from app.seeing.body import BodyActor
 from app.seeing.material import look_of
 from app.seeing.paint import Ramp
 from app.seeing.scene import Scene
 from app.showing.value_flags import ValueFlag, ValueFlags
-from app.viewing.band_map import BandPainter, BandValues, pressures_on, pulls_on
+from app.viewing.band_map import BandPainter, BandValues
 from app.viewing.body_view import BodyView
-from app.wording.words import number, tr
+from app.viewing.map_values import MapValues
+from app.wording.words import number
 from core.live import Frame
 from core.mesh import Floats
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
-    from core.press_list import PressList
 
 
 @dataclass(frozen=True)
@@ -57,15 +49,13 @@ class MapDesk(QObject):
         self._window, self._view = window, window.view
         self._kinds = {kind.name: kind for kind in map_kinds()}
         self.name = ""
-        self.now: BodyNow | None = None
+        self._seen = MapValues(self._view.beside, window.pressure_desk)
         self.pinned: tuple[Pinned, ...] = ()
         self._flagged: tuple[Pinned, ...] = ()
         self._by_hand: dict[str, tuple[float, float]] = {}
         self._range, self._range_of = (0.0, 1.0), ""
         self._values: Floats = np.empty(0)
         self._on_bands: dict[BodyView, BandValues] = {}
-        self._pressed: WeakKeyDictionary[BodyNow, PressList | None] = WeakKeyDictionary()
-        self._others: WeakKeyDictionary[BodyView, BodyNow] = WeakKeyDictionary()
         self._laid = False
         self._painted: WeakKeyDictionary[BodyActor, tuple[str, Ramp, bool]] = WeakKeyDictionary()
         self._painter = BandPainter()
@@ -85,6 +75,12 @@ class MapDesk(QObject):
         self.flags.pinned.connect(self.pin)
         self.flags.pulled.connect(self.unpin)
         self._window.pressure_desk.found.connect(self.refresh)
+        self._window.pressure_desk.place_asked.connect(self.look_at_most)
+
+    @property
+    def now(self) -> BodyNow | None:
+        """What is read off the session's body, once a map was asked for."""
+        return self._seen.now
 
     # -- what is asked
 
@@ -124,7 +120,19 @@ class MapDesk(QObject):
             new = () if at is None else (Pinned(at, line),)
         else:
             new = (Pinned(int(np.linalg.norm(body.shown_points - place, axis=1).argmin())),)
-        self._pin((*self.pinned, *new))
+        self._pin((*self.pinned, *(each for each in new if each not in self.pinned)))
+
+    def look_at_most(self) -> None:
+        """Turn to the place that is pressed most, and pin what it is pressed with."""
+        listed = self._window.pressure_desk.shown
+        if listed is None or listed.hardest is None:
+            return
+        line = listed.hardest.line
+        worn = listed.worn[line]
+        self._view.set_after(True)
+        self.choose("pressure")
+        self.pin(worn.places[worn.peak], line)
+        self._view.viewport.turn_to(worn.places[worn.peak], worn.normals[worn.peak])
 
     def unpin(self, number: int) -> None:
         """Take a flag away that is shown: those of lines are not while a map lies on the skin."""
@@ -160,45 +168,22 @@ class MapDesk(QObject):
         self.legend.setVisible(shown)
         self.flags.listening = shown
         if frame is not None and shown:
-            self._take(frame)
+            if self._seen.take(frame):
+                self.pinned, self._painted = (), WeakKeyDictionary()
             self._read(frame)
         elif not self._laid:
             return
+        else:
+            self._on_bands = {}
         for body in self._view.beside.bodies:
             self._paint_skin(body)
             self._paint_bands(body)
         self._laid = shown
         self._show_flags()
 
-    def _take(self, frame: Frame) -> None:
-        if self.now is not None and self.now.is_of(frame):
-            self.now.follow(frame)
-        else:
-            self.now, self.pinned, self._painted = BodyNow(frame), (), WeakKeyDictionary()
-
-    def _now_of(self, view: BodyView) -> BodyNow | None:
-        """Return what is read off one of the bodies: the session's own, or a variant's beside it."""
-        if view in self._view.beside.live or view.frame is None:
-            return self.now
-        now = self._others.get(view)
-        if now is None or now.frame is not view.frame:
-            now = self._others[view] = BodyNow(view.frame)
-        return now
-
     def _values_of(self, view: BodyView) -> Floats:
-        now = self._now_of(view)
+        now = self._seen.now_of(view)
         return self._values if now is None or now is self.now else now.values(self.name)
-
-    def _bands_of(self, view: BodyView) -> BandValues:
-        """Return the values on the bands of one of the bodies: its own, or those of its former shape."""
-        bands, now = view.viewport.scene.bands, self._now_of(view)
-        if now is None:
-            return BandValues({})
-        if self.name == "pull":
-            return pulls_on(bands, now.pulls())
-        known = self._window.pressure_desk.of(now.frame)
-        self._pressed[now] = listed = known or self._pressed.get(now)
-        return pressures_on(bands, listed.worn if listed else {}, stale=known is None)
 
     def _read(self, frame: Frame) -> None:
         """Read the values off the bodies and choose the range that they are shown in."""
@@ -207,9 +192,10 @@ class MapDesk(QObject):
         # Bodies beside each other are compared: the same colour is the same value on all of them.
         if self.name in LINE_MAPS:
             self._values = np.empty(0)
-            self._on_bands = {view: self._bands_of(view) for view in bodies}
+            self._on_bands = {view: self._seen.on_bands(self.name, view) for view in bodies}
             beside = [each for shown in self._on_bands.values() for each in shown.values.values()]
-            self.legend.show_note(self._note(self._on_bands[bodies[0]]))
+            said = self._seen.note(self.name, self._on_bands[bodies[0]])
+            self.legend.show_note(said or self._kinds[self.name].note)
         else:
             self._values, self._on_bands = self.now.values(self.name), {}
             beside = [self._values] + [self._values_of(view) for view in bodies[1:]]
@@ -221,20 +207,12 @@ class MapDesk(QObject):
         ramp = self._ramp(self._view.viewport.scene)
         self.legend.show_range(*self._range, ramp.stops, by_hand is not None)
 
-    def _note(self, shown: BandValues) -> str:
-        assert self.now is not None
-        if self.name == "pressure":
-            said = pressure_note(self._pressed.get(self.now), shown.stale)
-        else:
-            said = "" if shown.values else tr("No worn line pulls like a spring.")
-        return said or self._kinds[self.name].note
-
     def _ramp(self, scene: Scene) -> Ramp:
         return ramp_of(self.name, *self._range, look_of(scene.dark, scene.material).clay)
 
     def _paint_skin(self, view: BodyView) -> None:
         """Lay the map over one body; only where it moves, if nothing else has changed."""
-        scene, now = view.viewport.scene, self._now_of(view)
+        scene, now = view.viewport.scene, self._seen.now_of(view)
         body = scene.body
         if body is None or now is None:
             return
