@@ -44,7 +44,7 @@ class PressureMark(QWidget):
         tokens, painter, view = tokens_of(self), QPainter(self), self.view
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setFont(font("body", tabular=True))
-        painter.setPen(QColor(tokens.text if view.kpa else tokens.text_caption))
+        painter.setPen(QColor(tokens.text if view.kpa and not view.stale else tokens.text_caption))
         painter.drawText(QRectF(0, 0, PRESSURE, 21), _RIGHT, view.kpa or NOTHING)
         if not view.light:
             return
