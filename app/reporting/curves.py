@@ -18,7 +18,7 @@ from app.wording.words import number, tr
 from core.mesh import Floats
 from core.sheet import SectionCurves, Sheet, Turns
 
-LOWEST, HIGHEST = 64.0, 104.0
+LOWEST, HIGHEST = 64.0, 116.0
 """How high the curves are at least, and at most [mm]."""
 
 _SIDE, _GAP, _AXIS, _FOOT = 62.0, 8.0, 9.0, 3.6
@@ -32,7 +32,7 @@ def curve_block(handout: Handout, height: float) -> Block:
     side, bust = sheet.sections
     title = heading(tr("Before and after, in millimetres"), WIDE)
     top, right = title.height, _SIDE + _GAP
-    half = 0.5 * (height - top)
+    half = (0.5 if _plotted(sheet) else 0.85) * (height - top)
     wide = 0.5 * (WIDE - right - _GAP)
     where = tr("Side, through the left bust point"), tr("Level of the bust points, from above, front below")
     names = [elided(each, "caption", room) for each, room in zip(where, (_SIDE, WIDE - right), strict=True)]
@@ -124,15 +124,20 @@ def _plots(
     sheet: Sheet, left: float, top: float, width: float, height: float
 ) -> list[tuple[float, float, Block]]:
     """Return the plots of the run with where they stand, or why there are none."""
-    turns = sheet.turns
-    if len(turns.turn) < 2:
-        said = tr("No turns to plot: the exact answer was worked out at once.")
+    turns, said = sheet.turns, tr("No turns to plot: the exact answer was worked out at once.")
+    if not sheet.cuts.rows:
+        said = tr("No turns to plot: no line is worn.")
+    if not _plotted(sheet):
         return [(left, top, _sentence(said, 2.0 * width + _GAP))]
     error, up = tr("Volume error, %"), tr("Bust points, mm up")
     return [
         (left, top, _plot(turns, turns.error_percent, error, width, height)),
         (left + width + _GAP, top, _plot(turns, turns.up_mm, up, width, height)),
     ]
+
+
+def _plotted(sheet: Sheet) -> bool:
+    return len(sheet.turns.turn) > 1 and bool(sheet.cuts.rows)
 
 
 def _sentence(said: str, width: float) -> Block:

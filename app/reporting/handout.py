@@ -12,6 +12,9 @@ from core.sheet import Sheet
 SHOTS = ("front before", "front after", "side before", "side after")
 """The pictures of a sheet, in the order in which they stand."""
 
+SHOT_SIZES = {"front": (54.0, 60.0), "side": (37.0, 60.0)}
+"""Width and height of the pictures on the page [mm]."""
+
 
 @dataclass(frozen=True, eq=False)
 class Handout:

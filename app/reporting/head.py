@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from app.presenting.bust import forward_words
 from app.reporting.flow import Block
-from app.reporting.handout import SHOTS, Handout
+from app.reporting.handout import SHOT_SIZES, SHOTS, Handout
 from app.reporting.marks import paint_chip, paint_state
 from app.reporting.paper import A4, MARGIN, Paper, elided, line_height, text_width, wrapped
 from app.reporting.telling import cut_pieces, other_sizes, project_words, state_words
@@ -16,7 +16,7 @@ WIDE = A4[0] - 2 * MARGIN
 """What is between the margins of a page [mm]."""
 
 _CELLS = (0.0, 28.0, 58.0, 121.0, 154.0)  # where band, cup, lengths to cut, lift and volume begin [mm]
-_HERO, _LARGE, _SHOTS = 25.5, 3, 60.0
+_HERO, _LARGE = 25.5, 3
 _USUAL = LIGHT.control  # of a line that has no colour
 
 
@@ -31,9 +31,9 @@ def head_blocks(handout: Handout) -> list[Block]:
 
 def _title(sheet: Sheet, word: str, *, sound: bool) -> Block:
     heading, title = sheet.heading, tr("Fitting sheet")
-    customer = elided(heading.customer, "name", 100.0)
-    gap = text_width(customer, "name") + 3.0 if customer else 0.0
-    project = elided(project_words(sheet), "quiet", WIDE - gap - 30.0)
+    customer = elided(heading.customer or project_words(sheet), "name", 100.0)
+    gap = text_width(customer, "name") + 3.0
+    project = elided(project_words(sheet), "quiet", WIDE - gap - 30.0) if heading.customer else ""
 
     def paint(paper: Paper, x: float, y: float) -> None:
         paper.text(x, y + 5.2, title, "title")
@@ -179,15 +179,16 @@ def _pictures(handout: Handout) -> Block:
         height = len(lines) * line_height("small")
         return Block(height, lambda paper, x, y: paper.lines(x, y, lines, "small"), gap=3.0)
     titles = dict(zip(SHOTS, _shot_titles(), strict=True))
-    wide = WIDE / len(SHOTS)
+    sizes = {name: SHOT_SIZES[name.partition(" ")[0]] for name in SHOTS}
+    tall = max(height for _, height in sizes.values())
 
     def paint(paper: Paper, x: float, y: float) -> None:
-        for place, (name, title) in enumerate(titles.items()):
-            left = x + place * wide
-            paper.picture(left + 1.0, y, wide - 2.0, _SHOTS, handout.pictures[name])
-            paper.text(left + 0.5 * wide, y + _SHOTS + 3.6, title, "caption", align="middle")
+        for name, (wide, high) in sizes.items():
+            paper.picture(x, y, wide, high, handout.pictures[name])
+            paper.text(x + 0.5 * wide, y + tall + 3.6, titles[name], "caption", align="middle")
+            x += wide
 
-    return Block(_SHOTS + 4.6, paint, gap=3.0)
+    return Block(tall + 4.6, paint, gap=3.0)
 
 
 def _shot_titles() -> list[str]:

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
+
 from PySide6.QtGui import QColor, QImage, QPainter
 
 from app.presenting.frame import bands
 from app.printing.studio import Picture, Studio, on_nothing
-from app.reporting.handout import SHOTS
+from app.reporting.handout import SHOT_SIZES, SHOTS
+from app.seeing.camera import View
 from core.mesh import Floats
 from core.progress import Pieces
 from core.report import Shown
 
-SIZE = (522, 720)
-"""Width and height of a picture [px]: 300 dots to an inch, as large as it stands on the page."""
+DOTS = 300.0 / 25.4
+"""Pixels of a picture to a millimetre of the page."""
 
 _SIDES = {"front": "front", "side": "left"}
 
@@ -23,22 +27,38 @@ def shots(shown: Shown, occlusion: Floats) -> Pieces[dict[str, QImage]]:
     ``occlusion``, (n,) [1], is that of ``bake_occlusion``. Raises whatever VTK does where it cannot draw.
     """
     stages = shown.stages
-    with Studio(stages, shown.control_points, bands(stages, ()), occlusion) as studio:
+    unworn = {line.name for line in stages.model.lines} - stages.design.worn()
+    with Studio(stages, shown.control_points, bands(stages, unworn), occlusion) as studio:
+        scene, sizes = studio.scene, {side: _pixels(SHOT_SIZES[side]) for side in _SIDES}
+        scene.set_visible("floor", False)
+        views = _views(studio, sizes)
         found = {}
         for place, name in enumerate(SHOTS):
             side, _, when = name.partition(" ")
-            scene = studio.scene
             scene.before(when == "before")
             scene.set_visible("bands", when == "after")
-            scene.set_visible("floor", False)
-            studio.stand_back(SIZE, _SIDES[side])
-            drawing = studio.shot(SIZE)
+            scene.look_from(views[side])
+            drawing = studio.shot(sizes[side])
             try:
                 while True:
                     yield (place + next(drawing)) / len(SHOTS)
             except StopIteration as ended:
                 found[name] = _on_white(on_nothing(ended.value, False))
         return found
+
+
+def _pixels(size: tuple[float, float]) -> tuple[int, int]:
+    return round(DOTS * size[0]), round(DOTS * size[1])
+
+
+def _views(studio: Studio, sizes: Mapping[str, tuple[int, int]]) -> dict[str, View]:
+    """Return where each side is seen from: all from as far away, so that heights compare."""
+    views = {}
+    for side, name in _SIDES.items():
+        studio.stand_back(sizes[side], name)
+        views[side] = studio.scene.view
+    farthest = max(view.distance for view in views.values())
+    return {side: replace(view, distance=farthest) for side, view in views.items()}
 
 
 def _on_white(pixels: Picture) -> QImage:
