@@ -48,6 +48,21 @@ class OwnMeasure:
         if self.kind != "girth" and (len(set(self.marks)) != 2 or len(self.marks) != 2 or self.level):
             raise UserError(f"The measure {self.name} has no two ends.", "Name two different landmarks.")
 
+    @property
+    def text(self) -> str:
+        """How it is taken, in a sentence."""
+        if self.kind == "straight":
+            return f"Yours: straight from {self.marks[0]} to {self.marks[1]}."
+        if self.kind == "skin":
+            return f"Yours: the shortest way over the skin from {self.marks[0]} to {self.marks[1]}."
+        if not self.marks:
+            return f"Yours: a tape, level, at a height of {self.level:g} mm."
+        if self.level > 0.0:
+            return f"Yours: a tape, level, {self.level:g} mm above {self.marks[0]}."
+        if self.level < 0.0:
+            return f"Yours: a tape, level, {-self.level:g} mm below {self.marks[0]}."
+        return f"Yours: a tape, level, at {self.marks[0]}."
+
 
 def put_measure(
     those: tuple[OwnMeasure, ...], measure: OwnMeasure, former: str = ""

@@ -101,7 +101,7 @@ def measure_rows(before: Measures, after: Measures | None = None) -> list[dict[s
         assert told is not None
         values = [each.value if each else None for each in (first, last)]
         both = [value for value in values if value is not None]
-        title, side, iso, text = _words(key)
+        title, side, iso, text = _words(told)
         rows.append(
             {
                 "key": key,
@@ -122,11 +122,11 @@ def measure_rows(before: Measures, after: Measures | None = None) -> list[dict[s
     return rows
 
 
-def _words(key: str) -> tuple[str, str, str, str]:
+def _words(measure: Measure) -> tuple[str, str, str, str]:
     """Return title, side, name in the standard and definition of a measure."""
-    if key.startswith(OWN):
-        return key.removeprefix(OWN), "", "", ""
-    told, side = definition_of(key)
+    if measure.key.startswith(OWN):
+        return measure.key.removeprefix(OWN), "", "", measure.text
+    told, side = definition_of(measure.key)
     return told.title, side, told.iso, told.text
 
 

@@ -34,6 +34,7 @@ class Measure:
 
     ``curves``, each (k, 3) [mm], show it on the body. ``confidence`` (0..1) is that of what it was taken
     from; an ``estimate`` rests on something that the scan does not show, and may be off by ``plus_minus``.
+    ``text`` says how one of the designer's own is taken; of all others the definition does.
     """
 
     key: str
@@ -44,6 +45,7 @@ class Measure:
     estimate: bool = False
     plus_minus: float = 0.0
     note: str = ""
+    text: str = ""
 
 
 GIRTHS, CUPS, BUST = "Girths", "Cups", "Bust"

@@ -22,12 +22,15 @@ NO_TRUNK = "The scan shows no trunk at that height."
 def own_measures(subject: Subject, own: Iterable[OwnMeasure]) -> Iterator[Measure]:
     """Yield the measures of the designer's own."""
     for each in own:
-        key = f"{OWN}{each.name}"
-        if each.kind == "girth":
-            yield _girth(key, subject, each)
-        else:
-            marks = [subject.mark(name) for name in each.marks]
-            yield straight(key, marks) if each.kind == "straight" else over_skin(key, subject, marks)
+        yield replace(_measured(subject, each), text=each.text)
+
+
+def _measured(subject: Subject, own: OwnMeasure) -> Measure:
+    key = f"{OWN}{own.name}"
+    if own.kind == "girth":
+        return _girth(key, subject, own)
+    marks = [subject.mark(name) for name in own.marks]
+    return straight(key, marks) if own.kind == "straight" else over_skin(key, subject, marks)
 
 
 def _girth(key: str, subject: Subject, own: OwnMeasure) -> Measure:
