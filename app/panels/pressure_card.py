@@ -10,7 +10,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
-from app.dress.parts import Disclosure, button, hairline, sentence
+from app.dress.parts import Disclosure, IconLabel, button, hairline, sentence
 from app.dress.theme import font, label, set_tag, set_tip, tokens_of
 from app.wording.words import number, tr
 
@@ -189,17 +189,18 @@ class PressureCard(QWidget):
         self.says.setText(view.says)
         self.force.setText(view.force)
         self.scale.show_marks(view.marks, faint)
-        for each in (self.largest, self.light, self._most, self.place, self.force, self.scale):
+        for each in (self.largest, self.light, self._most, self.place, self._eye, self.force, self.scale):
             each.setVisible(some)
         for each in (self.largest, self.says, self.force):
             set_tag(each, "tone", "faint" if faint else "")
 
     def _where(self) -> QHBoxLayout:
-        self._most = label(tr("Most:"), "secondary")
+        self._most, self._eye = label(tr("Most:"), "secondary"), IconLabel("eye", "text_caption", 14)
         row = QHBoxLayout()
         row.setSpacing(0)
         row.addWidget(self._most)
         row.addWidget(self.place)
+        row.addWidget(self._eye)
         row.addStretch(1)
         return row
 
