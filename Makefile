@@ -14,10 +14,9 @@ run: setup  ## open the program on the sample body; without a display, do the sa
 	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ] || [ "$$(uname)" = Darwin ]; then .venv/bin/busk; \
 	else .venv/bin/busk demo --out out; fi
 
-test: setup-test lint types  ## style, types and all tests, under a virtual display of their own
-	@if command -v xvfb-run >/dev/null; then \
-		env -u WAYLAND_DISPLAY QT_QPA_PLATFORM=xcb LIBGL_ALWAYS_SOFTWARE=1 \
-			xvfb-run -a -s "-screen 0 2600x1500x24 -noreset" $(python) -m pytest; \
+test: setup-test lint types  ## style, types and all tests in two processes, each with a virtual display of its own
+	@if command -v Xvfb >/dev/null; then \
+		env -u WAYLAND_DISPLAY QT_QPA_PLATFORM=xcb LIBGL_ALWAYS_SOFTWARE=1 $(python) -m pytest -n 2 --dist loadfile; \
 	else $(python) -m pytest; fi
 
 setup:  ## prepare the system libraries and .venv, nothing else

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import atexit
 import gc
 import os
+import subprocess
 import tempfile
 import threading
 from collections.abc import Callable, Iterator
@@ -24,6 +26,21 @@ from core.design_lines import WornLine
 from core.pipeline import Stages, build
 
 SAMPLES = Path(__file__).parent.parent / "resources" / "samples"
+
+
+def display_of_its_own() -> None:
+    """Open a virtual display for one of several test processes: others' windows would take the keyboard."""
+    shown, told = os.pipe()
+    command = f"Xvfb -displayfd {told} -screen 0 2600x1500x24 -noreset".split()
+    server = subprocess.Popen(command, pass_fds=[told], stderr=subprocess.DEVNULL)
+    atexit.register(server.terminate)
+    os.close(told)
+    with os.fdopen(shown) as number:
+        os.environ["DISPLAY"] = f":{number.readline().strip()}"
+
+
+if "PYTEST_XDIST_WORKER" in os.environ and os.environ.get("QT_QPA_PLATFORM") == "xcb":
+    display_of_its_own()
 
 os.environ.setdefault("QT_API", "pyside6")
 os.environ.setdefault("PYQTGRAPH_QT_LIB", "PySide6")
