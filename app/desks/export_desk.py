@@ -221,4 +221,5 @@ class ExportDesk(QObject):
 
 
 def _sentence(ready: Ready) -> str:
-    return f"{ready.contents}, {ready.how}" if ready.how else ready.contents
+    said = tr("{contents}, {how}") if ready.how else "{contents}"
+    return said.format(contents=ready.contents, how=ready.how)

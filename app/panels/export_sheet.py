@@ -85,7 +85,7 @@ class ExportSheet(Sheet):
         for told, text in ((self._contents, contents), (self._doubt, doubt)):
             told.setText(text)
             told.setVisible(bool(text))
-        self._mark.show_icon("export" if possible and not doubt else "warning", "text_quiet")
+        self._mark.show_icon(*(("warning", "warn") if doubt else ("export", "text_quiet")))
         self._card.setAccessibleName(" ".join(filter(None, (name, contents, doubt))))
         self.save.setEnabled(possible)
 

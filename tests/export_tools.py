@@ -1,0 +1,46 @@
+"""How tests export from the window: the sheet, a dialog of files that answers, and what is said then."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from PySide6.QtWidgets import QApplication
+
+import app.desks.export_desk
+from app.main_window import MainWindow
+from app.panels.export_sheet import ExportSheet
+
+READY = "Looking what will be in it…"
+
+
+def opened(window: MainWindow, what: str = "") -> ExportSheet:
+    """Open the sheet as the menu does, and choose what to export."""
+    window.actions_.export_any.trigger()
+    sheet = QApplication.activeModalWidget()
+    assert isinstance(sheet, ExportSheet)
+    if what:
+        sheet.items[what].click()
+    return sheet
+
+
+def told(sheet: ExportSheet) -> Callable[[], bool]:
+    """What will be in the file has been worked out."""
+    return lambda: sheet._contents.text() != READY
+
+
+def choose(sheet: ExportSheet, key: str, value: str) -> None:
+    sheet.fields[key].chosen.emit(value)
+
+
+def saved_as(monkeypatch: pytest.MonkeyPatch, path: Path) -> list[tuple[Any, ...]]:
+    """Let the dialog of files answer with a path, and return what it was asked."""
+    asked: list[tuple[Any, ...]] = []
+    monkeypatch.setattr(app.desks.export_desk, "ask_save", lambda *how: asked.append(how) or str(path))
+    return asked
+
+
+def written(window: MainWindow) -> Callable[[], bool]:
+    return lambda: window.notices.notice() is not None and window.notices.notice().tone in ("ok", "bad")

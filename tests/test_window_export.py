@@ -1,0 +1,199 @@
+"""The sheet of what can be exported, through the real main(): what it shows, remembers and refuses."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+import pyvista as pv
+from export_tools import choose, opened, saved_as, told, written
+from PySide6.QtCore import QSettings, Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication, QWidget
+from window_tools import Script, run_main, settled, undrawn
+
+import app.desks.export_desk
+import app.printing.studio
+from app.main_window import MainWindow
+from app.panels.export_sheet import ExportSheet
+from app.wording.export_choices import exports
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+def test_a_body_is_exported_by_keys_alone_in_the_unit_that_was_chosen(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "anna.ply"
+    asked = saved_as(monkeypatch, path)
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.activateWindow()
+        yield window.isActiveWindow
+        QTest.keyClick(
+            window, Qt.Key.Key_E, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier
+        )
+        yield lambda: isinstance(QApplication.activeModalWidget(), ExportSheet)
+        sheet: Any = QApplication.activeModalWidget()
+        yield told(sheet)
+        assert sheet._contents.text() == "32,873 points, 65,742 triangles, in m, y-up"
+        assert sheet._name.text() == "mannequin-body.glb"
+        has: list[QWidget] = []
+        for _ in range(20):  # once round: every choice and both buttons take the keyboard, by their names
+            QTest.keyClick(QApplication.focusWidget(), Qt.Key.Key_Tab)
+            has.append(QApplication.focusWidget())
+        assert all(each.accessibleName() or each.text() for each in has)  # type: ignore[attr-defined]
+        for field in sheet.fields.values():
+            assert any(field.isAncestorOf(each) for each in has)
+        choose(sheet, "format", "ply")
+        choose(sheet, "unit", "cm")
+        yield told(sheet)
+        assert sheet._contents.text().endswith("in cm, z-up")
+        sheet.save.setFocus()
+        QTest.keyClick(sheet.save, Qt.Key.Key_Return)
+        yield written(window)
+        assert window.notices.notice().sentence == "anna.ply written, in cm, z-up."
+        assert QApplication.activeModalWidget() is None
+        body = pv.read(path)
+        rest = window.session.frame.stages.body.mesh
+        low, high = rest.vertices.min(axis=0), rest.vertices.max(axis=0)
+        assert body.bounds[5] - body.bounds[4] == pytest.approx((high - low)[2] / 10.0, abs=0.01)
+
+    run_main([], script)
+    kinds = asked[0][3].split(";;")
+    assert kinds[0] == "PLY (*.ply)"
+    assert set(kinds) == {f"{kind} (*.{kind.lower()})" for kind in ("GLB", "OBJ", "PLY", "STL")}
+
+
+def test_choices_are_remembered_for_each_thing_and_each_format(tmp_path: Path) -> None:
+    def first(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        sheet = opened(window, "measures")
+        choose(sheet, "unit", "in")
+        sheet.items["body"].click()
+        choose(sheet, "format", "obj")
+        choose(sheet, "axes", "y-up")
+        sheet.reject()
+
+    def again(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        choices = window.export_desk._choices
+        sheet = opened(window)
+        assert sheet.items["body"].isChecked()
+        assert choices.values("body") == {"format": "obj", "shape": "", "unit": "mm", "axes": "y-up"}
+        assert choices.values("body", "glb")["unit"] == "m", "other programs ask for other units"
+        assert choices.values("measures")["unit"] == "in"
+        sheet.reject()
+
+    run_main([], first)
+    run_main([], again)
+
+
+@pytest.mark.parametrize(
+    "kept", ["", "no JSON", "[1]", '{"what": "no such", "body/format": 7, "body.glb/unit": "ell"}']
+)
+def test_settings_that_are_no_choices_are_forgotten(kept: str) -> None:
+    choices = app.desks.export_desk.Choices(kept)
+    assert choices.export.what == "body"
+    assert choices.values("body") == {"format": "glb", "shape": "", "unit": "m", "axes": "y-up"}
+    choices.choose("turntable", "size", "480x540")
+    manner = app.desks.export_desk.Choices(choices.text).manner("turntable")
+    assert (manner.size, manner.frames, manner.seconds) == ((480, 540), 36, 6.0)
+    assert json.loads(choices.text)["turntable/size"] == "480x540"
+
+
+def test_everything_that_is_offered_is_written_in_every_format(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also by a name whose ending is another format than the chosen one: then it is that one."""
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        for export in exports():
+            for kind in export.formats:
+                if export.what in ("picture", "turntable"):
+                    continue
+                path = tmp_path / f"{export.what}.{kind}"
+                saved_as(monkeypatch, path)
+                sheet = opened(window, export.what)
+                yield told(sheet)
+                sheet.save.click()
+                yield written(window)
+                assert window.notices.notice().tone == "ok", window.notices.notice()
+                assert path.stat().st_size > 100
+                window.notices.clear()
+
+    run_main([], script)
+    assert len(list(tmp_path.iterdir())) == 4 + 5 + 2 + 2 + 4 + 1
+
+
+def test_what_cannot_be_exported_says_why_and_is_not_offered(tmp_path: Path) -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.session.reset_lines()
+        yield settled(window)
+        for what in ("lines", "flat"):
+            sheet = opened(window, what)
+            yield told(sheet)
+            assert sheet._doubt.text() == "No line is worn. Set the length of a line first."
+            assert not sheet.save.isEnabled()
+            sheet.items["body"].click()
+            yield told(sheet)
+            assert sheet.save.isEnabled()
+            assert not sheet._doubt.isVisible()
+            sheet.reject()
+
+    run_main([], script)
+
+
+def test_a_folded_body_is_told_before_it_is_written(tmp_path: Path) -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.lines_desk.commit_length("mid-bust", 0.5)
+        yield settled(window)
+        sheet = opened(window, "body")
+        yield told(sheet)
+        assert sheet._doubt.text() == "Folded: this is no shape to work from."
+        assert sheet.save.isEnabled()
+        choose(sheet, "shape", "before")
+        yield told(sheet)
+        assert not sheet._doubt.isVisible(), "the body at rest is as it was scanned"
+        sheet.reject()
+
+    run_main([], script)
+
+
+def test_it_speaks_japanese_and_no_word_is_cut(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    QSettings().setValue("language", "ja")
+    saved_as(monkeypatch, tmp_path / "anna.smis")
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        for export in exports():
+            sheet = opened(window, export.what)
+            yield told(sheet)
+            assert "ボディ" in sheet.items["body"].text()
+            assert sheet.minimumSizeHint().width() <= sheet.width() <= window.width()
+            assert sheet.minimumSizeHint().height() <= sheet.height() <= window.height()
+            sheet.reject()
+        opened(window, "measures").save.click()
+        yield written(window)
+        assert "書き出しました" in window.notices.notice().sentence
+
+    try:
+        run_main([], script)
+    finally:
+        QSettings().setValue("language", "en")
+    titles = [m.get("full_name") for m in ElementTree.parse(tmp_path / "anna.smis").getroot().iter("m")]
+    assert any("（左）" in title for title in titles if title)

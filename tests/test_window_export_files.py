@@ -1,0 +1,161 @@
+"""Files that the window exports: pictures drawn between events, work that is left, disks that are full."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+import pyvista as pv
+from export_tools import choose, opened, saved_as, told, written
+from PIL import Image
+from PySide6.QtWidgets import QApplication
+from window_tools import Script, run_main, settled, undrawn
+
+import app.desks.export_desk
+import app.printing.studio
+from app.main_window import MainWindow
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+def test_a_turntable_is_drawn_between_events_and_can_be_left(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "anna.gif"
+    saved_as(monkeypatch, path)
+    monkeypatch.setattr(app.printing.studio, "LONGEST", 300)
+    made: list[Any] = []
+    studio_of = app.printing.studio.Studio.__enter__
+    leave = app.printing.studio.Studio.__exit__
+    monkeypatch.setattr(
+        app.printing.studio.Studio, "__enter__", lambda each: made.append(each) or studio_of(each)
+    )
+    monkeypatch.setattr(
+        app.printing.studio.Studio, "__exit__", lambda each, *how: made.remove(each) or leave(each, *how)
+    )
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        sheet = opened(window, "turntable")
+        choose(sheet, "format", "gif")
+        choose(sheet, "frames", "12")
+        choose(sheet, "size", "480x540")
+        yield told(sheet)
+        sheet.save.click()
+        assert QApplication.activeModalWidget() is None, "the work in hand is seen, and its way out"
+        yield lambda: window.status._job_name.text() == "Drawing anna.gif"
+        shares: list[float] = []
+        for _ in range(4):  # the window answers between the pieces
+            job = window.job_desk._shown_job()
+            shares.append(job.share or 0.0)
+            yield lambda seen=shares[-1], job=job: (job.share or 0.0) > seen
+        assert len(made) == 1
+        window.actions_.cancel.trigger()
+        assert made == [], "what was drawn with is given back at once"
+        assert not window.actions_.cancel.isEnabled()
+        yield lambda: not window.jobs.at_work()
+        assert list(tmp_path.iterdir()) == []
+        assert window.notices.notice() is None
+        opened(window).save.click()
+        yield written(window)
+        assert window.notices.notice().sentence == "anna.gif written."
+        assert made == []
+
+    run_main([], script)
+    with Image.open(path) as picture:
+        assert (picture.n_frames, picture.size) == (12, (480, 540))
+
+
+def test_a_window_is_closed_while_a_turntable_is_drawn(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    saved_as(monkeypatch, tmp_path / "anna.webp")
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        opened(window, "turntable").save.click()
+        yield lambda: window.status._job_name.text() == "Drawing anna.webp"
+
+    assert run_main([], script) == 0
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_picture_shows_what_the_view_shows_on_no_ground(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "anna.png"
+    saved_as(monkeypatch, path)
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.view.viewport.set_view("left")
+        for count, bands in enumerate(("", "none")):
+            sheet = opened(window, "picture")
+            for key, value in {"size": "1000x1125", "ground": "clear", "bands": bands}.items():
+                choose(sheet, key, value)
+            sheet.save.click()
+            yield written(window)
+            window.notices.clear()
+            path.rename(tmp_path / f"{count}.png")
+
+    run_main([], script)
+    worn, bare = (pv.read_texture(tmp_path / f"{count}.png").to_array() for count in range(2))
+    assert worn.shape == (1125, 1000, 4)
+    assert (worn[..., 3] == 0).mean() > 0.3
+    changed = (abs(worn[..., :3].astype(int) - bare[..., :3]).max(axis=2) > 40).mean()
+    assert 0.005 < changed < 0.2, "the bands are left out, and nothing else"
+
+
+@pytest.mark.parametrize("what", ["body", "lines", "flat", "measures", "turns", "control"])
+def test_a_full_disk_leaves_what_stood_there_and_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, what: str
+) -> None:
+    def full(*_: Any) -> None:
+        raise OSError(28, "No space left on device")
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        sheet = opened(window, what)
+        yield told(sheet)
+        path = tmp_path / f"a.{window.export_desk._choices.kind(what)}"
+        path.write_text("what stood there")
+        saved_as(monkeypatch, path)
+        monkeypatch.setattr(os, "fsync", full)
+        sheet.save.click()
+        yield written(window)
+        notice = window.notices.notice()
+        assert (notice.tone, notice.hint) == ("bad", "Choose another folder or make room.")
+        assert [(each.name, each.read_text()) for each in tmp_path.iterdir()] == [
+            (path.name, "what stood there")
+        ]
+
+    run_main([], script)
+
+
+def test_a_series_does_not_take_the_place_of_another_unasked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    saved_as(monkeypatch, tmp_path / "anna.png")
+    (tmp_path / "anna-07.png").write_text("another series")
+    asked: list[str] = []
+    monkeypatch.setattr(app.desks.export_desk, "ask", lambda _, question, *__: asked.append(question) or "")
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        sheet = opened(window, "turntable")
+        choose(sheet, "format", "png")
+        sheet.save.click()
+        assert asked == ["anna-07.png is there already. Replace it?"]
+        assert QApplication.activeModalWidget() is sheet
+        assert not any(job.waited for job in window.jobs.at_work())
+        sheet.reject()
+
+    run_main([], script)
+    assert [each.read_text() for each in tmp_path.iterdir()] == ["another series"]
