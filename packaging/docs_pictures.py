@@ -19,6 +19,7 @@ HOUSE = TemporaryDirectory()
 for kind in ("CONFIG", "DATA", "STATE", "CACHE"):  # what was open on this machine is nobody's business
     os.environ[f"XDG_{kind}_HOME"] = str(Path(HOUSE.name) / kind.lower())
 
+import measure_pictures  # noqa: E402 - beside this file
 from PySide6.QtWidgets import QApplication  # noqa: E402
 
 from app.commands.picture import save_window, settled_window, wait_until  # noqa: E402
@@ -27,6 +28,7 @@ from app.panels.rail import STEP_ICONS  # noqa: E402
 from app.printing.figures import make_figures  # noqa: E402
 from app.wording.samples import sample_design  # noqa: E402
 from core.design import Design  # noqa: E402
+from core.elastics import find_elastic  # noqa: E402
 
 DOCS = Path(__file__).parent.parent / "docs"
 PICTURES = DOCS / "pictures"
@@ -51,6 +53,17 @@ def mapped(window: MainWindow) -> None:
     window.desk.go_to("result")
     window.map_desk.choose("displacement")
     window.section_desk.set_on(True)
+
+
+def pressed(window: MainWindow) -> None:
+    """Look at the place that is pressed most."""
+    window.desk.go_to("result")
+    window.inspector.open("garment")
+    wait_until(lambda: window.pressure_desk.shown is not None, QApplication.processEvents)
+    view = window.view.viewport
+    view.frame_points(view.scene.bands.spine("mid-bust")[0])
+    window.pressure_desk.card.place.click()
+    window.desk.select_line("")
 
 
 def variants(window: MainWindow) -> None:
@@ -100,6 +113,13 @@ def vibrating() -> Design:
     return replace(sample_design().with_line("mid-bust", 0.62), volume="conventional")
 
 
+def made_of_elastics() -> Design:
+    design = sample_design()
+    for name, elastic in (("full-bust", "picot 10"), ("mid-bust", "picot 10"), ("under-bust", "plush 15")):
+        design = design.with_line(name, 0.78).with_elastic(name, find_elastic(elastic))
+    return design
+
+
 Shot = tuple[str, Design, dict[str, object], Callable[[MainWindow], None]]
 
 DARK = {"dark": True, "language": "ja", "size": (1280, 800)}
@@ -110,6 +130,7 @@ SHOTS: tuple[Shot, ...] = (
     ("ask", sample_design("person"), {"size": (1280, 800)}, asking),
     ("wipe", sample_design(), {"size": (1280, 800)}, wiped),
     ("map", sample_design(), {"size": (1600, 1000)}, mapped),
+    ("pressure", made_of_elastics(), {"size": (1280, 800)}, pressed),
     ("variants", sample_design(), {"size": (1280, 800)}, variants),
     ("path", sample_design(), {"size": (1280, 800)}, drawing),
     ("start", sample_design(), {"size": (1280, 800)}, start_page),
@@ -138,6 +159,7 @@ def figures() -> None:
 
 def main() -> None:
     PICTURES.mkdir(parents=True, exist_ok=True)
+    measure_pictures.draw(PICTURES / "measures")
     for name, design, options, prepare in SHOTS:
         with settled_window(design, **options) as window:  # type: ignore[arg-type]
             prepare(window)

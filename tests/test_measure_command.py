@@ -16,6 +16,7 @@ from core.document import Document
 from core.measuring.definitions import DEFINITIONS, KEYS
 from core.project import open_project, read_scan_file, save_project
 
+DOCS = Path(__file__).parent.parent / "docs"
 GORE = OwnMeasure("Gore", "straight", ("bust_point_left", "bust_point_right"))
 
 
@@ -57,13 +58,16 @@ def test_a_project_is_measured_before_and_after(project: Path, capsys: pytest.Ca
 def test_the_page_shows_what_is_printed_and_every_definition(
     project: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    page = (Path(__file__).parent.parent / "docs" / "measures.md").read_text("utf-8")
+    page = (DOCS / "measures.md").read_text("utf-8")
     assert main(["measure", str(project)]) == 0
     shown = page.split("```text\n")[1].split("```")[0]
     assert alike(shown, capsys.readouterr().out)
     for each in DEFINITIONS.values():
         title = f"{each.title}, left and right" if each.sided else each.title
         assert f"| {title} | {each.unit} | {each.iso or '-'} | {each.text} |" in page
+        picture = f"pictures/measures/{each.key}.png"
+        drawn = f"| ![{each.title}]({picture}) | {title} |" in page and (DOCS / picture).is_file()
+        assert drawn or each.key.startswith("hip"), "the sample ends above the hip"
 
 
 def test_text_and_table_tell_the_same(project: Path, capsys: pytest.CaptureFixture[str]) -> None:

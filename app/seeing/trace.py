@@ -22,11 +22,14 @@ COLOURS = {False: "#2459CF", True: "#8DB0FF"}
 class Trace:
     """Curves of one ``name`` on one plotter; without points there are none.
 
-    ``through`` lets what the body hides of them shine through it.
+    ``through`` lets what the body hides of them shine through it, opaque to that share [1]. They are
+    ``radius`` [mm] thick to each side.
     """
 
-    def __init__(self, plotter: pv.BasePlotter, name: str = "trace", through: bool = False) -> None:
-        self._plotter, self._name, self._through = plotter, name, through
+    def __init__(
+        self, plotter: pv.BasePlotter, name: str = "trace", through: float = 0.0, radius: float = RADIUS
+    ) -> None:
+        self._plotter, self._name, self._through, self._radius = plotter, name, through, radius
         self._dark = False
         self._actors: list[pv.Actor] = []
 
@@ -40,14 +43,14 @@ class Trace:
         for actor in self._actors:
             self._plotter.remove_actor(actor, reset_camera=False, render=False)
         self._actors = []
-        tubes = [tube for curve in curves if (tube := _tube(curve)) is not None]
+        tubes = [tube for curve in curves if (tube := _tube(curve, self._radius)) is not None]
         if not tubes:
             return
         whole = tubes[0].append_polydata(*tubes[1:])
         self._draw(whole, self._name)
         if self._through:
             faint = self._draw(whole, f"{self._name} through")
-            faint.prop.opacity = FAINT
+            faint.prop.opacity = self._through
             faint.mapper.SetResolveCoincidentTopologyToPolygonOffset()
             faint.mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(0.0, -66000.0)
 
@@ -69,7 +72,7 @@ class MeasureTrace(Trace):
     """The curves that show a measure, on the body at rest or as it is worn; what is hidden shines through."""
 
     def __init__(self, plotter: pv.BasePlotter) -> None:
-        super().__init__(plotter, "measure", through=True)
+        super().__init__(plotter, "measure", through=FAINT)
         self._both: tuple[Sequence[Points], Sequence[Points]] = ((), ())
         self._before = False
 
@@ -89,7 +92,7 @@ class MeasureTrace(Trace):
         return np.concatenate([np.empty((0, 3)), *self._both[0 if self._before else 1]])
 
 
-def _tube(points: Points) -> pv.PolyData | None:
+def _tube(points: Points, radius: float) -> pv.PolyData | None:
     """Return a tube along points, shape (k, 3) [mm], if they lead anywhere."""
     if len(points) < 2:
         return None
@@ -97,4 +100,4 @@ def _tube(points: Points) -> pv.PolyData | None:
     whole = points[np.concatenate([[True], steps > 1e-6])]  # VTK's tube needs a direction everywhere
     if len(whole) < 2:
         return None
-    return pv.lines_from_points(whole.astype(np.float32)).tube(radius=RADIUS, n_sides=8)
+    return pv.lines_from_points(whole.astype(np.float32)).tube(radius=radius, n_sides=8)
