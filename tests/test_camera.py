@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.seeing.camera import STEEPEST, VIEWS, View
+from app.seeing.camera import SLANTED, STEEPEST, VIEWS, View
 from app.seeing.scene import Scene
 
 WIDTH, HEIGHT = 450, 300
@@ -56,6 +56,16 @@ def test_named_views_look_from_their_side() -> None:
         assert View().named(name).axes[2] == pytest.approx(side, abs=1e-12)
     assert View().named("top").axes[2][2] > 0.99
     assert set(VIEWS) == {*sides, "three-quarter", "top"}
+
+
+def test_a_place_is_faced_from_where_its_skin_looks_but_not_steeply() -> None:
+    for name in ("front", "left", "right", "back"):
+        assert View(azimuth=12.0).facing(View().named(name).axes[2]).name == name
+    aslant = View((1.0, 2.0, 3.0), 900.0).facing([1.0, -1.0, 0.5])
+    assert aslant.azimuth == pytest.approx(45.0)
+    assert aslant.elevation == pytest.approx(np.degrees(np.arctan(0.5 / np.sqrt(2.0))))
+    assert (aslant.focus, aslant.distance) == ((1.0, 2.0, 3.0), 900.0)
+    assert View().facing([0.0, -0.1, -1.0]).elevation == -SLANTED
 
 
 def test_a_move_between_views_ends_there_the_short_way() -> None:

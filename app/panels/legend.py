@@ -168,7 +168,7 @@ class LegendBar(QWidget):
         self.setCursor(Qt.CursorShape.SizeVerCursor)
 
     def sizeHint(self) -> QSize:
-        return QSize(124, round(BAR.bottom()) + 13)
+        return QSize(124, round(BAR.bottom()) + 17)
 
     def set_kind(self, kind: MapKind) -> None:
         """Write the numbers of another map."""
