@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
-from PySide6.QtWidgets import QMenu
+from garment_tools import at_rest, choose, cut_rows, made_of, pick
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QGuiApplication
+from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled, undrawn
 
+from app.keeping import tables
 from app.main_window import MainWindow
 from app.wording.words import number
-from core.cutting import CutRow, cut_list
+from core.design_elastics import Elastic
+from core.elastics import save_elastic
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -16,26 +23,10 @@ SAME = 0.2
 """By how much a reached length may differ once an elastic is chosen, as the window states [mm]."""
 
 
-def cut_rows(window: MainWindow) -> dict[str, CutRow]:
-    frame = window.session.frame
-    assert frame is not None
-    return {row.line: row for row in cut_list(frame.stages, frame.control_points).rows}
-
-
-def choose(window: MainWindow, line: str, kind: str, width: str = "") -> None:
-    """Choose an elastic by the menu of a row."""
-    window.garment.rows[line].elastic.click()
-    menu = next(each for each in window.findChildren(QMenu) if each.isVisible())
-    item = next(each for each in menu.actions() if each.text() == kind)
-    if width:
-        item = next(each for each in item.menu().actions() if each.text() == width)
-    item.trigger()
-    menu.close()
-
-
-def at_rest(window: MainWindow):
-    """Nothing is solved, nothing is looked for."""
-    return lambda: window.is_settled() and not window.jobs.at_work()
+@pytest.fixture(autouse=True)
+def own_house(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """The designer's own elastics of one test are not those of the next."""
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
 
 
 def test_an_elastic_is_chosen_and_the_length_to_cut_is_that_of_the_core() -> None:
@@ -47,16 +38,16 @@ def test_an_elastic_is_chosen_and_the_length_to_cut_is_that_of_the_core() -> Non
         yield at_rest(window)
         garment, before = window.garment, cut_rows(window)
         assert garment.rows["mid-bust"].cut.text() == "–"
-        assert garment.rows["mid-bust"].tension.text() == number(before["mid-bust"].tension_n, 1)
-        steps = window.session.undo_stack.count()
+        assert garment.rows["mid-bust"].tension.text() == number(before["mid-bust"].tension_n or 0.0, 1)
+        steps, bare, made = window.session.undo_stack.count(), window.session.design, list[str]()
         for line, kind, width in (
             ("mid-bust", "Strap", "15 mm"),
             ("full-bust", "Bra band, plush back", "12 mm"),
             ("under-bust", "Bra band, plush back", "18 mm"),
         ):
             choose(window, line, kind, width)
-            yield lambda line=line: line in window.session.design.worn_elastics()
-            yield at_rest(window)
+            made.append(line)
+            yield made_of(window, *made)
         after = cut_rows(window)
         assert window.session.undo_stack.count() == steps + 3
         assert window.session.undo_stack.undoText() == "Under-bust made of Bra band, plush back 18 mm"
@@ -64,13 +55,161 @@ def test_an_elastic_is_chosen_and_the_length_to_cut_is_that_of_the_core() -> Non
             assert after[line].reached_front_mm == pytest.approx(before[line].reached_front_mm, abs=SAME)
         for line, row in after.items():
             shown = garment.rows[line]
-            assert shown.cut.text() == number(row.cut_mm, 0)
-            assert shown.tension.text() == number(row.tension_n, 1)
+            assert shown.cut.text() == number(row.cut_mm or 0.0, 0)
+            assert shown.tension.text() == number(row.tension_n or 0.0, 1)
             assert row.elastic in shown.elastic.accessibleName()
-        assert garment.rows["mid-bust"].stretch.text() == f"+{100 * after['mid-bust'].elongation:.0f} %"
+        assert (
+            garment.rows["mid-bust"].stretch.text() == f"+{100 * (after['mid-bust'].elongation or 0.0):.0f} %"
+        )
         window.session.undo_stack.setIndex(steps)
         yield at_rest(window)
-        assert not window.session.design.elastics
+        assert window.session.design == bare
         assert garment.rows["mid-bust"].cut.text() == "–"
+
+    run_main([], script)
+
+
+def test_one_elastic_is_chosen_for_all_and_taken_off_again_without_moving_the_body() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        undrawn(window)
+        window.lines_desk.commit_length("full-bust", 0.985)
+        window.inspector.open("garment")
+        yield at_rest(window)
+        before = cut_rows(window)
+        assert window.garment.offer.isVisible()
+        window.garment.offer.asked.emit()
+        pick(window, "Strap", "15 mm")
+        yield made_of(window, "mid-bust", "full-bust")
+        assert not window.garment.offer.isVisible()
+        assert window.session.undo_stack.undoText() == "All lines made of Strap 15 mm"
+        choose(window, "mid-bust", "No elastic")
+        yield made_of(window, "full-bust")
+        choose(window, "full-bust", "No elastic")
+        yield made_of(window)
+        design = window.session.design
+        assert design is not None
+        assert design.ratio("full-bust") == pytest.approx(0.985, abs=1e-3)
+        for name, row in cut_rows(window).items():
+            assert row.reached_front_mm == pytest.approx(before[name].reached_front_mm, abs=SAME)
+
+    run_main([], script)
+
+
+def test_an_elastic_that_cannot_do_it_is_refused_and_nothing_changes() -> None:
+    def script(window: MainWindow) -> Script:
+        save_elastic(Elastic("weak", 10.0, ((0.0, 0.0), (0.1, 0.05), (0.3, 0.2)), estimate=False))
+        yield settled(window)
+        undrawn(window)
+        window.inspector.open("garment")
+        before = window.session.design
+        choose(window, "mid-bust", "weak")
+        yield lambda: window.notices.notice() is not None
+        notice = window.notices.notice()
+        assert notice is not None
+        assert "weak would be stretched by" in notice.sentence
+        assert notice.hint
+        assert window.session.design is before
+
+    run_main([], script)
+
+
+def test_the_other_meaning_keeps_the_length_to_cut_and_moves_the_body() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        undrawn(window)
+        window.inspector.open("garment")
+        choose(window, "mid-bust", "Strap", "15 mm")
+        yield made_of(window, "mid-bust")
+        first, design = cut_rows(window)["mid-bust"], window.session.design
+        assert design is not None
+        window.garment.rows["mid-bust"].elastic.click()
+        pick(window, "The length to cut stays: the body changes")
+        choose(window, "mid-bust", "Picot edge", "8 mm")
+        yield lambda: "Picot" in cut_rows(window)["mid-bust"].elastic
+        yield at_rest(window)
+        row = cut_rows(window)["mid-bust"]
+        assert window.session.design is not None
+        assert window.session.design.ratio("mid-bust") == design.ratio("mid-bust")
+        assert row.reached_front_mm > first.reached_front_mm + 1.0
+        assert (row.tension_n or 0.0) < 0.7 * (first.tension_n or 0.0)
+
+    run_main([], script)
+
+
+def test_a_band_on_the_rib_cage_is_cut_as_far_stretched_as_the_designer_says() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        undrawn(window)
+        window.lines_desk.commit_length("mid-bust", 1.0)
+        window.inspector.open("garment")
+        yield at_rest(window)
+        assert list(window.garment.rows) == ["under-bust"]
+        assert window.garment.nothing.isVisible()
+        choose(window, "under-bust", "Bra band, plush back", "18 mm")
+        yield made_of(window, "under-bust")
+        row = window.garment.rows["under-bust"]
+        assert row.set_stretch.isVisible()
+        row.set_stretch.setFocus()
+        row.set_stretch.selectAll()
+        QTest.keyClicks(row.set_stretch, "30")
+        QTest.keyClick(row.set_stretch, Qt.Key.Key_Return)
+        yield at_rest(window)
+        cut = cut_rows(window)["under-bust"]
+        assert cut.elongation == pytest.approx(0.3)
+        assert cut.cut_mm == pytest.approx(cut.reached_whole_mm / 1.3 + 25.0)
+        assert row.cut.text() == number(cut.cut_mm or 0.0, 0)
+
+    run_main([], script)
+
+
+def test_a_locked_line_stays_what_it_is() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        undrawn(window)
+        window.inspector.open("garment")
+        window.lines_desk.decide("mid-bust", "locked", True)
+        yield at_rest(window)
+        before = window.session.design
+        choose(window, "mid-bust", "Strap", "15 mm")
+        yield lambda: window.notices.notice() is not None
+        notice = window.notices.notice()
+        assert notice is not None
+        assert "locked" in notice.sentence
+        assert window.session.design is before
+
+    run_main([], script)
+
+
+def test_newtons_go_with_the_stiffness_of_tissue_and_the_list_leaves_as_a_table(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        undrawn(window)
+        window.inspector.open("garment")
+        yield at_rest(window)
+        before = cut_rows(window)["mid-bust"].tension_n or 0.0
+        field = window.garment.tissue.field
+        field.setText("9999")
+        field.setModified(True)
+        QTest.keyClick(field, Qt.Key.Key_Return)
+        assert "50 to 2000" in field.accessibleDescription()
+        field.setText("1060")
+        field.setModified(True)
+        QTest.keyClick(field, Qt.Key.Key_Return)
+        yield at_rest(window)
+        assert cut_rows(window)["mid-bust"].tension_n == pytest.approx(
+            2.0 * before, rel=2e-3
+        )  # as far as turns settle
+        assert "1060" in window.garment.tissue.notes.text()
+        window.garment.copy_asked.emit()
+        heading, row = QGuiApplication.clipboard().text().splitlines()
+        told = row.split("\t")[heading.split("\t").index("Tension N")]
+        assert told == f"{cut_rows(window)['mid-bust'].tension_n:.1f}"
+        path = tmp_path / "cuts.csv"
+        monkeypatch.setattr(tables, "ask_save", lambda *_: str(path))
+        window.garment.table_asked.emit()
+        assert path.read_text("utf-8-sig").splitlines()[0].split(",") == heading.split("\t")
 
     run_main([], script)

@@ -67,6 +67,9 @@ class ElasticChoice(QObject):
         frame, design = self._session.frame, self._session.design
         if frame is None or design is None:
             return
+        made = {each.name: each for each in design.elastics}
+        if all(made.get(design.traits_of(name).elastic) == elastic for name in names):
+            return
         still = {line.name for line in frame.stages.model.lines if not line.constrains}
         worn: Elastics = {name: elastic for name in names if name in design.worn() - still}
         if self.reach and worn and design.line_hold == "spring":
@@ -125,7 +128,8 @@ class ElasticChoice(QObject):
             # Through the door that a locked line keeps shut.
             return reduce(lambda d, name: d.with_line(name, ratios[name]), found, _of(before, names, elastic))
 
-        said = tr("Cut so that it reaches the same on the body, to some tenths of a millimetre.")
+        cut = tr("Cut so that it reaches the same on the body, to some tenths of a millimetre.")
+        said = cut if elastic else tr("Set so that it reaches the same, to some tenths of a millimetre.")
         self._commit(names, elastic, remade, said)
 
     def _commit(

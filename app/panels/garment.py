@@ -45,14 +45,14 @@ class GarmentPanel(QWidget):
         self._selected = ""
         self._pressures: Mapping[str, PressureView] = {}
         self.cards = QVBoxLayout()
-        self._empty = EmptyState(
+        self.nothing = EmptyState(
             "lines",
             tr("No line is worn"),
             tr("A line that is set shorter pulls: then it can be cut."),
             tr("Set lines"),
         )
-        self._empty.asked.connect(self.lines_asked)
-        self._bare = self._make_bare()
+        self.nothing.asked.connect(self.lines_asked)
+        self.offer = self._make_offer()
         self._doubt, self.tissue = sentence("", "secondary"), TissueCard()
         set_tag(self._doubt, "tone", "warn")
         column = QVBoxLayout(self)
@@ -60,7 +60,7 @@ class GarmentPanel(QWidget):
         column.setSpacing(4)
         self._head = self._make_head()
         self._area = self._make_area()
-        for each in (self._empty, self._doubt, self._bare, self._head):
+        for each in (self.nothing, self._doubt, self.offer, self._head):
             column.addWidget(each)
         column.addWidget(self._area, 1)
         column.addWidget(self._make_buttons())
@@ -74,8 +74,8 @@ class GarmentPanel(QWidget):
         self._doubt.setVisible(bool(doubt))
         self.tissue.show_tissue(view.tissue, view.notes)
         self.tissue.setVisible(view.worn)
-        self._empty.setVisible(not view.worn)
-        self._bare.setVisible(view.worn and view.bare)
+        self.nothing.setVisible(not view.worn)
+        self.offer.setVisible(view.worn and view.bare)
         for each in (self._head, self._area):
             each.setVisible(bool(view.rows))
         if [row.line for row in view.rows] != list(self.rows):
@@ -134,7 +134,7 @@ class GarmentPanel(QWidget):
         row.stretched.connect(lambda share: self.stretched.emit(name, share))
         return row
 
-    def _make_bare(self) -> QWidget:
+    def _make_offer(self) -> EmptyState:
         """Make what stands over the list while no line is made of an elastic."""
         card = EmptyState(
             "bands",

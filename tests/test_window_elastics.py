@@ -1,0 +1,136 @@
+"""Elastics of one's own in the window: brought in, refused, taken away, handed on; and all by keyboard."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from garment_tools import at_rest, choose, made_of, open_menu
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+from window_tools import Script, run_main, settled, undrawn
+
+from app.lining import elastics_desk
+from app.main_window import MainWindow
+from core.design_elastics import Elastic
+from core.elastics import own_elastics, own_folder, save_elastic
+from core.sewing.elastic_csv import TEMPLATE
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+@pytest.fixture(autouse=True)
+def own_house(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """The designer's own elastics of one test are not those of the next."""
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+
+
+def test_tables_of_ones_own_are_brought_in_or_refused_and_taken_away(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    good, bad, empty = (tmp_path / name for name in ("good.csv", "bad.csv", "empty.csv"))
+    good.write_text("# name: Roll 7\n# width_mm: 12\nelongation %,force N\n20,1.3\n40,2.5\n80,4.9\n")
+    bad.write_text("# name: Roll 8\n# width_mm: 12\nelongation %,force N\n20,1.3\n40,much\n")
+    chosen = [bad, good, empty]
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        undrawn(window)
+        monkeypatch.setattr(elastics_desk, "ask_table", lambda *_: str(chosen[0]))
+        monkeypatch.setattr(elastics_desk, "ask_save", lambda *_: str(empty))
+        monkeypatch.setattr(elastics_desk, "ask", lambda *_: "delete")
+        window.garment.library_asked.emit()
+        sheet = window.elastics_desk.sheet
+        assert sheet is not None
+        yield sheet.isVisible
+        shipped = sheet.table.topLevelItemCount()
+        assert not sheet.delete.isEnabled()
+        sheet.import_asked.emit()
+        refusal = sheet.notices.notice()
+        assert refusal is not None
+        assert "Row 2 of the table Roll 8 has no two numbers" in refusal.sentence
+        assert not own_folder().exists()
+        chosen[0] = good
+        sheet.import_asked.emit()
+        assert sheet.marked == "Roll 7"
+        assert sheet.delete.isEnabled()
+        assert sheet.views["Roll 7"].forces == ("1.3", "2.5", "3.7", "4.9")
+        assert "4.9 N at 80 %" in sheet.curve.accessibleName()
+        assert sheet.table.topLevelItemCount() == shipped + 1
+        sheet.template_asked.emit()
+        assert empty.read_text("utf-8-sig") == TEMPLATE
+        chosen[0] = empty
+        sheet.import_asked.emit()
+        refusal = sheet.notices.notice()
+        assert refusal is not None
+        assert "Row 1" in refusal.sentence, "a table that is not filled in is none"
+        sheet.table.mark("Roll 7")
+        sheet.delete.click()
+        assert "Roll 7" not in sheet.views
+        assert own_elastics() == ([], [])
+        sheet.reject()
+        yield lambda: window.elastics_desk.sheet is None
+
+    run_main([], script)
+
+
+def test_an_own_elastic_travels_with_its_project_to_where_nobody_has_it(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    project, cut = tmp_path / "mine.busk", []
+
+    def save(window: MainWindow) -> Script:
+        save_elastic(Elastic("Roll 9", 14.0, ((0.0, 0.0), (0.4, 5.2), (0.9, 14.0)), 18.0, "mine", False))
+        yield settled(window)
+        undrawn(window)
+        window.inspector.open("garment")
+        choose(window, "mid-bust", "Roll 9")
+        yield made_of(window, "mid-bust")
+        cut.append(window.garment.rows["mid-bust"].cut.text())
+        window.session.save(str(project), window.desk._preview())
+        assert window.session.finish_saving()
+
+    def reopen(window: MainWindow) -> Script:
+        assert not own_folder().exists()
+        yield settled(window)
+        undrawn(window)
+        window.inspector.open("garment")
+        yield at_rest(window)
+        row = window.garment.rows["mid-bust"]
+        assert row.elastic.words == "Roll 9"
+        assert row.cut.text() == cut[0]
+        row.elastic.click()
+        menu = open_menu(window)
+        assert next(each.text() for each in menu.actions() if each.isChecked()) == "Roll 9"
+        menu.close()
+
+    run_main([], save)
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "elsewhere"))
+    run_main([str(project)], reopen)
+
+
+def test_the_keyboard_alone_chooses_an_elastic() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        undrawn(window)
+        window.activateWindow()
+        yield window.isActiveWindow
+        window.inspector.tabs.button("garment").click()
+        yield at_rest(window)
+        pull = window.garment.rows["mid-bust"].elastic
+        window.inspector.tabs.button("garment").setFocus()
+        for _ in range(8):
+            if QApplication.focusWidget() is not pull:
+                window.focusNextPrevChild(True)
+        assert QApplication.focusWidget() is pull
+        assert pull.accessibleName() == "Mid-bust: elastic, Choose an elastic…"
+        QTest.keyClick(pull, Qt.Key.Key_Return)
+        menu = open_menu(window)
+        down, right, enter = Qt.Key.Key_Down, Qt.Key.Key_Right, Qt.Key.Key_Return
+        for key in (down, down, down, down, right, down, down, enter):
+            QTest.keyClick(QApplication.activePopupWidget() or menu, key)
+        yield made_of(window, "mid-bust")
+        assert window.garment.rows["mid-bust"].elastic.words == "Strap 15 mm"
+
+    run_main([], script)
