@@ -35,23 +35,25 @@ _POINT = 25.4 / 72.0  # [mm]
 FAMILIES = ("Inter", "Inter Variable", "Noto Sans JP")
 FIGURES = ("Inter Figures", *FAMILIES)  # of equal width; see resources/fonts/README.md
 
+_STRONG = 640  # 600 in Inter, and in Noto Sans JP, which has no 600, rather bold than medium
+
 TYPES = {
-    "title": (17.0, 600, "text", False),
-    "name": (10.0, 600, "text", False),
+    "title": (17.0, _STRONG, "text", False),
+    "name": (10.0, _STRONG, "text", False),
     "quiet": (8.0, 400, "text_quiet", False),
-    "hero": (21.0, 600, "text", True),
-    "large": (13.5, 600, "text", True),
-    "heading": (9.5, 600, "text", False),
+    "hero": (21.0, _STRONG, "text", True),
+    "large": (13.5, _STRONG, "text", True),
+    "heading": (9.5, _STRONG, "text", False),
     "body": (7.8, 400, "text", False),
-    "strong": (7.8, 600, "text", False),
+    "strong": (7.8, _STRONG, "text", False),
     "figure": (7.8, 400, "text", True),
     "before": (7.8, 400, "text_caption", True),
-    "figure strong": (7.8, 600, "text", True),
+    "figure strong": (7.8, _STRONG, "text", True),
     "caption": (6.6, 400, "text_caption", False),
     "axis": (6.0, 400, "text_caption", True),
     "small": (6.5, 400, "text_quiet", False),
-    "small strong": (6.5, 600, "text", False),
-    "warning": (7.8, 600, "bad", False),
+    "small strong": (6.5, _STRONG, "text", False),
+    "warning": (7.8, _STRONG, "bad", False),
 }
 """Size [pt], weight, colour token of each kind of type, and whether its figures have one width."""
 

@@ -58,7 +58,7 @@ def measure_blocks(sheet: Sheet) -> Iterator[Block]:
         said = elided(group, "strong", HALF)
         yield Block(5.0, _ruled(said, "strong", HALF, 5.0), gap=1.2, keep=True)
         for row in rows:
-            yield _measure(row) if row.figures else _paragraph(f"{row.title}: {row.note}", "small", HALF, 0.9)
+            yield _measure(row) if row.figures else _paragraph(row.note, "small", HALF, 0.9)
 
 
 def note_blocks(sheet: Sheet) -> Iterator[Block]:

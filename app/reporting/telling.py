@@ -118,8 +118,8 @@ def measure_rows(sheet: Sheet) -> list[tuple[str, list[MeasureRow]]]:
         known = [_measure_row(row) for row in those if _known(row)]
         missing = [row for row in those if not _known(row)]
         for note, same in groupby(missing, key=lambda row: row["note"]):
-            title = ", ".join(_measure_title(row) for row in same)
-            known.append(MeasureRow(title, "", (), say(note)))
+            title = _listed([_measure_title(row) for row in same])
+            known.append(MeasureRow(title, "", (), f"{title}{_colon()}{say(note)}"))
         found.append((group, known))
     return found
 
@@ -132,7 +132,7 @@ def definitions(sheet: Sheet) -> list[tuple[str, str]]:
     found = []
     for (text, iso), titles in told.items():
         standard = tr("ISO 8559-1: {name}.").format(name=iso) if iso else ""
-        found.append((", ".join(titles), _joined([say(text), standard])))
+        found.append((_listed(titles), _joined([say(text), standard])))
     return found
 
 
@@ -182,7 +182,9 @@ def _cut_view(cut: CutRow, press: PressRow, marks: tuple[int, ...]) -> CutView:
     )
     word = light_word(press.light) if press.light else ""
     title = piece_title(cut.line, cut.title)
-    return CutView(cut.line, title, cut.elastic or NOTHING, figures, press.light, word, marks)
+    return CutView(
+        cut.line, title, say(cut.elastic) if cut.elastic else NOTHING, figures, press.light, word, marks
+    )
 
 
 def _measure_row(row: dict[str, Any]) -> MeasureRow:
@@ -241,6 +243,10 @@ def _figure(value: float | None, digits: int) -> str:
 
 def _colon() -> str:
     return "：" if language() == "ja" else ": "
+
+
+def _listed(names: list[str]) -> str:
+    return ("、" if language() == "ja" else ", ").join(names)
 
 
 def _joined(sentences: list[str]) -> str:

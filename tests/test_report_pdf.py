@@ -1,0 +1,200 @@
+"""The sheet as a PDF, read back by another library: its figures, its type, and that nothing is lost."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pdf_tools import Pdf
+from PySide6.QtGui import QImage
+from PySide6.QtWidgets import QApplication
+
+from app.dress.theme import load_fonts
+from app.presenting.lines import line_colours
+from app.reporting.handout import SHOT_SIZES, SHOTS, Handout
+from app.reporting.pages import pages_of
+from app.reporting.paper import A4, MARGIN
+from app.reporting.pdf import write_pdf
+from app.wording.words import language, number, use_language
+from core.design_lines import LineTraits
+from core.elastics import find_elastic
+from core.errors import UserError
+from core.pipeline import Stages, build
+from core.sheet import Heading, Sheet, sheet_of
+from core.solution import run
+
+LONG = "Customer 0412, who has a name so long that it never fits on one line of any sheet, however wide it is"
+HEADING = Heading("Bodysuit", "2026-11-22", "Customer 0412", "B", "eu")
+Built = Callable[[str], Stages]
+
+
+@pytest.fixture(scope="module")
+def sheet(built: Built, qapp: QApplication) -> Sheet:
+    """Four lines worn: two of elastics, one of none, one named by hand that does not move."""
+    load_fonts()
+    stages = built("mannequin")
+    design = replace(stages.design, template="168").with_line("mid-bust", 0.7).with_line("full-bust", 0.98)
+    design = design.with_line("under-bust", 0.75).with_elastic("mid-bust", find_elastic("plush 12"))
+    design = design.with_elastic("under-bust", find_elastic("picot 10"))
+    design = design.with_traits(LineTraits("full-bust", title="Upper edge " * 5))
+    solution = run(build(design, stages))
+    return sheet_of(solution, solution.records, HEADING)
+
+
+def pictures() -> dict[str, QImage]:
+    found = {}
+    for name in SHOTS:
+        wide, high = SHOT_SIZES[name.partition(" ")[0]]
+        found[name] = QImage(round(4 * wide), round(4 * high), QImage.Format.Format_RGB32)
+        found[name].fill(0xC8A090)
+    return found
+
+
+def handout(sheet: Sheet, drawn: bool = True) -> Handout:
+    names = [row.line for row in sheet.cuts.rows]
+    return Handout(sheet, pictures() if drawn else {}, line_colours(names))
+
+
+def written(of: Handout, path: Path, words: str = "en") -> Pdf:
+    write_pdf(path, pages_of(of, words), "sheet")
+    return Pdf(path)
+
+
+def told(value: float | None, digits: int, signed: bool = False) -> str:
+    return "\N{EN DASH}" if value is None else number(value, digits, signed)
+
+
+@pytest.mark.parametrize("words", ["en", "ja"])
+def test_every_figure_of_the_tables_is_that_of_the_data(sheet: Sheet, tmp_path: Path, words: str) -> None:
+    text = written(handout(sheet), tmp_path / "sheet.pdf", words).text()
+    data = sheet.as_data()
+    for row in data["measures"]:
+        digits = 0 if row["unit"] == "ml" else 1
+        values = [told(row["before"], digits), told(row["after"], digits)]
+        if row["before"] is not None or row["after"] is not None:
+            assert " ".join((*values, told(row["difference"], digits, signed=True))) in text, row["key"]
+    for cut, press in zip(data["cuts"]["rows"], data["pressures"], strict=True):
+        stretch = None if cut["elongation"] is None else 100.0 * cut["elongation"]
+        figures = (
+            *(told(cut["reached_whole_mm"], 0), told(cut["cut_mm"], 0), told(stretch, 0)),
+            *(told(cut["tension_n"], 1), told(press["max_kpa"], 1), told(press["max_mmhg"], 0)),
+        )
+        assert " ".join(figures) in text, cut["line"]
+        if cut["cut_mm"] is not None:
+            assert f"{cut['cut_mm']:,.0f} mm" in text, "the great figure at the head"
+    assert f"{told(data['lift']['up'], 1, signed=True)} mm" in text
+    assert f"{told(data['volume']['error_ml'], 1, signed=True)} ml" in text
+    chosen = data["sizes"][0]
+    assert chosen["key"] == "eu"
+    assert re.search(rf"{chosen['band']} .{{0,24}}{chosen['cup']} ", text)
+    for size in data["sizes"]:
+        assert f"{size['size']}" in text
+
+
+@pytest.mark.parametrize("words", ["en", "ja"])
+def test_it_is_two_pages_of_a4_with_its_type_inside(sheet: Sheet, tmp_path: Path, words: str) -> None:
+    pdf = written(handout(sheet), tmp_path / "sheet.pdf", words)
+    assert pdf.sizes == [(210, 297)] * 2
+    fonts = pdf.fonts()
+    assert all(fonts.values()), fonts
+    assert any(name.startswith("InterFigures") for name in fonts)
+    assert any(name.startswith("NotoSansJP") for name in fonts) == (words == "ja")
+    assert "Customer 0412" in pdf.text()
+    assert "2026-11-22" in pdf.text()
+
+
+@pytest.mark.parametrize("words", ["en", "ja"])
+@pytest.mark.parametrize("drawn", [True, False])
+@pytest.mark.parametrize("customer", ["", LONG])
+def test_no_text_leaves_the_margins_or_lies_over_another(
+    sheet: Sheet, tmp_path: Path, words: str, drawn: bool, customer: str
+) -> None:
+    changed = replace(sheet, heading=replace(HEADING, customer=customer, project=f"{LONG}.busk"))
+    pdf = written(handout(changed, drawn), tmp_path / "sheet.pdf", words)
+    for page in range(len(pdf.sizes)):
+        pieces = pdf.pieces(page)
+        assert len(pieces) > 20
+        for piece in pieces:
+            assert piece.left >= MARGIN - 0.3, piece
+            assert piece.right <= A4[0] - MARGIN + 0.3, piece
+            assert piece.top >= MARGIN - 0.5, piece
+            assert piece.bottom <= A4[1] - MARGIN + 1.2, piece
+        assert [pair for pair in combinations(pieces, 2) if pair[0].overlaps(pair[1])] == []
+
+
+def test_long_names_end_in_dots_and_nobody_leaves_no_hole(sheet: Sheet, tmp_path: Path) -> None:
+    named = replace(sheet, heading=replace(HEADING, customer=LONG))
+    text = written(handout(named), tmp_path / "named.pdf").text()
+    assert LONG not in text
+    assert LONG[:30] in text
+    assert "…" in text
+    nobody = replace(sheet, heading=replace(HEADING, customer=""))
+    first = written(handout(nobody), tmp_path / "nobody.pdf").pieces(0)
+    title, project = (next(p for p in first if p.text.startswith(t)) for t in ("Fitting", "Bodysuit"))
+    assert abs(title.left - project.left) < 0.6, "the project stands where the customer would"
+
+
+def test_what_is_missing_is_said(sheet: Sheet, built: Built, tmp_path: Path) -> None:
+    stages = built("mannequin")
+    bare = run(build(replace(stages.design, lines=()), stages))
+    at_rest = sheet_of(bare, bare.records, HEADING)
+    text = written(handout(at_rest, drawn=False), tmp_path / "bare.pdf").text()
+    assert "No line is worn: there is nothing to cut." in text
+    assert "No turns to plot: no line is worn." in text
+    assert "The pictures of the body could not be drawn here" in text
+    plain = tuple(replace(row, elastic="", cut_mm=None, elongation=None) for row in sheet.cuts.rows)
+    without = replace(sheet, cuts=replace(sheet.cuts, rows=plain))
+    assert "No elastic is chosen yet" in written(handout(without), tmp_path / "plain.pdf").text()
+    sizeless = replace(sheet, sizes=(), no_size="The scan shows no bust.", state="vibrating", lift=None)
+    text = written(handout(sizeless), tmp_path / "none.pdf").text()
+    assert "The scan shows no bust." in text
+    assert "Vibrating: these figures are no result to sew for." in text
+    assert "No figure: the shape is no result." in text
+
+
+def test_many_lines_are_all_printed(sheet: Sheet, tmp_path: Path) -> None:
+    cut, press = sheet.cuts.rows[0], sheet.pressures[0]
+    rows = tuple(replace(cut, line=f"own {k}", title=f"Own line {k}") for k in range(40))
+    pressed = tuple(replace(press, line=row.line, title=row.title) for row in rows)
+    many = replace(sheet, cuts=replace(sheet.cuts, rows=rows), pressures=pressed)
+    pdf = written(handout(many), tmp_path / "many.pdf")
+    assert all(f"Own line {k} " in pdf.text() for k in range(40))
+    for page in range(len(pdf.sizes)):
+        assert all(piece.bottom <= A4[1] - MARGIN + 1.2 for piece in pdf.pieces(page))
+
+
+def test_lights_are_told_apart_without_colour(sheet: Sheet, tmp_path: Path) -> None:
+    lights = {}
+    for light in ("green", "amber", "red"):
+        same = tuple(replace(row, light=light, notes=()) for row in sheet.pressures)
+        pdf = written(handout(replace(sheet, pressures=same)), tmp_path / f"{light}.pdf")
+        grey = pdf.pixels(0, 300).mean(axis=2)
+        word = [p for p in pdf.pieces(0) if p.left > MARGIN + 160.0 and p.text in ("gentle", "snug", "tight")]
+        assert len({piece.text for piece in word}) == 1
+        dot = 300.0 / 25.4
+        box = grey[
+            round((word[0].top - 1.0) * dot) : round((word[0].bottom + 1.0) * dot),
+            round((word[0].left - 5.0) * dot) : round((word[0].left - 1.2) * dot),
+        ]
+        lights[light] = box < 200.0
+    ink = {light: float(shape.mean()) for light, shape in lights.items()}
+    assert min(ink.values()) > 0.02, "each has a mark"
+    assert ink["green"] < ink["amber"] < ink["red"], "a ring, a triangle, a full square"
+    assert not np.array_equal(lights["amber"], lights["red"])
+
+
+def test_a_sheet_is_whole_or_not_there(sheet: Sheet, tmp_path: Path) -> None:
+    with pytest.raises(UserError):
+        write_pdf(tmp_path / "no folder" / "sheet.pdf", pages_of(handout(sheet), "en"), "sheet")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_language_of_the_window_stays(sheet: Sheet) -> None:
+    use_language("en")
+    pages_of(handout(sheet), "ja")
+    assert language() == "en"
