@@ -7,6 +7,7 @@ import pytest
 import pyvista as pv
 
 from app.seeing.camera import SLANTED, STEEPEST, VIEWS, View
+from app.seeing.framing import framing_place
 from app.seeing.scene import Scene
 
 WIDTH, HEIGHT = 450, 300
@@ -66,6 +67,14 @@ def test_a_place_is_faced_from_where_its_skin_looks_but_not_steeply() -> None:
     assert aslant.elevation == pytest.approx(np.degrees(np.arctan(0.5 / np.sqrt(2.0))))
     assert (aslant.focus, aslant.distance) == ((1.0, 2.0, 3.0), 900.0)
     assert View().facing([0.0, -0.1, -1.0]).elevation == -SLANTED
+
+
+def test_a_place_that_is_turned_to_comes_into_the_picture_if_it_is_not_there() -> None:
+    view, normal = View((0.0, 0.0, 0.0), 1000.0), np.array([0.0, 1.0, 0.0])
+    near = framing_place(view, np.array([10.0, 100.0, 20.0]), normal, 1.6)
+    assert (near.name, near.focus, near.distance) == ("back", view.focus, view.distance)
+    far = framing_place(view, np.array([10.0, 100.0, 400.0]), normal, 1.6)
+    assert (far.name, far.focus) == ("back", (10.0, 100.0, 400.0))
 
 
 def test_a_move_between_views_ends_there_the_short_way() -> None:

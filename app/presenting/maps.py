@@ -74,8 +74,8 @@ def _line_maps() -> list[MapKind]:
             tr("Pull of lines"),
             "%",
             tr(
-                "How strongly each part of the worn lines pulls, in % of the strongest part. Newtons stand in "
-                "the cut list."
+                "How strongly each part of the worn lines pulls, in % of the strongest part. Newtons stand "
+                "in the cut list."
             ),
             tr("of the strongest part"),
             digits=0,

@@ -14,6 +14,7 @@ _ABOVE_BUST, _BELOW_BUST = 270.0, 350.0  # what a framed bust shows: from the ne
 
 _BUST_HEIGHT = 0.56  # of a torso cut at the hips, used until the landmarks are known
 
+_EDGE = 0.1  # what lies nearer to the edge of a picture than this part of it is hardly seen
 _CLOSEST = 90.0  # what is shown round a place, whatever its size [mm]
 
 
@@ -35,6 +36,17 @@ def framing_points(view: View, points: Points, aspect: float) -> View:
     """Return ``view`` of ``points``, shape (k, 3) [mm], with some of what lies round them."""
     around = np.array([-_CLOSEST, _CLOSEST])
     return view.framing(box_of(points) + around, aspect)
+
+
+def framing_place(view: View, place: Floats, normal: Floats, aspect: float) -> View:
+    """Return ``view`` turned to where a place, (3,) [mm], faces the eye, and brought there if it is not seen.
+
+    ``normal`` is that of the skin there, shape (3,).
+    """
+    turned = view.facing(normal)
+    x, y, _ = turned.to_picture(place[None], aspect, 1.0)[0]
+    seen = _EDGE * aspect < x < (1.0 - _EDGE) * aspect and _EDGE < y < 1.0 - _EDGE
+    return turned if seen else turned.centred(place)
 
 
 def depth_range(view: View, box: Floats) -> tuple[float, float]:

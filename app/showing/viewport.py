@@ -88,7 +88,7 @@ class Viewport(QWidget):
         pointer = self._pointer
         pointer.turned.connect(self._turn)
         pointer.shifted.connect(self._shift)
-        pointer.centred.connect(self._centre)
+        pointer.centred.connect(self.glide_to)
         pointer.band_hovered.connect(self.hover_band)
         for name in _HEARD:
             getattr(pointer, name).connect(getattr(self, name))
@@ -241,13 +241,9 @@ class Viewport(QWidget):
         self._fit = None
         self._go(framing_points(self.scene.view, points, self._aspect()))
 
-    def turn_to(self, place: Floats, normal: Floats) -> None:
-        """Glide round to where a place of the skin, (3,) [mm], faces the eye; it comes into the picture."""
-        view = self.scene.view.facing(normal)
-        x, y, *_ = view.to_picture(place[None], self.width(), self.height())[0]
-        if not (0.1 < x / self.width() < 0.9 and 0.1 < y / self.height() < 0.9):
-            self._fit = None
-            view = view.centred(place)
+    def glide_to(self, view: View) -> None:
+        """Glide to another view."""
+        self._fit = None
         self._go(view)
 
     def frame_bust(self) -> None:
@@ -283,10 +279,6 @@ class Viewport(QWidget):
     def _shift(self, view: View) -> None:
         self._fit = None
         self._turn(view)
-
-    def _centre(self, view: View) -> None:
-        self._fit = None
-        self._go(view)
 
     def _aspect(self) -> float:
         return self.width() / max(self.height(), 1)

@@ -13,6 +13,7 @@ from app.panels.legend import Legend
 from app.presenting.body_now import BodyNow
 from app.presenting.maps import LINE_MAPS, MAPS, automatic_range, bridge_words, map_kinds, ramp_of
 from app.seeing.body import BodyActor
+from app.seeing.framing import framing_place
 from app.seeing.material import look_of
 from app.seeing.paint import Ramp
 from app.seeing.scene import Scene
@@ -132,7 +133,9 @@ class MapDesk(QObject):
         self._view.set_after(True)
         self.choose("pressure")
         self.pin(worn.places[worn.peak], line)
-        self._view.viewport.turn_to(worn.places[worn.peak], worn.normals[worn.peak])
+        view, place = self._view.viewport, worn.places[worn.peak]
+        aspect = view.width() / max(view.height(), 1)
+        view.glide_to(framing_place(view.scene.view, place, worn.normals[worn.peak], aspect))
 
     def unpin(self, number: int) -> None:
         """Take a flag away that is shown: those of lines are not while a map lies on the skin."""
