@@ -159,6 +159,16 @@ def test_a_band_on_the_rib_cage_is_cut_as_far_stretched_as_the_designer_says() -
         assert cut.elongation == pytest.approx(0.3)
         assert cut.cut_mm == pytest.approx(cut.reached_whole_mm / 1.3 + 25.0)
         assert row.cut.text() == number(cut.cut_mm or 0.0, 0)
+        window.session.reset_lines()
+        yield at_rest(window)
+        assert row.cut.text() == "–"
+        assert row.elastic.words == "Bra band, plush back 18 mm"
+        choose(window, "under-bust", "Bra band, plush back", "18 mm")
+        yield made_of(window, "under-bust")
+        choose(window, "under-bust", "No elastic")
+        yield made_of(window)
+        assert window.session.design is not None
+        assert not window.session.design.worn(), "what holds nothing is not worn"
 
     run_main([], script)
 

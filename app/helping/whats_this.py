@@ -65,6 +65,10 @@ def _inspected(window: MainWindow) -> dict[QWidget, str]:
             "The scan, and what the model makes of it, measured alike in the same places, so that the change "
             "is the model's alone."
         ),
+        window.garment: tr(
+            "How long to cut the elastic of each worn line, how far it is stretched on the body and what it "
+            "pulls with. All newtons are estimates: they rest on the stiffness of tissue that stands below."
+        ),
         window.model: tr(
             "How lines, skin and volume act. The choices of the paper are marked; they change the result, "
             "and are saved with the design."

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Iterable, Set
 from functools import partial, reduce
 from typing import TYPE_CHECKING, cast
 
@@ -29,6 +29,8 @@ FIRST_STRETCH = 0.2
 
 Elastics = dict[str, Elastic | None]
 """What lines are to be made of, by name; None is nothing in particular."""
+
+Dress = Callable[[Design], Design]
 
 
 class ElasticChoice(QObject):
@@ -68,23 +70,27 @@ class ElasticChoice(QObject):
         if frame is None or design is None:
             return
         made = {each.name: each for each in design.elastics}
-        if all(made.get(design.traits_of(name).elastic) == elastic for name in names):
-            return
         still = {line.name for line in frame.stages.model.lines if not line.constrains}
+        alike = all(made.get(design.traits_of(name).elastic) == elastic for name in names)
+        if alike and (elastic is None or still.intersection(names) <= design.worn()):
+            return
         worn: Elastics = {name: elastic for name in names if name in design.worn() - still}
+
+        def dress(before: Design) -> Design:
+            made = reduce(lambda d, name: d.with_elastic(name, elastic), names, before)
+            return _put_on(made, names, still)
+
         if self.reach and worn and design.line_hold == "spring":
             self._window.jobs.cancel(self._job)
             self._job = self._window.jobs.run(
                 tr("Finding how long to cut it"),
                 lambda progress: made_as_worn(_stages(frame, design), worn),
-                lambda made: self._take(names, elastic, design, cast(Design, made)),
+                lambda made: self._take(names, elastic, dress, design, cast(Design, made)),
                 self._window.desk.show_failure,
                 waited=True,
             )
         else:
-            self._commit(
-                names, elastic, lambda before: _put_on(_of(before, names, elastic), names, still), ""
-            )
+            self._commit(names, elastic, dress, "")
 
     def stretch(self, name: str, share: float) -> None:
         """Stretch the elastic of a line on points that do not move by ``share`` [1]."""
@@ -116,25 +122,25 @@ class ElasticChoice(QObject):
         self._menu.addAction(tr("Elastics…"), self._window.garment.library_asked.emit)
         pull_down(self._menu, under)
 
-    def _take(self, names: tuple[str, ...], elastic: Elastic | None, asked: Design, made: Design) -> None:
+    def _take(
+        self, names: tuple[str, ...], elastic: Elastic | None, dress: Dress, asked: Design, made: Design
+    ) -> None:
         """Take the lengths that were found, or look again if something was edited meanwhile."""
         if self._session.design is not asked:
             self.choose(names, elastic)
             return
         ratios = {line.name: line.ratio for line in made.lines}
-        found = [name for name in names if ratios.get(name) != asked.ratio(name) and name in ratios]
+        found = [name for name in names if name in ratios and ratios[name] != asked.ratio(name)]
 
         def remade(before: Design) -> Design:
             # Through the door that a locked line keeps shut.
-            return reduce(lambda d, name: d.with_line(name, ratios[name]), found, _of(before, names, elastic))
+            return reduce(lambda d, name: d.with_line(name, ratios[name]), found, dress(before))
 
         cut = tr("Cut so that it reaches the same on the body, to some tenths of a millimetre.")
         said = cut if elastic else tr("Set so that it reaches the same, to some tenths of a millimetre.")
         self._commit(names, elastic, remade, said)
 
-    def _commit(
-        self, names: tuple[str, ...], elastic: Elastic | None, edit: Callable[[Design], Design], said: str
-    ) -> None:
+    def _commit(self, names: tuple[str, ...], elastic: Elastic | None, edit: Dress, said: str) -> None:
         before = self._session.design
         assert before is not None
         line = row_title(names[0], before) if set(names) <= set(before.linked(names[0])) else tr("All lines")
@@ -149,11 +155,10 @@ def _stages(frame: Frame, design: Design) -> Stages:
     return frame.stages if frame.stages.design is design else build(design, frame.stages)
 
 
-def _of(design: Design, names: Iterable[str], elastic: Elastic | None) -> Design:
-    return reduce(lambda made, name: made.with_elastic(name, elastic), names, design)
-
-
-def _put_on(design: Design, names: Iterable[str], still: Collection[str]) -> Design:
-    """Return the design in which bands on points that do not move are worn, stretched a little."""
-    off = [name for name in names if name in still and name not in design.worn()]
-    return reduce(lambda made, name: made.with_line(name, 1.0 / (1.0 + FIRST_STRETCH)), off, design)
+def _put_on(design: Design, names: Iterable[str], still: Set[str]) -> Design:
+    """Return the design in which bands on points that do not move are worn while they are of an elastic."""
+    for name in [each for each in names if each in still]:
+        made = bool(design.traits_of(name).elastic)
+        if made != (name in design.worn()):
+            design = design.with_line(name, 1.0 / (1.0 + FIRST_STRETCH) if made else None)
+    return design

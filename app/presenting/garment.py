@@ -58,7 +58,8 @@ def as_table(frame: Frame, cuts: CutList) -> list[list[str]]:
 def _off(name: str, design: Design, color: str) -> CutView:
     """Return what is said of a band that could be cut though no line pulls there."""
     notes = (tr("On the rib cage: it moves nothing, but it can be cut."),)
-    return CutView(name, line_title(name, design), color, band_width(name, design), "", notes=notes)
+    elastic = say(design.traits_of(name).elastic)
+    return CutView(name, line_title(name, design), color, band_width(name, design), elastic, notes=notes)
 
 
 def _view(row: CutRow, design: Design, color: str, still: bool) -> CutView:

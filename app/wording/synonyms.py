@@ -31,6 +31,8 @@ SYNONYMS = {
     "Add closed rings round the bust points": "cup circle カップ",
     "Draw a line on the body": "new add seam waist hip edge 新規 追加 縫い目 ウエスト ヒップ",
     "Line through control points…": "new add path 新規 追加",
+    "Cut list": "garment sew seam length tension newton stretch elastic tape 裁断 縫製 張力 伸び ゴム テープ",
+    "Elastics…": "tape rubber csv import library measured force ゴム テープ 取り込み 測定",
     "Lock or unlock": "fix hold keep waist 固定 ウエスト",
     "Link left and right, or set apart": "symmetric mirror pair both sides 対称 左右",
     "Save lines as preset…": "template style set テンプレート スタイル",
