@@ -16,7 +16,10 @@ from app.panels.measure_table import MeasureTable
 from app.presenting.measures import as_table
 from core.measures import before_after
 from core.sizes import sizes
+from core.sizing.letters import letter_sizes
 from tests.window_tools import Script, run_main, settled, undrawn
+
+TOPS = letter_sizes().tables[0]
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -96,7 +99,10 @@ def test_band_and_cup_follow_the_system_and_the_allowance_that_are_remembered() 
         assert card.button("us").accessibleName().endswith("4 in not added")
         card.button("jp").click()
         assert (card.caution.text(), card.doubt.isVisible()) == ("", False)
+        letters = TOPS.sizes(girths[1])
+        assert card.near.text().endswith(f"{TOPS.title.en}: {' / '.join(letters)}"), "the scan shows no hip"
         card.button("uk").click()
+        assert TOPS.title.en not in card.near.text()
         typed(card.allowance, "21")
         assert "0 to 20" in card.allowance.accessibleDescription()
 

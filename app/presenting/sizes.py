@@ -8,6 +8,7 @@ from app.panels.size_card import SizeView
 from app.wording.words import language, number, say, tr
 from core.measures import Measures
 from core.sizes import Neighbour, SizeAnswer, sizes
+from core.sizing.letters import letter_sizes
 
 NEEDED = ("underbust_girth", "bust_girth")
 """The measures that a size is made of."""
@@ -19,17 +20,28 @@ def size_views(measured: Measures, allowance_mm: float) -> tuple[list[SizeView],
     if underbust.value is None or bust.value is None:
         return [], say(underbust.note or bust.note)
     answers = sizes(underbust.value, bust.value, allowance_mm)
-    return [_view(key, answer) for key, answer in answers.items()], ""
+    letters = {"jp": tuple(_letters(measured))}
+    return [_view(key, answer, letters.get(key, ())) for key, answer in answers.items()], ""
 
 
-def _view(key: str, answer: SizeAnswer) -> SizeView:
+def _letters(measured: Measures) -> Iterator[str]:
+    """Yield the sizes in letters of Japan that go by a girth which the scan shows."""
+    for table in letter_sizes().tables:
+        girth = measured[table.girth].value
+        found = table.sizes(girth) if girth is not None else ()
+        if found:
+            yield f"{table.title.told(language())}: {' / '.join(found)}"
+
+
+def _view(key: str, answer: SizeAnswer, letters: tuple[str, ...]) -> SizeView:
     doubts, caution = [each.told(language()) for each in answer.doubts], answer.table.caution
+    doubts += [each.told(language()) for each in letter_sizes().doubts] if letters else []
     return SizeView(
         key,
         key.upper() if len(key) == 2 else answer.table.system,
         answer.label or "\N{EN DASH}",
         " ".join(say(each) for each in answer.rule),
-        tuple(_near(answer)),
+        (*_near(answer), *letters),
         "\n".join([answer.table.title.told(language()), *(f"• {each}" for each in doubts)]),
         caution.told(language()) if caution else "",
         doubts[0] if caution and doubts else "",
