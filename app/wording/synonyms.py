@@ -23,6 +23,7 @@ SYNONYMS = {
     "Section plane": "cut cross-section profile contour slice 断面 輪郭 カット",
     "Map on the body": "displacement strain pressure tension colour lift raised heat "
     "圧力 張力 ひずみ 変位 リフト",
+    "Contact pressure": "kpa mmhg press comfort tight light 着圧 圧迫 圧力 きつさ 締めつけ",
     "Light": "white bright 白 明るい",
     "Dark": "black night 黒 暗い",
     "Add straps over the bust points": "shoulder lift strap 肩 ストラップ リフト",
