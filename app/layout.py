@@ -162,6 +162,8 @@ class Layout(QObject):
         window, over = self._window, self._over()
         if over:
             over[-1].given_up.emit()
+        elif window.report_desk.is_open:
+            window.report_desk.leave()
         elif window.inspector.panel() is window.model:
             window.model.left.emit()
         elif window.view.beside.way in ("wipe", "side"):

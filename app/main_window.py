@@ -16,6 +16,7 @@ from app.desks.job_desk import JobDesk
 from app.desks.landmark_desk import LandmarkDesk
 from app.desks.picture_desk import PictureDesk
 from app.desks.plot_desk import PlotDesk
+from app.desks.report_desk import ReportDesk
 from app.desks.scan_desk import ScanDesk
 from app.desks.start_desk import StartDesk
 from app.desks.verdict_desk import VerdictDesk
@@ -100,6 +101,7 @@ class MainWindow(QMainWindow):
         self.map_desk, self.section_desk = MapDesk(self), SectionDesk(self)
         self.start_desk, self.plot_desk = StartDesk(self), PlotDesk(self)
         self.picture_desk, self.export_desk = PictureDesk(self), ExportDesk(self)
+        self.report_desk = ReportDesk(self)
         self.lines_desk, self.line_maker = LinesDesk(self), LineMaker(self)
         self.line_drawing, self.line_routing = LineDrawing(self), LineRouting(self)
         self.preset_desk, self.band_pull = PresetDesk(self), BandPull(self)

@@ -65,12 +65,12 @@ OUTSIDE = {
     "showing": {"numpy", "pyvista", "pyvistaqt", "pyqtgraph", "vtkmodules", "PySide6.QtCore", "PySide6.QtGui"}
     | {"PySide6.QtWidgets", "PySide6.QtOpenGLWidgets"},
     "presenting": {"numpy"},
-    "reporting": {"numpy", "PySide6.QtCore", "PySide6.QtGui"},
+    "reporting": QT | {"numpy"},
     "exporting": set(),
     "keeping": QT,
     "viewing": QT | {"numpy"},
     "helping": QT | {"PySide6", "platformdirs"},
-    "desks": QT | {"PySide6.QtSvg", "PySide6.QtPrintSupport"},
+    "desks": QT | {"numpy", "PySide6.QtSvg", "PySide6.QtPrintSupport"},
     "lining": QT | {"numpy"},
     "roof": NUMBERS
     | {"PySide6", "pyvista", "pyvistaqt", "platformdirs", "threadpoolctl", "PySide6.QtCore", "PySide6.QtGui"}

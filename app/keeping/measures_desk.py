@@ -122,7 +122,7 @@ class MeasuresDesk(QObject):
         self._show_sizes()
 
     def _show_sizes(self) -> None:
-        allowance = _allowance()
+        allowance = wished_allowance()
         views, why = size_views(self._rest, allowance) if self._rest else ([], "")
         self._panel.sizes.set_sizes(views, wish("size_system"), allowance, why)
 
@@ -132,7 +132,7 @@ class MeasuresDesk(QObject):
         return as_table([*measured, *self._panel.rows])
 
 
-def _allowance() -> float:
+def wished_allowance() -> float:
     """Return what the user takes off the under-bust [mm]; settings may hold anything."""
     low, high = ALLOWANCE
     try:

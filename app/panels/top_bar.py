@@ -1,4 +1,4 @@
-"""The bar above everything: menus, name of the project, undo and redo, export."""
+"""The bar above everything: menus, name of the project, undo and redo, export, what the work leads to."""
 
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
@@ -33,7 +33,7 @@ class TopBar(QWidget):
         right.addWidget(ToolButton("arrow-u-up-left", action=undo))
         right.addWidget(ToolButton("arrow-u-up-right", action=redo))
         right.addSpacing(8)
-        self.export = button(tr("Export…"), "primary")
+        self.export = button(tr("Export…"))
         self.export.setEnabled(export.isEnabled())
         self.export.setToolTip(export.toolTip())
         self.export.clicked.connect(export.trigger)
@@ -44,9 +44,19 @@ class TopBar(QWidget):
         grid.addLayout(right, 0, 2)
 
     def place(self, widget: QWidget) -> None:
-        """Put what is always wanted between undo and the button at the end."""
-        self._right.insertWidget(self._right.count() - 1, widget)
-        self._right.insertSpacing(self._right.count() - 1, 8)
+        """Put what is always wanted between undo and the buttons at the end."""
+        self._right.insertWidget(self._right.indexOf(self.export), widget)
+        self._right.insertSpacing(self._right.indexOf(self.export), 8)
+
+    def add_primary(self, action: QAction) -> None:
+        """Put what the work leads to at the end."""
+        self.primary = button(action.text(), "primary")
+        self.primary.setEnabled(action.isEnabled())
+        self.primary.setToolTip(action.toolTip())
+        self.primary.clicked.connect(action.trigger)
+        action.enabledChanged.connect(self.primary.setEnabled)
+        self._right.addSpacing(8)
+        self._right.addWidget(self.primary)
 
     def set_title(self, title: str, unsaved: bool) -> None:
         """Show the name of the project, with a dot while it has unsaved changes."""

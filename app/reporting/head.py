@@ -102,9 +102,7 @@ def _size(sheet: Sheet) -> Block:
 def _cuts(handout: Handout) -> Block:
     """Return the lengths to cut: one as large as the size, up to three below each other."""
     pieces, left = cut_pieces(handout.sheet, list(handout.colours)), _CELLS[2]
-    guessed = any(row.cut_mm is not None and row.estimate for row in handout.sheet.cuts.rows)
-    caption = tr("Cut length of the elastic, an estimate") if guessed else tr("Cut length of the elastic")
-    room = _CELLS[3] - left - 6.0
+    room, caption = _CELLS[3] - left - 6.0, _cut_caption(handout.sheet)
     if len(pieces) == 1:
         line, title, length = pieces[0]
         one = _great(left, room, caption, length, "", "mm")
@@ -141,6 +139,11 @@ def _cuts(handout: Handout) -> Block:
             paper.text(x + left + end + 13.6, base - 0.3, title, "strong")
 
     return Block(_HERO, paint)
+
+
+def _cut_caption(sheet: Sheet) -> str:
+    guessed = any(row.cut_mm is not None and row.estimate for row in sheet.cuts.rows)
+    return tr("Cut length of the elastic, an estimate") if guessed else tr("Cut length of the elastic")
 
 
 def _sentence(left: float, room: float, caption: str, said: str) -> Block:

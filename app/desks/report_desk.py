@@ -1,0 +1,262 @@
+"""The sheet to work from in the window: made beside it as soon as the run rests, shown, saved, printed."""
+
+from __future__ import annotations
+
+import datetime
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+from PySide6.QtCore import QMarginsF, QObject
+from PySide6.QtGui import QImage, QPageLayout, QPageSize, QPainter
+from PySide6.QtPrintSupport import QPrintDialog, QPrinter
+
+from app.asking.jobs import Job
+from app.dress.wishes import wish
+from app.keeping.dialogs import ask_save
+from app.keeping.measures_desk import wished_allowance
+from app.presenting.lines import line_colours
+from app.reporting.handout import Handout
+from app.reporting.pages import Pages, pages_of
+from app.reporting.paper import UNITS
+from app.reporting.pdf import write_pdf
+from app.reporting.pictures import shots
+from app.reporting.preview import ReportPage
+from app.seeing.occlusion import bake_occlusion
+from app.wording.words import language, tr
+from core.errors import ProjectError, UserError
+from core.live import Frame
+from core.mesh import Floats
+from core.progress import Progress
+from core.project import whole_file
+from core.sheet import Heading, Sheet, sheet_of
+from core.writing_out.sheet_file import sheet_csv, sheet_json
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+
+
+class ReportDesk(QObject):
+    """Puts the sheet in the place of the work; while it is seen it follows the design."""
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self.page = ReportPage()
+        self.pages: Pages | None = None
+        self.handout: Handout | None = None
+        self._frame: Frame | None = None  # the one that the sheet is of
+        self._asked: Frame | None = None  # the one that a sheet is being made of
+        self._job: Job | None = None
+        self._language = ""
+        self._occlusion: tuple[object, Floats] | None = None
+        window.pages.addWidget(self.page)
+        said = tr("Sizes, lengths to cut, measures, pressures and pictures on paper: look, save, print")
+        do = window.actions_
+        self.action = do.add("file", tr("Report…"), "Ctrl+P", said, do=self.open, of_document=True)
+        window.top.add_primary(self.action)
+        self.page.left.connect(self.leave)
+        self.page.named.connect(self._name)
+        self.page.language_chosen.connect(self._speak)
+        self.page.wanted.connect(self._give)
+
+    # -- what is asked
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the sheet stands in the place of the work."""
+        return self._window.pages.currentWidget() is self.page
+
+    def open(self) -> None:
+        """Show the sheet of the design that is shown."""
+        self._language = self._language or language()
+        self._window.pages.setCurrentWidget(self.page)
+        self.page.paper.setFocus()
+        self.follow()
+
+    def leave(self) -> None:
+        """Show the work again."""
+        if self.is_open:
+            self._window.jobs.cancel(self._job)
+            self._job = self._asked = None
+            self._window.layout_.show_work()
+            self._window.layout_.enter()
+
+    def _name(self, customer: str) -> None:
+        design = self._window.session.design
+        if design is None or design.customer == customer:
+            return
+        said = tr("Customer {name}").format(name=customer) if customer else tr("No customer")
+        self._window.session.change({"customer": customer}, said)
+
+    def _speak(self, code: str) -> None:
+        self._language = code
+        self._show()
+
+    # -- what is shown
+
+    def follow(self) -> None:
+        """Bring the sheet up to date, if it is seen: its heading at once, its figures once the run rests."""
+        window, frame = self._window, self._window.session.frame
+        if frame is None or not self.is_open:
+            return
+        if self._is_of(frame):
+            if self.handout is not None:
+                self._take(replace(self.handout, sheet=replace(self.handout.sheet, heading=self._heading())))
+            return
+        if self._asked is not None and _alike(self._asked, frame):
+            return
+        window.jobs.cancel(self._job)
+        self._job = self._asked = None
+        self._show()
+        if window.is_settled():
+            self._make(frame)
+
+    def _is_of(self, frame: Frame) -> bool:
+        if self._frame is None or self.handout is None or self._asked is not None:
+            return False
+        former, now = self.handout.sheet.heading, self._heading()
+        sizes_alike = (former.system, former.allowance_mm) == (now.system, now.allowance_mm)
+        return sizes_alike and self._window.is_settled() and _alike(self._frame, frame)
+
+    def _make(self, frame: Frame) -> None:
+        """Work out the sheet beside the window, then draw its pictures piece by piece."""
+        window, heading = self._window, self._heading()
+        self._asked = frame
+        body, known = frame.stages.body, self._occlusion
+        records = frame.tracks.get(frame.stages.design.volume, ())
+
+        def work(progress: Progress) -> tuple[Sheet, Floats]:
+            sheet = sheet_of(frame, records, heading, progress)
+            baked = known[1] if known is not None and known[0] is body else bake_occlusion(body.mesh)
+            return sheet, baked
+
+        def draw(found: object) -> None:
+            sheet, baked = cast(tuple[Sheet, Floats], found)
+            self._occlusion = (body, baked)
+            plain = Handout(sheet, {}, self._colours(frame))
+            pieces = shots(frame, baked)
+            drawing = tr("Drawing the pictures of the sheet")
+            self._job = window.jobs.run_pieces(
+                drawing, pieces, lambda pictures: done(plain, pictures), lambda _: done(plain, {})
+            )
+
+        def done(plain: Handout, pictures: Mapping[str, QImage]) -> None:
+            self._frame, self._asked, self._job = frame, None, None
+            self._take(replace(plain, pictures=pictures))
+
+        self._job = window.jobs.run(tr("Making the sheet"), work, draw, self._fail)
+
+    def _fail(self, error: Exception) -> None:
+        self._window.desk.show_failure(error)
+        self._job = None
+        self._show()
+
+    def _take(self, handout: Handout) -> None:
+        self.handout = handout
+        self._show()
+
+    def _show(self) -> None:
+        """Show the sheet as far as it is known, and what is under way."""
+        design, frame = self._window.session.design, self._window.session.frame
+        stale = frame is None or not self._is_of(frame)
+        self.pages = pages_of(self.handout, self._language) if self.handout is not None else None
+        words = ""
+        if stale:
+            waits = tr("The sheet is made as soon as the run rests.")
+            words = tr("The sheet is being made.") if self._window.is_settled() else waits
+        self.page.show_choices(design.customer if design else "", self._language)
+        self.page.show_pages(self.pages, words, stale=stale)
+
+    def _heading(self) -> Heading:
+        document = self._window.session.document
+        assert document is not None
+        return Heading(
+            self._window.session.name,
+            datetime.date.today().isoformat(),
+            document.customer,
+            document.shown if len(document.designs) > 1 else "",
+            wish("size_system"),
+            wished_allowance(),
+        )
+
+    def _colours(self, frame: Frame) -> dict[str, str]:
+        return line_colours([line.name for line in frame.stages.model.lines], frame.stages.design)
+
+    # -- what leaves the window
+
+    def _give(self, what: str) -> None:
+        {"pdf": self._save_pdf, "print": self._print, "json": self._save_data, "csv": self._save_table}[
+            what
+        ]()
+
+    def _save_pdf(self) -> None:
+        pages = self.pages
+        path = self._asked_for(tr("Save the sheet"), ".pdf", "PDF (*.pdf)")
+        if path and pages is not None:
+            self._write(path, lambda: write_pdf(path, pages, self._window.session.name))
+
+    def _save_data(self) -> None:
+        self._save_text(tr("Save the data of the sheet"), ".json", "JSON (*.json)")
+
+    def _save_table(self) -> None:
+        self._save_text(tr("Save the figures of the sheet"), ".csv", "CSV (*.csv)")
+
+    def _save_text(self, title: str, ending: str, kinds: str) -> None:
+        path = self._asked_for(title, ending, kinds)
+        if not path or self.handout is None:
+            return
+        # With the mark that tells spreadsheets that letters beyond English follow.
+        form, code = (sheet_csv, "utf-8-sig") if ending == ".csv" else (sheet_json, "utf-8")
+        text = form(self.handout.sheet)
+
+        def write() -> None:
+            with whole_file(Path(path).absolute()) as partial:
+                partial.write_text(text, encoding=code)
+
+        self._write(path, write)
+
+    def _asked_for(self, title: str, ending: str, kinds: str) -> str:
+        name = f"{self._window.session.name}-{tr('sheet')}{ending}"
+        return ask_save(self._window, title, name, kinds, ending)
+
+    def _write(self, path: str, write: Callable[[], None]) -> None:
+        name = Path(path).name
+        try:
+            write()
+        except UserError as problem:
+            self._window.desk.show_failure(problem, "sheet")
+        else:
+            self._window.desk.show_written("sheet", tr("{name} written.").format(name=name), path)
+
+    def _print(self) -> None:
+        pages = self.pages
+        printer = QPrinter(QPrinter.PrinterMode.HighResolution)
+        printer.setDocName(self._window.session.name)
+        size, upright = QPageSize(QPageSize.PageSizeId.A4), QPageLayout.Orientation.Portrait
+        printer.setPageLayout(QPageLayout(size, upright, QMarginsF(0, 0, 0, 0)))
+        printer.setFullPage(True)
+        if pages is None or not QPrintDialog(printer, self._window).exec():
+            return
+        painter = QPainter()
+        if not painter.begin(printer):
+            said = tr("The sheet could not be printed."), tr("Choose another printer.")
+            self._window.desk.show_failure(ProjectError(*said), "print")
+            return
+        for page in range(pages.count):
+            if page:
+                printer.newPage()
+            painter.resetTransform()
+            scale = printer.resolution() / 25.4 / UNITS
+            painter.scale(scale, scale)
+            pages.paint(painter, page)
+        painter.end()
+
+
+def _alike(one: Frame, other: Frame) -> bool:
+    """Whether two frames have one sheet: all but the customer is the same."""
+    designs = (replace(each.stages.design, customer="") for each in (one, other))
+    same = len(set(map(repr, designs))) == 1
+    return same and np.array_equal(one.control_points, other.control_points)
