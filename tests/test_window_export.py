@@ -88,7 +88,8 @@ def test_choices_are_remembered_for_each_thing_and_each_format(tmp_path: Path) -
         sheet = opened(window)
         assert sheet.items["body"].isChecked()
         assert choices.values("body") == {"format": "obj", "shape": "", "unit": "mm", "axes": "y-up"}
-        assert choices.values("body", "glb")["unit"] == "m", "other programs ask for other units"
+        assert choices.values("body", "stl")["axes"] == "z-up", "other programs ask for other axes"
+        assert choices.values("body", "glb") == {"format": "glb", "shape": ""}, "glTF has a unit of its own"
         assert choices.values("measures")["unit"] == "in"
         sheet.reject()
 
@@ -102,7 +103,8 @@ def test_choices_are_remembered_for_each_thing_and_each_format(tmp_path: Path) -
 def test_settings_that_are_no_choices_are_forgotten(kept: str) -> None:
     choices = app.desks.export_desk.Choices(kept)
     assert choices.export.what == "body"
-    assert choices.values("body") == {"format": "glb", "shape": "", "unit": "m", "axes": "y-up"}
+    assert choices.values("body") == {"format": "glb", "shape": ""}
+    assert choices.values("body", "ply") == {"format": "ply", "shape": "", "unit": "mm", "axes": "z-up"}
     choices.choose("turntable", "size", "480x540")
     manner = app.desks.export_desk.Choices(choices.text).manner("turntable")
     assert (manner.size, manner.frames, manner.seconds) == ((480, 540), 36, 6.0)

@@ -58,7 +58,7 @@ class Choices:
         for setting in settings_of(self.find(what), kind):
             kept = self._kept.get(_key(what, kind, setting.key))
             known = any(kept == value for value, _ in setting.options)
-            chosen[setting.key] = str(kept) if known else usual(what, kind, setting.key)
+            chosen[setting.key] = str(kept) if known else usual(what, setting.key)
         return chosen | {"format": kind}
 
     def choose(self, what: str, key: str, value: str) -> None:

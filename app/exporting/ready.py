@@ -158,6 +158,7 @@ def _turns(path: str, outcome: Outcome, manner: Manner) -> Ready:
 def _picture(path: str, outcome: Outcome, manner: Manner) -> Ready:
     def draw() -> Pieces[Any]:
         with _studio(outcome, manner) as studio:
+            yield 0.0  # to set it up took long enough
             if isinstance(manner.view, str):
                 studio.stand_back(manner.size, manner.view)
             else:
@@ -184,6 +185,7 @@ def _turntable(path: str, outcome: Outcome, manner: Manner) -> Ready:
         from app.printing.turntable import turn_round  # noqa: PLC0415 (brings VTK along)
 
         with _studio(outcome, manner) as studio:
+            yield 0.0
             return (yield from turn_round(studio, turntable))
 
     def write(at: Path, drawn: Any, hear: Progress) -> list[Path]:

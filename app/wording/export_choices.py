@@ -25,7 +25,7 @@ class Export:
 def exports() -> tuple[Export, ...]:
     """Return all that can be exported, in the order of the list."""
     meshes = {
-        "glb": tr("One file that knows its unit: Blender, viewers, web pages."),
+        "glb": tr("glTF, always in metres with y up: Blender, viewers, web pages."),
         "obj": tr("Opened by nearly every 3D program, CLO among them. Tell it the unit."),
         "ply": tr("The format of scanners: MeshLab, CloudCompare, Blender. Tell it the unit."),
         "stl": tr("For 3D printing and CAD. Tell it the unit."),
@@ -102,10 +102,9 @@ def settings_of(export: Export, kind: str) -> tuple[Choice, ...]:
     """Return what can be chosen for something in one of its formats; where there are more, the format too."""
     formats = tuple((each, format_title(each)) for each in export.formats)
     format_ = Choice("format", tr("Format"), export.formats[kind], formats)
+    in_space = (_shape(),) if kind in _OWN_SPACE else (_shape(), _unit(), _axes())
     chosen = {
-        "body": (_shape(), _unit(), _axes()),
-        "control": (_shape(),) if kind == "csv" else (_shape(), _unit(), _axes()),
-        "lines": (_shape(), _unit(), _axes()),
+        **dict.fromkeys(("body", "control", "lines"), in_space),
         "measures": (_shape(), _unit(("mm", "cm", "in") if kind in ("smis", "vit") else tuple(UNITS))),
         "picture": (_view(), _shape(), _bands(), _ground(clear=True), _size(_PICTURE_SIZES)),
         "turntable": (_shows(), _ground(), _frames(), _seconds(), _size(_TURNTABLE_SIZES)),
@@ -118,15 +117,14 @@ def format_title(kind: str) -> str:
     return {"webp": "WebP"}.get(kind, kind.upper())
 
 
-def usual(what: str, kind: str, key: str) -> str:
+def usual(what: str, key: str) -> str:
     """Return what holds until something else is chosen."""
-    if key in ("unit", "axes"):
-        metric = {"unit": "cm"} if what == "measures" else {"unit": "mm", "axes": "z-up"}
-        return {"unit": "m", "axes": "y-up"}[key] if kind == "glb" else metric[key]
+    space = {"unit": "cm" if what == "measures" else "mm", "axes": "z-up"}
     sizes = {"picture": "2000x2250", "turntable": "640x720"}
-    return {"size": sizes.get(what, ""), "frames": "36", "seconds": "6", "view": "now"}.get(key, "")
+    return {"size": sizes.get(what, ""), "frames": "36", "seconds": "6", "view": "now", **space}.get(key, "")
 
 
+_OWN_SPACE = ("glb", "csv")  # formats that say themselves which unit and axes they have
 _PICTURE_SIZES = ("1000x1125", "2000x2250", "3000x3375", "1920x1080", "3840x2160")
 _TURNTABLE_SIZES = ("480x540", "640x720", "960x1080", "1280x720")
 
@@ -150,7 +148,7 @@ def _unit(units: tuple[str, ...] = tuple(UNITS)) -> Choice:
 def _axes() -> Choice:
     words = {
         "z-up": tr("z up, face to −y: Blender, CAD"),
-        "y-up": tr("y up, face to z: CLO, Maya, glTF"),
+        "y-up": tr("y up, face to z: CLO, Maya"),
         "z-up-front-y": tr("z up, face to y: some CAD"),
     }
     said = tr("Which way is up, and where the body faces.")
