@@ -59,7 +59,7 @@ OUTSIDE = {
     "tailoring": NUMBERS | {"ezdxf", "platformdirs"},
     "seeing": NUMBERS | {"pyvista", "vtkmodules"},
     "wording": set(),
-    "printing": NUMBERS | {"pyvista", "matplotlib", "PIL"},
+    "printing": NUMBERS | {"pyvista", "vtkmodules", "matplotlib", "PIL"},
     "asking": {"numpy", "PySide6.QtCore", "PySide6.QtGui"},
     "dress": {"PySide6.QtCore", "PySide6.QtGui", "PySide6.QtWidgets", "PySide6.QtSvg"},
     "showing": {"numpy", "pyvista", "pyvistaqt", "pyqtgraph", "vtkmodules", "PySide6.QtCore", "PySide6.QtGui"}
