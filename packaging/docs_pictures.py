@@ -66,6 +66,13 @@ def pressed(window: MainWindow) -> None:
     window.desk.select_line("")
 
 
+def cut(window: MainWindow) -> None:
+    """Show how long to cut the elastics."""
+    window.desk.go_to("lines")
+    window.inspector.open("garment")
+    wait_until(lambda: window.pressure_desk.shown is not None, QApplication.processEvents)
+
+
 def variants(window: MainWindow) -> None:
     window.variant_desk.choose("B")
     window.session.commit_line("mid-bust", "Mid-bust", 0.9)
@@ -131,6 +138,8 @@ SHOTS: tuple[Shot, ...] = (
     ("wipe", sample_design(), {"size": (1280, 800)}, wiped),
     ("map", sample_design(), {"size": (1600, 1000)}, mapped),
     ("pressure", made_of_elastics(), {"size": (1280, 800)}, pressed),
+    ("garment", made_of_elastics(), {"size": (1280, 800)}, cut),
+    ("garment-dark-ja", made_of_elastics(), DARK, cut),
     ("variants", sample_design(), {"size": (1280, 800)}, variants),
     ("path", sample_design(), {"size": (1280, 800)}, drawing),
     ("start", sample_design(), {"size": (1280, 800)}, start_page),

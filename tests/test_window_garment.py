@@ -124,7 +124,7 @@ def test_the_other_meaning_keeps_the_length_to_cut_and_moves_the_body() -> None:
         first, design = cut_rows(window)["mid-bust"], window.session.design
         assert design is not None
         window.garment.rows["mid-bust"].elastic.click()
-        pick(window, "The length to cut stays: the body changes")
+        pick(window, "It is as long unstretched: the body changes")
         choose(window, "mid-bust", "Picot edge", "8 mm")
         yield lambda: "Picot" in cut_rows(window)["mid-bust"].elastic
         yield at_rest(window)

@@ -109,8 +109,8 @@ class ElasticChoice(QObject):
         self._menu.addSeparator()
         group = QActionGroup(self._menu)
         for reach, words, tip in (
-            (True, tr("The body stays: cut it so that it reaches the same"), ""),
-            (False, tr("The length to cut stays: the body changes"), ""),
+            (True, tr("It reaches the same: the body hardly moves"), ""),
+            (False, tr("It is as long unstretched: the body changes"), ""),
         ):
             action = group.addAction(words)
             action.setToolTip(tip)
@@ -136,9 +136,9 @@ class ElasticChoice(QObject):
             # Through the door that a locked line keeps shut.
             return reduce(lambda d, name: d.with_line(name, ratios[name]), found, dress(before))
 
-        cut = tr("Cut so that it reaches the same on the body, to some tenths of a millimetre.")
-        said = cut if elastic else tr("Set so that it reaches the same, to some tenths of a millimetre.")
-        self._commit(names, elastic, remade, said)
+        cut = tr("Cut to reach the same length; the skin beside it may shift by a millimetre or two.")
+        bare = tr("Set to reach the same length; the skin beside it may shift by a millimetre or two.")
+        self._commit(names, elastic, remade, cut if elastic else bare)
 
     def _commit(self, names: tuple[str, ...], elastic: Elastic | None, edit: Dress, said: str) -> None:
         before = self._session.design

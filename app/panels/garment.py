@@ -58,9 +58,8 @@ class GarmentPanel(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(10, 8, 10, 12)
         column.setSpacing(4)
-        self._head = self._make_head()
         self._area = self._make_area()
-        for each in (self.nothing, self._doubt, self.offer, self._head):
+        for each in (self.nothing, self._doubt, self.offer):
             column.addWidget(each)
         column.addWidget(self._area, 1)
         column.addWidget(self._make_buttons())
@@ -76,8 +75,7 @@ class GarmentPanel(QWidget):
         self.tissue.setVisible(view.worn)
         self.nothing.setVisible(not view.worn)
         self.offer.setVisible(view.worn and view.bare)
-        for each in (self._head, self._area):
-            each.setVisible(bool(view.rows))
+        self._area.setVisible(bool(view.rows))
         if [row.line for row in view.rows] != list(self.rows):
             self._rebuild()
         self._show()
@@ -168,6 +166,7 @@ class GarmentPanel(QWidget):
         column.setSpacing(8)
         self._list = QVBoxLayout()
         self._list.setSpacing(2)
+        column.addWidget(self._make_head())  # with the rows, or a scroll bar shifts them under it
         column.addLayout(self._list)
         column.addLayout(self.cards)
         column.addWidget(self.tissue)
