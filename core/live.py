@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from threadpoolctl import threadpool_limits
 
 from core import kernels
-from core.body import Body
 from core.comparison import Comparison
 from core.design import Design, cannot_hold, no_balance
 from core.errors import UserError
@@ -55,14 +54,14 @@ class LiveSolver:
     While lengths move it waits until its last frame is fetched and shown, and only then takes the newest:
     what it made meanwhile would be old, and would take its time from the picture. ``tell`` is called in that
     thread with the work in hand and the share done, or "" when it is done; ``ready`` when there is something
-    to fetch. A body is handed to ``prepare`` there, before its first frame.
+    to fetch. What is built for a body is handed to ``prepare`` there, before its first frame.
     """
 
     def __init__(
         self,
         tell: Progress = quiet,
         ready: Callable[[], None] = lambda: None,
-        prepare: Callable[[Body, Progress], object] = lambda body, progress: None,
+        prepare: Callable[[Stages | StuckError, Progress], object] = lambda built, progress: None,
     ) -> None:
         self._tell, self._ready, self._prepare = tell, ready, prepare
         self._at_work = 0
@@ -222,10 +221,10 @@ class LiveSolver:
         try:
             stages = build(request.design, stuck if again else self._stages, self._hear)
             if self._stages is None or stages.body is not self._stages.body:
-                self._prepare(stages.body, self._hear_last)
+                self._prepare(stages, self._hear_last)
             self._hear("", 1.0)
         except StuckError as how_far:
-            self._prepare(how_far.body, self._hear_last)
+            self._prepare(how_far, self._hear_last)
             # An edit of the scan that is open goes back to what stands.
             if self._stages is None or how_far.body is not self._stages.body:
                 self._stuck = how_far

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
+from functools import cache
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -110,6 +111,7 @@ def _line(values: Mapping[str, Any]) -> PresetLine:
     return line
 
 
+@cache
 def built_in() -> tuple[Preset, ...]:
     """Return the presets that come with Busk."""
     folder = resources.files("resources") / "presets"

@@ -51,7 +51,7 @@ def test_what_a_scene_looks_up_was_worked_out_where_the_skin_was_prepared(ball, 
 def test_a_body_whose_moving_vertices_are_known_is_parted_once(ball, scene, monkeypatch):
     made = []
     real = SkinPart.__init__
-    monkeypatch.setattr(SkinPart, "__init__", lambda *a: made.append(a[4]) or real(*a))
+    monkeypatch.setattr(SkinPart, "__init__", lambda *a: made.append(a[3]) or real(*a))
     upper = np.flatnonzero(ball.vertices[:, 2] > 20.0)
     scene.show_body(ball, upper)
     scene.move_body(upper, ball.vertices[upper] + 1.0, ball.vertex_normals[upper])

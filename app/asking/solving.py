@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from app.seeing.skin import skin_of
-from core.body import Body
 from core.design import Design
 from core.live import Failure, LiveSolver
+from core.pipeline import Stages, StuckError
 from core.progress import Progress
 
 FRAME_INTERVAL = 16
@@ -80,5 +79,8 @@ class Solving(QObject):
             self.answered.emit(answer)
 
 
-def _prepare(body: Body, progress: Progress) -> None:
-    skin_of(body.mesh, progress)
+def _prepare(built: Stages | StuckError, progress: Progress) -> None:
+    # The first to come imports the 3D libraries: the window needs them too, and may be at it already.
+    from app.seeing.ready import make_ready  # noqa: PLC0415
+
+    make_ready(built, progress)

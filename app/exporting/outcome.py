@@ -81,7 +81,8 @@ class Outcome:
     @cached_property
     def looks(self) -> tuple[Mapping[str, str], Mapping[str, float]]:
         """Titles and widths [mm] of the lines as the window shows them."""
-        from app.presenting.lines import band_width, line_title  # noqa: PLC0415 (brings Qt along)
+        from app.presenting.lines import line_title  # noqa: PLC0415 (brings Qt along)
+        from app.seeing.bands import band_width  # noqa: PLC0415 (brings VTK along)
 
         names = [line.name for line in self.stages.model.lines]
         titles = {name: line_title(name, self.design) for name in names}

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from app.panels.length_groove import Feasible
 from app.panels.line_view import LineView, SideView
+from app.seeing.bands import band_width
 from app.wording.tokens import LINE_COLORS
 from app.wording.words import say, tr
 from core.design import Design
@@ -17,12 +18,6 @@ from core.live import Frame
 
 LINE_COLOURS = {"full-bust": "#0A5F73", "mid-bust": "#E5536B", "under-bust": "#5A3F94"}
 """Colours of the template's lines in both themes, told apart by the colour-blind; top line first."""
-
-BAND_WIDTHS = {"full-bust": 10.0, "mid-bust": 12.0, "under-bust": 22.0}
-"""Usual width of the bands of the template's lines [mm]; what they are made of comes with the garment."""
-
-OWN_WIDTH = 12.0
-"""Usual width of the band of an own line [mm]."""
 
 OWN_COLOURS = ("#E2A32F", "#6FA3F5", "#7A1F2E", "#A9ABC9", "#8C8B2C", "#C2571A")
 """Colours of own lines, one after the other; a pair of lines for both sides shares one."""
@@ -102,12 +97,6 @@ def line_colours(names: Iterable[str], design: Design | None = None) -> dict[str
     if design is None:
         return colours
     return {name: design.traits_of(name).colour or colour for name, colour in colours.items()}
-
-
-def band_width(name: str, design: Design | None = None) -> float:
-    """Return the width of a line's band as it is drawn [mm]."""
-    own = design.traits_of(name).width if design else None
-    return BAND_WIDTHS.get(name, OWN_WIDTH) if own is None else own
 
 
 def line_views(

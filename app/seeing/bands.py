@@ -9,11 +9,12 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from app.seeing.ribbon import ACROSS, Ribbon, Surface, build_casing, build_ribbon
+from app.seeing.ribbon import ACROSS, Ribbon, Surface
 from app.seeing.sight import Sight
 from app.seeing.smooth import smooth_actor
 from app.seeing.stage import rgb
 from core.centre_line import NO_BACK
+from core.design import Design
 from core.mesh import Flags, Floats, Points, unit
 from core.moving import moving_faces
 
@@ -24,6 +25,18 @@ _SHADE = np.array([0.62, 0.62, 0.86, 1.0, 1.0, 0.86, 0.62, 0.62])
 _SEAM = 0.72  # how dark the seam is where front part and back part meet
 _FAINT, _FAINT_CASING = 0.3, 0.2  # how much is seen of a faded band and of the casing round it
 _QUIET, _CLOTH = 0.45, "#F2ECE6"  # the back part keeps its length: its colour steps back towards plain cloth
+
+BAND_WIDTHS = {"full-bust": 10.0, "mid-bust": 12.0, "under-bust": 22.0}
+"""Usual width of the bands of the template's lines [mm]; what they are made of comes with the garment."""
+
+OWN_WIDTH = 12.0
+"""Usual width of the band of an own line [mm]."""
+
+
+def band_width(name: str, design: Design | None = None) -> float:
+    """Return the width of a line's band as it is drawn [mm]."""
+    own = design.traits_of(name).width if design else None
+    return BAND_WIDTHS.get(name, OWN_WIDTH) if own is None else own
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,10 +151,10 @@ class Bands:
         """Replace all ribbons by ``bands``, laid on the body at rest; the old selection stays if it can."""
         self.clear()
         self._surface = surface
-        self._displacement = np.zeros_like(surface.mesh.vertices)
+        self._displacement = np.zeros(surface.mesh.vertices.shape)
         self._bands = {band.name: band for band in bands}
         for name, band in self._bands.items():
-            ribbon = build_ribbon(band.path, self._surface, band.width, band.back)
+            ribbon = surface.ribbon(band.path, band.width, band.back)
             self._ribbons[name] = RibbonActor(self._plotter, ribbon, f"band {name}")
             self._ribbons[name].paint(band.colour)
         self._show_what_is_asked()
@@ -244,7 +257,7 @@ class Bands:
         if name not in self._casings:
             band = self._bands[name]
             assert self._surface is not None
-            ribbon = build_casing(band.path, self._surface, band.width, band.back)
+            ribbon = self._surface.ribbon(band.path, band.width, band.back, cased=True)
             casing = RibbonActor(self._plotter, ribbon, f"casing {name}")
             casing.actor.prop.lighting = False
             casing.raise_to(self._rises.get(name))

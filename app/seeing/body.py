@@ -10,8 +10,9 @@ from scipy import sparse
 
 from app.seeing.camera import View
 from app.seeing.paint import Colours, clay_colours, map_colours
+from app.seeing.piece import CELL, Piece, Singles, pieces_of
 from app.seeing.skin import skin_of
-from app.seeing.skin_part import DIFFUSE, Singles, SkinPart
+from app.seeing.skin_part import DIFFUSE, SkinPart
 from app.seeing.stage import Look
 from core.mesh import Flags, Floats, Indices, Mesh, Points, area_vectors, incidence, unit
 
@@ -27,12 +28,14 @@ class BodyActor:
 
     ``points`` are the moved positions of the body's n vertices, (n, 3) [mm], shown or not. What moves is
     drawn apart from what stands still, so that little is handed to the graphics when it does: ``moving`` are
-    the vertices of which that is known already, shape (k,).
+    the vertices of which that is known already, shape (k,). Of much that stands still a rough copy is drawn
+    where nobody sees the difference, see ``set_detail``, and met by sights.
     """
 
     def __init__(self, plotter: pv.BasePlotter, mesh: Mesh, look: Look, moving: Indices = NONE) -> None:
         self.rest = mesh
         self.points = np.array(mesh.vertices)
+        self._shift, self._nowhere = np.zeros(mesh.vertices.shape), np.zeros(mesh.vertices.shape)
         self._plotter = plotter
         self._skin = skin_of(mesh)
         self._look = look
@@ -41,15 +44,16 @@ class BodyActor:
         self._before = False
         self._visible = True
         rest = self._skin.mesh
-        self._rest_normals = rest.vertex_normals.astype(np.float32)
-        self._normals: Singles = self._rest_normals.copy()
+        self._normals: Singles = self._skin.normals.copy()
         self._colours: Colours = np.zeros(rest.vertices.shape, dtype=np.uint8)
         self._moves: Flags = np.zeros(len(mesh.vertices), dtype=bool)
         self._moves[moving] = True
+        self._roughly = False
         self._still: SkinPart | None = None
         self._moving: SkinPart | None = None
-        self._part()
-        self.set_look(look)
+        self._rough: SkinPart | None = None
+        self._mix(slice(None))
+        self._part(moving)
 
     def set_look(self, look: Look) -> None:
         """Repaint for one theme."""
@@ -65,8 +69,15 @@ class BodyActor:
     def set_visible(self, visible: bool) -> None:
         """Show or hide it."""
         self._visible = visible
+        roughly = self._roughly and self._rough is not None
         for part in self._parts:
-            part.actor.SetVisibility(visible)
+            hidden = part is (self._still if roughly else self._rough)
+            part.actor.SetVisibility(visible and not hidden)
+
+    def set_detail(self, finest: float) -> None:
+        """Draw nothing that is finer than so much [mm], if there is a way to draw less."""
+        self._roughly = finest >= CELL
+        self.set_visible(self._visible)
 
     @property
     def box(self) -> Floats:
@@ -76,7 +87,7 @@ class BodyActor:
     @property
     def still(self) -> tuple[pv.Actor, ...]:
         """What of it stands still while the body moves."""
-        return () if self._still is None else (self._still.actor,)
+        return tuple(part.actor for part in (self._still, self._rough) if part is not None)
 
     @property
     def colours(self) -> Colours:
@@ -98,14 +109,15 @@ class BodyActor:
     def move(self, indices: Indices, points: Points, normals: Points | None = None) -> None:
         """Move body vertices: indices (k,), positions (k, 3) [mm], unit normals (k, 3), else worked out."""
         self.points[indices] = points
+        self._shift[indices] = points - self.rest.vertices[indices]
         if not self._moves[indices].all():
             self._moves[indices] = True
-            self._part()
+            self._part(np.flatnonzero(self._moves))
         if normals is None:
             self._normals = self._work_out_normals()
             if not self._moves.all():  # so do the normals round it
                 self._moves[:] = True
-                self._part()
+                self._part(np.flatnonzero(self._moves))
         else:
             self._normals[indices] = normals
         if not self._before:
@@ -118,34 +130,41 @@ class BodyActor:
             self._write()
 
     @property
+    def displacement(self) -> Points:
+        """How far each vertex is on the screen from where it rests, shape (n, 3) [mm]."""
+        return self._nowhere if self._before else self._shift
+
+    @property
     def shown_points(self) -> Points:
         """The positions on the screen, shape (n, 3) [mm]."""
         return self.rest.vertices if self._before else self.points
 
     def hit(self, start: Floats, end: Floats) -> Floats | None:
         """Return where the segment between two points, each (3,) [mm], first meets the body, or None."""
-        met = [place for part in self._parts if (place := part.sight.hit(start, end)) is not None]
+        parts = (self._rough or self._still, self._moving)
+        met = [place for part in parts if part and (place := part.sight.hit(start, end)) is not None]
         return min(met, key=lambda place: float(np.linalg.norm(place - start)), default=None)
 
     @property
     def _parts(self) -> tuple[SkinPart, ...]:
-        return tuple(part for part in (self._still, self._moving) if part is not None)
+        return tuple(part for part in (self._still, self._moving, self._rough) if part is not None)
 
-    def _part(self) -> None:
-        """Part the skin anew into faces that stand still and faces that move."""
+    def _part(self, moving: Indices) -> None:
+        """Part the skin anew into faces that stand still and faces that move, all of them at rest."""
         for part in self._parts:
             part.remove()
-        moves = np.asarray(self._moves[self._skin.source][self._skin.mesh.faces].any(axis=1))
-        self._still, self._moving = self._part_of(~moves, "body"), self._part_of(moves, "body that moves")
+        pieces = pieces_of(self._skin, moving)
+        self._still = self._drawn(pieces.still, "body")
+        self._moving = self._drawn(pieces.moving, "body that moves")
+        self._rough = self._drawn(pieces.rough, "rough body")
         for part in self._parts:
             part.paint(self._colours)
         self.set_visible(self._visible)
         self._light()
-        self._write()
 
-    def _part_of(self, faces: Flags, name: str) -> SkinPart | None:
+    def _drawn(self, piece: Piece | None, name: str) -> SkinPart | None:
         inside_seen = bool(self.rest.boundary_loops)
-        return SkinPart(self._plotter, self._skin.mesh, faces, name, inside_seen) if faces.any() else None
+        return None if piece is None else SkinPart(self._plotter, piece, name, inside_seen)
 
     def _light(self) -> None:
         """Light a map more evenly than clay, so that its colours can be told in the shade too."""
@@ -155,15 +174,18 @@ class BodyActor:
 
     def _paint(self, rows: Indices | slice) -> None:
         """Colour some of the drawn vertices anew."""
+        self._mix(rows)
+        for part in self._parts:
+            if part.has(rows):
+                part.paint(self._colours)
+
+    def _mix(self, rows: Indices | slice) -> None:
         source, plate = self._skin.source[rows], self._skin.plate[rows]
         sky = self._occlusion[source]
         if self._map is None:
             self._colours[rows] = clay_colours(sky, plate, self._look)
         else:
             self._colours[rows] = map_colours(self._map[source], sky, plate, self._look)
-        for part in self._parts:
-            if part.has(rows):
-                part.paint(self._colours)
 
     def _work_out_normals(self) -> Singles:
         vertices = self.points[self._skin.source]
@@ -179,7 +201,7 @@ class BodyActor:
             return
         rows, shown = self._moving.rows, self.shown_points
         source = self._skin.source[rows]
-        normals = self._rest_normals if self._before else self._normals
+        normals = self._skin.normals if self._before else self._normals
         self._moving.move(shown[source], normals[rows])
 
 

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from core.mesh import Floats, Points, frozen
+
+if TYPE_CHECKING:
+    import pyvista as pv
 
 LENS = 20.0
 """Vertical opening angle [degrees]; a portrait lens, because a wider one makes the chest bulge."""
@@ -153,3 +157,17 @@ class View:
         start = target + self.distance * back if self.parallel else self.eye
         sight = target - start
         return start, sight / np.linalg.norm(sight)
+
+
+def aim(camera: pv.Camera, view: View) -> None:
+    """Point a camera as ``view`` says; what range of depth it sees is not looked at.
+
+    Pyvista's own way looks through all places on the stage for that, at each of position, focus and up.
+    """
+    camera.SetPosition(*view.eye)
+    camera.SetFocalPoint(*view.focus)
+    camera.SetViewUp(0.0, 0.0, 1.0)
+    camera.SetViewAngle(LENS)
+    camera.SetParallelProjection(view.parallel)
+    camera.SetParallelScale(view.half_height)
+    camera.is_set = True

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from scipy import sparse
 from scipy.ndimage import maximum_filter
 
-from app.seeing.skin import skin_of
+from app.seeing.skin import Skin, skin_of
 from core.centre_line import NO_BACK, CentreLine, centre_line, smooth
 from core.centre_line import Surface as SkinSurface
 from core.mesh import Faces, Floats, Indices, Mesh, Points, unit
@@ -47,11 +48,25 @@ class Ribbon:
         return len(self.mesh.vertices) // len(ACROSS)
 
 
+_LAID: WeakKeyDictionary[Skin, dict[object, Ribbon]] = WeakKeyDictionary()
+
+
 class Surface(SkinSurface):
     """Smooth local planes of a body, on which paths are laid, and what stands up there."""
 
     def __init__(self, mesh: Mesh) -> None:
         super().__init__(mesh, skin_of(mesh).tree)
+        self._laid = _LAID.setdefault(skin_of(mesh), {})
+
+    def ribbon(self, path: Points, width: float, back: Points = NO_BACK, cased: bool = False) -> Ribbon:
+        """Return what ``build_ribbon`` gives, or ``build_casing`` if it is ``cased``; at once if laid."""
+        laid = self._laid.get(_key(path, width, back, cased))
+        return laid or (build_casing if cased else build_ribbon)(path, self, width, back)
+
+    def lay_ready(self, path: Points, width: float, back: Points = NO_BACK) -> None:
+        """Lay ribbon and casing and keep them for all surfaces of the mesh; runs in any thread."""
+        for cased in (False, True):
+            self._laid[_key(path, width, back, cased)] = self.ribbon(path, width, back, cased)
 
     def bumps(self, rows: Points, up: Points) -> Floats:
         """Return how far skin such as a nipple stands up at each of ``rows`` of places, (k, c, 3) [mm]."""
@@ -60,6 +75,10 @@ class Surface(SkinSurface):
         over = np.einsum("kcnx,kcx->kcn", above, up).max(axis=2)
         wide = maximum_filter(np.maximum(over - _LEAST, 0.0), size=(3, 3), mode="nearest")
         return smooth(wide, 2, closed=False)
+
+
+def _key(path: Points, width: float, back: Points, cased: bool) -> object:
+    return path.tobytes(), width, back.tobytes(), cased
 
 
 def build_ribbon(path: Points, surface: Surface, width: float, back: Points = NO_BACK) -> Ribbon:

@@ -10,7 +10,7 @@ import pyvista as pv
 
 from app.seeing.bands import Band, Bands
 from app.seeing.body import NONE, BodyActor, Ghost
-from app.seeing.camera import LENS, View
+from app.seeing.camera import View, aim
 from app.seeing.control import ControlActor
 from app.seeing.framing import NOBODY, depth_range, framing_bust
 from app.seeing.material import CLAY, look_of
@@ -180,12 +180,8 @@ class Scene:
     def look_from(self, view: View) -> None:
         """See the scene from ``view``."""
         self._view = view
-        camera = self.plotter.camera
-        camera.position, camera.focal_point, camera.up = tuple(view.eye), view.focus, (0.0, 0.0, 1.0)
-        camera.view_angle = LENS
-        camera.parallel_projection = view.parallel
-        camera.parallel_scale = view.half_height
-        camera.clipping_range = depth_range(view, self._box())
+        aim(self.plotter.camera, view)
+        self.plotter.camera.SetClippingRange(depth_range(view, self._box()))
         if self._ghost is not None:
             self._ghost.look_from(view)
 
@@ -270,8 +266,7 @@ class Scene:
         self.bands.move(self._displacement())
 
     def _displacement(self) -> Points:
-        body = self._shown_body()
-        return np.asarray(body.shown_points - body.rest.vertices)
+        return self._shown_body().displacement
 
     def _drop_control(self) -> None:
         if self._control is not None:

@@ -7,6 +7,7 @@ from functools import cached_property
 from weakref import WeakKeyDictionary
 
 import numpy as np
+import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
@@ -33,6 +34,11 @@ class Skin:
     mesh: Mesh
     source: Indices
     plate: Flags
+
+    @cached_property
+    def normals(self) -> npt.NDArray[np.float32]:
+        """The unit normals of its vertices, shape (n + d, 3), in the precision of the graphics."""
+        return self.mesh.vertex_normals.astype(np.float32)
 
     @cached_property
     def tree(self) -> cKDTree:
@@ -92,8 +98,8 @@ def skin_of(mesh: Mesh, progress: Progress = quiet) -> Skin:
     if skin is None:
         skin = _KNOWN[mesh] = split_plates(mesh)
     # They are kept where they belong once they were asked for.
-    normals = "vertex_normals"
-    kept = (skin.mesh, normals), (mesh, normals), (mesh, "boundary_loops"), (skin, "tree"), (skin, "box")
+    kept: tuple[tuple[object, str], ...] = (skin, "normals"), (mesh, "vertex_normals")
+    kept += (mesh, "boundary_loops"), (skin, "tree"), (skin, "box")
     for done, (owner, what) in enumerate(kept, 1):
         progress(PREPARING, done / (len(kept) + 1))
         getattr(owner, what)

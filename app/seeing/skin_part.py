@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import numpy as np
-import numpy.typing as npt
 import pyvista as pv
 
 from app.seeing.paint import Colours
+from app.seeing.piece import Piece, Singles
 from app.seeing.sight import Sight
 from app.seeing.smooth import smooth_actor
-from core.mesh import Flags, Indices, Mesh, Points
-
-Singles = npt.NDArray[np.float32]
+from core.mesh import Indices, Points
 
 _DIM_INSIDE = """//VTK::Color::Impl
   if (!gl_FrontFacing) { ambientColor *= 1.5; diffuseColor *= 0.3; }
@@ -23,23 +20,17 @@ DIFFUSE = 0.86
 
 
 class SkinPart:
-    """Some faces of a skin, with only their own vertices: ``rows`` of the skin, shape (r,)."""
+    """A piece of a skin: ``rows`` of the skin, shape (r,)."""
 
-    def __init__(
-        self, plotter: pv.BasePlotter, skin: Mesh, faces: Flags, name: str, inside_seen: bool
-    ) -> None:
+    def __init__(self, plotter: pv.BasePlotter, piece: Piece, name: str, inside_seen: bool) -> None:
         self._plotter = plotter
-        self._held = np.zeros(len(skin.vertices), dtype=bool)
-        corners = skin.faces[faces]
-        self._held[corners] = True
-        self.rows: Indices = np.flatnonzero(self._held)
-        place = np.cumsum(self._held) - 1
+        self._held, self.rows = piece.held, piece.rows
         self._data, self.actor = smooth_actor(
             plotter,
             name,
-            skin.vertices[self.rows],
-            skin.vertex_normals[self.rows],
-            place[corners],
+            piece.places,
+            piece.normals,
+            piece.faces,
             diffuse=DIFFUSE,
             specular=0.10,
             specular_power=14,

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 import pyvista as pv
 
-from core.mesh import Faces, Points
+from core.mesh import Faces
+
+Reals = npt.NDArray[np.floating]
 
 
 def smooth_actor(
-    plotter: pv.BasePlotter, name: str, places: Points, normals: Points, faces: Faces, **look: float
+    plotter: pv.BasePlotter, name: str, places: Reals, normals: Reals, faces: Faces, **look: float
 ) -> tuple[pv.PolyData, pv.Actor]:
     """Show a mesh of places and unit normals (n, 3) with "Colour", (n, 3) uint8, at its vertices.
 

@@ -82,6 +82,8 @@ def _drawn(viewport: Viewport, finer: float) -> QImage:
     marked = scene.bands.selected, scene.bands.hovered
     viewport.request_draw()  # the filters for smooth outlines are for the size of the screen
     scene.mark_bands()
+    if scene.body is not None:
+        scene.body.set_detail(0.0)
     try:
         with _thicker(plotter, finer * samples):
             image = _rendered(plotter, size * samples)

@@ -23,11 +23,11 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from app.dress.theme import tokens_of
 from app.seeing.camera import View
 from app.seeing.framing import framing_points
-from app.seeing.quick_light import QuickLight
 from app.seeing.scene import Scene
 from app.showing.canvas import PaintedCanvas, draw, make_canvas
 from app.showing.overlay import BandLabel, Overlay, Pin
 from app.showing.pointer import Pointer
+from app.showing.smoothing import Smoothing
 from core.mesh import Floats, Points
 
 GLIDE = 220
@@ -69,7 +69,7 @@ class Viewport(QWidget):
             self._canvas.still = self.scene.still
         self.overlay = Overlay(self._canvas)
         self._pointer = Pointer(self._canvas, self.scene, self.overlay)
-        self._smoothing, self._light = "", QuickLight(self._plotter)
+        self._smoothing = Smoothing(self._canvas, self._plotter, self.scene)
         self._rest = QTimer(self, singleShot=True, interval=REST)
         self._rest.timeout.connect(self._refine)
         self._glide = QVariantAnimation(self)
@@ -104,7 +104,7 @@ class Viewport(QWidget):
         """Draw once when the event loop next turns, however often this is asked for."""
         if not self._open:
             return
-        self._smooth("")
+        self._smoothing.use("")
         self._rest.start()
         self._place_pins()
         self._place_label()
@@ -114,7 +114,7 @@ class Viewport(QWidget):
         """Return what is seen now at its best, with its labels or without, in device pixels."""
         self.request_draw()
         self._rest.stop()
-        self._smooth("ssaa")
+        self._smoothing.use("ssaa")
         draw(self._canvas)
         self.overlay.setVisible(labels)
         image = self.grab().toImage()
@@ -124,20 +124,8 @@ class Viewport(QWidget):
     def _refine(self) -> None:
         """Draw once more without stairs at the outlines, which is too slow while things move."""
         # FXAA looks nearly as good for a third of the time, but VTK has none where it draws by EGL.
-        self._smooth("ssaa" if self._plotter.ren_win.IsA("vtkEGLRenderWindow") else "fxaa")
+        self._smoothing.use("ssaa" if self._plotter.ren_win.IsA("vtkEGLRenderWindow") else "fxaa")
         draw(self._canvas)
-
-    def _smooth(self, kind: str) -> None:
-        """Let outlines be smoothed by one of VTK's filters, or by none while things move."""
-        if isinstance(self._canvas, PaintedCanvas):
-            self._light.use(quickly=not kind)
-            self._canvas.quick = not kind
-        if kind != self._smoothing:
-            self._smoothing = kind
-            if kind:
-                self._plotter.enable_anti_aliasing(kind)
-            else:
-                self._plotter.disable_anti_aliasing()
 
     def close_view(self) -> None:
         """Give back all 3D objects; call it before the window goes. A second call does nothing."""

@@ -1,0 +1,27 @@
+"""What of a body can be made ready to be drawn in another thread than the window's."""
+
+from __future__ import annotations
+
+from app.seeing.bands import band_width
+from app.seeing.body import NONE
+from app.seeing.piece import pieces_of
+from app.seeing.ribbon import Surface
+from app.seeing.skin import PREPARING, skin_of
+from core.centre_line import NO_BACK
+from core.pipeline import Stages, StuckError
+from core.progress import Progress, quiet
+
+
+def make_ready(built: Stages | StuckError, progress: Progress = quiet) -> None:
+    """Work out all that takes long before a body can be shown, with the bands on it. Raises Cancelled."""
+    mesh, stages = built.body.mesh, built if isinstance(built, Stages) else None
+    skin = skin_of(mesh, lambda what, share: progress(what, 0.7 * share))
+    progress(PREPARING, 0.7)
+    pieces_of(skin, NONE if stages is None else stages.moving.vertices)
+    if stages is None:
+        return
+    surface, rest = Surface(mesh), stages.control.mesh.vertices
+    for done, line in enumerate(stages.model.lines):
+        progress(PREPARING, 0.9 + 0.1 * done / len(stages.model.lines))
+        back = stages.backs[line.name].path if line.name in stages.backs else NO_BACK
+        surface.lay_ready(rest[list(line.path)], band_width(line.name, stages.design), back)
