@@ -59,10 +59,28 @@ def test_a_row_of_a_band_has_the_pressure_of_its_place(scene: Scene, worn: dict[
     # The band is drawn as wide as it is reckoned: each row is a place.
     assert shown.values["mid-bust"] == pytest.approx(band.kpa)
     assert np.isnan(shown.off["mid-bust"]).tolist() == (~band.bridged).tolist()
-    strap = worn["strap left"]
+    strap, at = worn["strap left"], scene.bands.ribbon("strap left").at * (len(worn["strap left"].kpa) - 1)
     assert not strap.closed
+    rows = np.abs(at - at.round()) < 1e-9  # but for the round ends
+    assert rows.sum() > 0.8 * len(strap.kpa)
+    assert shown.values["strap left"][rows] == pytest.approx(strap.kpa[at[rows].round().astype(int)])
     assert shown.values["strap left"][[0, -1]] == pytest.approx(strap.kpa[[0, -1]])
     assert shown.values["strap left"].max() == strap.largest
+
+
+def test_the_largest_pressure_of_a_line_is_found_on_its_band(built: Callable[[str], Stages]) -> None:
+    stages = built("person")
+    solved = run(build(replace(with_preset(stages.design, built_in()[0]), volume="adaptive"), stages))
+    plotter = pv.Plotter(off_screen=True, window_size=(30, 30), lighting="none")
+    scene = Scene(plotter)
+    scene.show_body(stages.body.mesh)
+    scene.show_bands(bands(solved.stages, ()))
+    found = pressures(solved.stages, solved.control_points)
+    shown = pressures_on(scene.bands, found, stale=False)
+    assert {name: values.max() for name, values in shown.values.items()} == {
+        name: band.largest for name, band in found.items()
+    }
+    plotter.close()
 
 
 def test_a_band_is_coloured_by_pressure_and_dashed_over_a_hollow(

@@ -33,7 +33,8 @@ class Ribbon:
 
     ``follow`` averages body displacements, shape (r, n), so that points = vertices + follow @ displacement.
     ``part`` (rows,) is the segment of the line's path that each row lies on, -1 on the back; ``at`` (rows,)
-    how far along the line it lies, 0 to 1, and ``lifted`` (rows, 3) how far it is held off the skin [mm].
+    how far along the places of its centre line, 0 to 1, and ``lifted`` (rows, 3) how far it is held off the
+    skin [mm].
     """
 
     mesh: Mesh
@@ -99,7 +100,10 @@ def build_casing(path: Points, surface: Surface, width: float, back: Points = NO
 
 def _puffed(line: CentreLine, surface: Surface, width: float, sink: float) -> Ribbon:
     """Return the ribbon about a centre line, pressed ``sink`` [mm] towards the skin; open ends are round."""
-    line, narrow = (line, np.ones(len(line.points))) if line.closed else _rounded(line, 0.5 * width)
+    count = len(line.points)
+    at, narrow = np.arange(count) / count, np.ones(count)
+    if not line.closed:
+        line, at, narrow = _rounded(line, 0.5 * width)
     points, closed = line.points, line.closed
     ahead = np.roll(points, -1, 0) - np.roll(points, 1, 0) if closed else np.gradient(points, axis=0)
     side = unit(smooth(unit(np.cross(line.normals, ahead)), 6, closed))
@@ -115,12 +119,14 @@ def _puffed(line: CentreLine, surface: Surface, width: float, sink: float) -> Ri
     lifted = line.lift[:, None] * line.normals
     raised += lifted[:, None]
     vertices, faces = raised.reshape(-1, 3), _grid_faces(len(points), closed)
-    at = np.arange(len(points)) / len(points) if closed else arc_length(points) / arc_length(points)[-1]
     return Ribbon(Mesh(vertices, faces), surface.follow(vertices), line.part, at, lifted)
 
 
-def _rounded(line: CentreLine, radius: float) -> tuple[CentreLine, Floats]:
-    """Return an open line with more rows near its ends, and how wide the ribbon is at each row, 0..1."""
+def _rounded(line: CentreLine, radius: float) -> tuple[CentreLine, Floats, Floats]:
+    """Return an open line with more rows near its ends.
+
+    With it comes where each row lies along the places of ``line``, 0..1, and how wide the ribbon is, 0..1.
+    """
     s = arc_length(line.points)
     radius = min(radius, 0.4 * s[-1])
     near = radius * (1.0 - np.cos(_ROUND))
@@ -131,7 +137,8 @@ def _rounded(line: CentreLine, radius: float) -> tuple[CentreLine, Floats]:
     part = line.part[np.searchsorted(s, at).clip(0, len(s) - 1)]
     inward = np.minimum(np.minimum(at, s[-1] - at) / radius, 1.0)
     narrow = np.maximum(np.sqrt(1.0 - (1.0 - inward) ** 2), 0.5 * _TIP)
-    return CentreLine(points, unit(normals), np.interp(at, s, line.lift), part, False), narrow
+    rows = CentreLine(points, unit(normals), np.interp(at, s, line.lift), part, False)
+    return rows, np.interp(at, s, np.linspace(0.0, 1.0, len(s))), narrow
 
 
 def _grid_faces(rows: int, closed: bool) -> Faces:

@@ -118,10 +118,14 @@ class MapDesk(QObject):
             return
         if on_lines:
             at = self._row_near(line, place)
-            new = () if at is None else (Pinned(at, line),)
         else:
-            new = (Pinned(int(np.linalg.norm(body.shown_points - place, axis=1).argmin())),)
-        self._pin((*self.pinned, *(each for each in new if each not in self.pinned)))
+            at = int(np.linalg.norm(body.shown_points - place, axis=1).argmin())
+        if at is not None:
+            self._add(Pinned(at, line))
+
+    def _add(self, pinned: Pinned) -> None:
+        if pinned not in self.pinned:
+            self._pin((*self.pinned, pinned))
 
     def look_at_most(self) -> None:
         """Turn to the place that is pressed most, and pin what it is pressed with."""
@@ -132,7 +136,9 @@ class MapDesk(QObject):
         worn = listed.worn[line]
         self._view.set_after(True)
         self.choose("pressure")
-        self.pin(worn.places[worn.peak], line)
+        values = self._on_bands[self._view.beside.bodies[0]].values.get(line)
+        if values is not None:
+            self._add(Pinned(int(values.argmax()), line))
         view, place = self._view.viewport, worn.places[worn.peak]
         aspect = view.width() / max(view.height(), 1)
         view.glide_to(framing_place(view.scene.view, place, worn.normals[worn.peak], aspect))
