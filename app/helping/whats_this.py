@@ -37,6 +37,10 @@ def _around(window: MainWindow) -> dict[QWidget, str]:
             "The body cut by a plane, before and after, in millimetres. Move the plane by the handle on it "
             "in the view, by the slider here, or by typing where it is."
         ),
+        window.report_desk.page: tr(
+            "The sheet to work from, as it comes out of the printer: size, lengths to cut, measures, "
+            "pressures and pictures. It follows the design; the customer's name is saved with the project."
+        ),
         window.strip: tr(
             "The model comes to rest turn by turn. A garment whose model vibrates or folds tells nothing "
             "yet: look at the verdict before you trust a shape. The dashed line is the exact answer."

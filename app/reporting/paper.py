@@ -88,6 +88,11 @@ def elided(text: str, kind: str, width: float) -> str:
     return _metrics(kind).elidedText(plain, Qt.TextElideMode.ElideRight, width * UNITS)
 
 
+def fitting(text: str, width: float) -> str:
+    """Return the kind of type in which a name fits a cell, or is the least cut off [mm]."""
+    return "body" if text_width(text, "body") <= width else "small"
+
+
 def wrapped(text: str, kind: str, width: float) -> list[str]:
     """Return the lines of a text in a column of a ``width`` [mm]."""
     lines = []

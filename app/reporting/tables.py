@@ -8,7 +8,7 @@ from app.reporting.flow import Block, Paint
 from app.reporting.handout import Handout
 from app.reporting.head import WIDE
 from app.reporting.marks import paint_chip, paint_light
-from app.reporting.paper import Paper, elided, line_height, text_width, wrapped
+from app.reporting.paper import Paper, elided, fitting, line_height, text_width, wrapped
 from app.reporting.telling import (
     CutView,
     MeasureRow,
@@ -106,7 +106,9 @@ def _cut_head() -> Block:
 def _cut_row(view: CutView, colour: str) -> Block:
     marks = " ".join(map(str, view.marks))
     title = elided(view.title, "strong", _ELASTIC - 7.0 - text_width(marks, "axis"))
-    elastic = elided(view.elastic, "body", _EDGES[0] - _ELASTIC - 7.0)
+    room = _EDGES[0] - _ELASTIC - 7.0
+    kind = fitting(view.elastic, room)
+    elastic = elided(view.elastic, kind, room)
     word = elided(view.word, "body", WIDE - _WORD)
 
     def paint(paper: Paper, x: float, y: float) -> None:
@@ -114,7 +116,7 @@ def _cut_row(view: CutView, colour: str) -> Block:
         paint_chip(paper, x, middle, colour or LIGHT.control)
         paper.text(x + 4.6, base, title, "strong")
         paper.text(x + 5.1 + text_width(title, "strong"), base - 0.9, marks, "axis")
-        paper.text(x + _ELASTIC, base, elastic, "body")
+        paper.text(x + _ELASTIC, base, elastic, kind, ink=LIGHT.text)
         for place, (edge, figure) in enumerate(zip(_EDGES, view.figures, strict=True)):
             paper.text(x + edge, base, figure, "figure strong" if place == 2 else "figure", align="right")
         if view.light:
@@ -176,7 +178,7 @@ def _measure(row: MeasureRow) -> Block:
     room = _MEASURED[0] - 13.0
     unit = elided(row.unit, "caption", room)
     room -= text_width(unit, "caption") + 1.6 if unit else 0.0
-    name = "body" if text_width(row.title, "body") <= room else "small"
+    name = fitting(row.title, room)
     title = elided(row.title, name, room)
 
     def paint(paper: Paper, x: float, y: float) -> None:

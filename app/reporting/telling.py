@@ -159,7 +159,7 @@ def light_legend() -> list[tuple[str, str]]:
         "amber": tr("from {kpa} kPa").format(kpa=amber),
         "red": tr("from {kpa} kPa").format(kpa=red),
     }
-    return [(light, f"{light_word(light)}, {words}") for light, words in told.items()]
+    return [(light, f"{light_word(light)}{_colon()}{words}") for light, words in told.items()]
 
 
 def foot_words(sheet: Sheet) -> str:

@@ -1,0 +1,166 @@
+"""The sheet in the window, through the real main(): made, followed, named, spoken, given away."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from pdf_tools import Pdf
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from window_tools import Script, run_main, settled, undrawn
+
+from app.main_window import MainWindow
+from app.reporting.handout import SHOTS
+from app.reporting.paper import A4
+from app.wording.words import language
+from core.measures import before_after, measure_rows
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+def made(window: MainWindow) -> Callable[[], bool]:
+    """The sheet is there, and of the design that is shown."""
+    return window.report_desk.page.does["pdf"].isEnabled
+
+
+def test_the_sheet_takes_the_place_of_the_work_and_gives_it_back() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        assert not window.top.primary.isEnabled(), "no body is open yet"
+        yield settled(window)
+        desk, work = window.report_desk, window.pages.currentWidget()
+        assert desk.action.shortcut().toString() == "Ctrl+P"
+        window.top.primary.click()
+        assert window.pages.currentWidget() is desk.page
+        assert not made(window)(), "it is not there at once, and nothing waits for it"
+        yield made(window)
+        assert desk.handout is not None
+        assert desk.pages is not None
+        assert desk.pages.count == 2
+        assert tuple(desk.handout.pictures) == SHOTS
+        frame = window.session.frame
+        assert frame is not None
+        told = measure_rows(*before_after(frame.stages, frame.control_points))
+        assert desk.handout.sheet.measures == tuple(told)
+        leaf = desk.page.paper.leaves[0]
+        shown, title = leaf.grab().toImage(), leaf.width() * 18.0 / A4[0]
+        dark = sum(shown.pixelColor(x, round(title)).lightness() < 128 for x in range(shown.width() // 2))
+        assert dark > 10, "the title is painted where it stands on paper"
+        QTest.keyClick(window, Qt.Key.Key_Escape)
+        assert window.pages.currentWidget() is work
+
+    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+
+
+def test_the_sheet_follows_and_a_former_one_is_not_given_away() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.report_desk.open()
+        yield made(window)
+        former = window.report_desk.handout
+        assert former is not None
+        assert former.sheet.cuts.rows == ()
+        window.session.commit_line("mid-bust", "Mid-bust", 0.96)
+        assert not any(press.isEnabled() for press in window.report_desk.page.does.values())
+        assert window.report_desk.page.state.text() == "The sheet is made as soon as the run rests."
+        yield made(window)
+        sheet = window.report_desk.handout.sheet
+        assert [row.line for row in sheet.cuts.rows] == ["mid-bust"]
+        assert sheet.lift is not None
+        frame = window.session.frame
+        assert frame is not None
+        assert sheet.lift.left_up == frame.marks.nipple_left_z - frame.stages.rest_marks.nipple_left_z
+        window.actions_.undo.trigger()
+        yield made(window)
+        assert window.report_desk.handout.sheet.cuts.rows == ()
+
+    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+
+
+def test_the_customer_is_one_step_and_measures_nothing_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    measured = []
+    real = before_after
+    monkeypatch.setattr("core.sheet.before_after", lambda *all_: measured.append(1) or real(*all_))
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        desk, page = window.report_desk, window.report_desk.page
+        desk.open()
+        yield made(window)
+        page.customer.setFocus()
+        QTest.keyClicks(page.customer, "Anna 0412")
+        QTest.keyClick(page.customer, Qt.Key.Key_Return)
+        assert window.session.design is not None
+        assert window.session.design.customer == "Anna 0412"
+        yield lambda: made(window)() and desk.handout.sheet.heading.customer == "Anna 0412"
+        assert window.session.undo_stack.undoText() == "Customer Anna 0412"
+        window.session.show_variant("B")
+        yield lambda: made(window)() and desk.handout.sheet.heading.variant == "B"
+        assert desk.handout.sheet.heading.customer == "Anna 0412", "it is of every variant"
+        for _ in range(2):
+            window.actions_.undo.trigger()
+        yield lambda: made(window)() and desk.handout.sheet.heading.customer == ""
+        assert page.customer.text() == "" or page.customer.hasFocus()
+        assert len(measured) == 1
+
+    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+
+
+def test_the_sheet_is_saved_in_another_language(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def place(parent: object, title: str, name: str, kinds: str, ending: str) -> str:
+        return str(tmp_path / f"sheet{ending}")
+
+    monkeypatch.setattr("app.desks.report_desk.ask_save", place)
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        desk, page = window.report_desk, window.report_desk.page
+        desk.open()
+        yield made(window)
+        page.languages.button("ja").click()
+        assert language() == "en", "the window speaks on as it did"
+        for what in ("pdf", "json", "csv"):
+            page.does[what].click()
+        pdf = Pdf(tmp_path / "sheet.pdf")
+        assert "補整シート" in pdf.text()
+        assert len(pdf.sizes) == 2
+        data = json.loads((tmp_path / "sheet.json").read_text("utf-8"))
+        assert data["measures"] == list(desk.handout.sheet.measures)
+        bust = next(row["before"] for row in data["measures"] if row["key"] == "bust_girth")
+        assert f"{bust:.1f}" in pdf.text()
+        assert (tmp_path / "sheet.csv").read_text("utf-8-sig").startswith("section,key,title")
+
+    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+
+
+def test_the_sheet_comes_without_pictures_where_they_cannot_be_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails(*_: object, **__: object) -> None:
+        raise RuntimeError("no graphics")
+
+    monkeypatch.setattr("app.reporting.pictures.Studio", fails)
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.report_desk.open()
+        yield made(window)
+        assert window.report_desk.handout is not None
+        assert window.report_desk.handout.pictures == {}
+
+    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+
+
+def test_the_window_closes_while_the_sheet_is_being_made() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.report_desk.open()
+        yield lambda: bool(window.jobs.at_work())
+
+    assert run_main(["resources/samples/mannequin.ply"], script) == 0
