@@ -3,25 +3,35 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QPoint, QPointF, Qt
+from PySide6.QtCore import QPoint, QPointF, QSettings, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 
 from app.keeping import tables
 from app.main_window import MainWindow
+from app.panels.mark_field import MarkField
 from app.panels.measure_table import MeasureTable
+from app.wording.words import use_language
 from core.design_measures import OwnMeasure
 from core.measures import before_after
+from tests.test_window_access import shortcomings
 from tests.window_tools import Script, run_main, settled, undrawn
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
 GORE = OwnMeasure("Gore", "straight", ("bust_point_left", "front_centre"))
 KEY = Qt.Key
+
+
+@pytest.fixture(autouse=True)
+def english() -> Iterator[None]:
+    yield
+    use_language("en")
 
 
 def begun(window: MainWindow) -> Script:
@@ -209,6 +219,48 @@ def test_a_name_that_is_taken_is_refused_and_another_body_ends_it() -> None:
         assert own(window) == (GORE,)
 
     run_main([], script)
+
+
+@pytest.mark.parametrize("language", ["en", "ja"])
+def test_one_is_made_by_keys_alone_and_all_of_the_form_has_a_name_and_room(language: str) -> None:
+    QSettings().setValue("language", language)
+
+    def script(window: MainWindow) -> Script:
+        yield from begun(window)
+        form = window.result.editor
+        assert window.focusWidget() is form.name
+        choose(form.start, 1)
+        choose(form.end, 2)
+        yield form.keep.isEnabled
+        suggested = form.name.placeholderText()
+        assert suggested == {"en": "Bust point left → Bust point right", "ja": "BP 左 → BP 右"}[language]
+        yield from all_have_a_name_and_room(window)
+        form.name.setFocus()
+        QTest.keyClick(form.name, KEY.Key_Return)
+        assert own(window) == (OwnMeasure(suggested, "straight", ("bust_point_left", "bust_point_right")),)
+        yield lambda: listed(window, suggested)
+        assert window.focusWidget() is window.result.findChild(MeasureTable)
+        yield from all_have_a_name_and_room(window)
+
+    run_main([], script)
+
+
+def all_have_a_name_and_room(window: MainWindow) -> Script:
+    yield lambda: not window.jobs.at_work()
+    for _ in range(12):  # what has got other words takes its room a moment later
+        yield lambda: True
+    assert not set(shortcomings(window))
+
+
+def choose(field: MarkField, turn: int) -> None:
+    """Open the menu of a field by the keyboard, and go down so far."""
+    field.setFocus()
+    QTest.keyClick(field, KEY.Key_Space)
+    menu = QApplication.activePopupWidget()
+    assert menu is not None
+    for _ in range(turn):
+        QTest.keyClick(menu, KEY.Key_Down)
+    QTest.keyClick(menu, KEY.Key_Return)
 
 
 def test_own_measures_are_copied_and_written_with_all_others(

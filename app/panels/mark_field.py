@@ -27,6 +27,7 @@ class MarkField(PullDown):
         self._titles: Mapping[str, str] = {}
         self._menu = QMenu(self)
         self.setAccessibleName(title)
+        self.setToolTip(tr("Choose a landmark, or click it on the body"))
         self.setMinimumHeight(28)
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self.clicked.connect(lambda: pull_down(self._menu, self))

@@ -50,10 +50,10 @@ class SizeCard(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.views: tuple[SizeView, ...] = ()
-        self.main, self.caution = label("", "hero"), _caution()
+        self.main, self.caution = label("", "hero"), _caution(Qt.AlignmentFlag.AlignLeft)
         self.others = QWidget()
         self._grid = QGridLayout(self.others)
-        self._grid.setContentsMargins(0, 0, 0, 0)
+        self._grid.setContentsMargins(0, 0, 0, 4)
         self._grid.setSpacing(2)
         self.rule, self.doubt, self.near = (sentence("", "secondary") for _ in range(3))
         set_tag(self.doubt, "tone", "warn")
@@ -124,7 +124,7 @@ class SizeCard(QWidget):
         row = QHBoxLayout()
         row.setSpacing(8)
         row.addWidget(self.main)
-        row.addWidget(self.caution, 1, Qt.AlignmentFlag.AlignVCenter)
+        row.addWidget(self.caution, 1)
         return row
 
     def _make_allowance(self) -> QWidget:
@@ -136,10 +136,10 @@ class SizeCard(QWidget):
         return self._allowed
 
 
-def _caution() -> QLabel:
+def _caution(side: Qt.AlignmentFlag = Qt.AlignmentFlag.AlignHCenter) -> QLabel:
     """Return a place for the few words beside a size that others may find otherwise."""
     result = label("", "caption")
-    result.setAlignment(Qt.AlignmentFlag.AlignHCenter)
+    result.setAlignment(side | Qt.AlignmentFlag.AlignVCenter)
     set_tag(result, "tone", "warn")
     return result
 
