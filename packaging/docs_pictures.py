@@ -166,6 +166,19 @@ def figures() -> None:
     (DOCS / "reproduction.md").write_text(page(pictures="pictures/", tables=False), encoding="utf-8")
 
 
+def export_sheets() -> None:
+    """Show what can be exported: a sheet of its own over the window."""
+    for name, what, options in (("export", "lines", {}), ("export-dark-ja", "turntable", DARK)):
+        with settled_window(made_of_elastics(), **options) as window:  # type: ignore[arg-type]
+            desk = window.export_desk
+            desk.show()
+            assert desk.sheet is not None
+            desk.sheet.items[what].click()
+            wait_until(lambda: not window.jobs.at_work(), QApplication.processEvents)
+            desk.sheet.grab().save(str(PICTURES / f"{name}.png"))
+            desk.sheet.reject()
+
+
 def main() -> None:
     PICTURES.mkdir(parents=True, exist_ok=True)
     measure_pictures.draw(PICTURES / "measures")
@@ -175,6 +188,7 @@ def main() -> None:
             wait_until(window.is_settled, QApplication.processEvents)
             save_window(window, PICTURES / f"{name}.png")
         print(f"docs/pictures/{name}.png: {(PICTURES / f'{name}.png').stat().st_size // 1024} kB")
+    export_sheets()
     figures()
 
 

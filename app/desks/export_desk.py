@@ -32,19 +32,22 @@ if TYPE_CHECKING:
 
 
 class ExportDesk(QObject):
-    """Opens the sheet of what can be exported, tells what will be in a file, and writes it."""
+    """Opens the sheet of what can be exported, tells what will be in a file, and writes it.
+
+    ``sheet`` is there while it is open.
+    """
 
     def __init__(self, window: MainWindow) -> None:
         super().__init__(window)
         self._window = window
         self._choices = Choices(wish("export"))
-        self._sheet: ExportSheet | None = None
+        self.sheet: ExportSheet | None = None
         self._outcome: Outcome | None = None
         self._job: Job | None = None
 
     def show(self) -> None:
         """Show all that can be exported."""
-        sheet = self._sheet = ExportSheet(self._window, exports())
+        sheet = self.sheet = ExportSheet(self._window, exports())
         sheet.chosen.connect(self._choose_export)
         sheet.changed.connect(self._choose)
         sheet.save_asked.connect(self._save)
@@ -59,7 +62,7 @@ class ExportDesk(QObject):
 
     def show_frame(self, frame: Frame) -> None:
         """Tell of the body as it is now, if somebody looks and it rests."""
-        if self._sheet is not None and not frame.at_work:
+        if self.sheet is not None and not frame.at_work:
             self._tell()
 
     # -- the sheet
@@ -76,14 +79,14 @@ class ExportDesk(QObject):
         """Show the choices of what is to be exported, and what they come to."""
         wish_for("export", self._choices.text)
         export = self._choices.export
-        if self._sheet is not None:
+        if self.sheet is not None:
             settings = self._choices.settings(export.what)
-            self._sheet.show_export(export, settings, self._choices.values(export.what))
+            self.sheet.show_export(export, settings, self._choices.values(export.what))
             self._tell()
 
     def _tell(self) -> None:
         """Work out beside the window what will be in the file, and say so."""
-        window, frame, sheet = self._window, self._window.session.frame, self._sheet
+        window, frame, sheet = self._window, self._window.session.frame, self.sheet
         window.jobs.cancel(self._job)
         if frame is None or sheet is None:
             return
@@ -99,19 +102,19 @@ class ExportDesk(QObject):
         )
 
     def _show_refused(self, name: str, error: Exception) -> None:
-        if isinstance(error, UserError) and self._sheet is not None:
-            self._sheet.show_contents(name, "", f"{say(error.message)} {say(error.hint)}", possible=False)
+        if isinstance(error, UserError) and self.sheet is not None:
+            self.sheet.show_contents(name, "", f"{say(error.message)} {say(error.hint)}", possible=False)
         else:
             self._window.desk.show_failure(error)
 
     def _forget(self) -> None:
-        self._sheet = None
+        self.sheet = None
         self._window.jobs.cancel(self._job)
 
     # -- a file
 
     def _save(self) -> None:
-        export, sheet = self._choices.export, self._sheet
+        export, sheet = self._choices.export, self.sheet
         if self._ask_and_write(export.what, tr("Export: {what}").format(what=export.title)) and sheet:
             sheet.accept()
 
@@ -179,7 +182,7 @@ class ExportDesk(QObject):
 
     @property
     def _parent(self) -> Any:
-        return self._sheet or self._window
+        return self.sheet or self._window
 
     def _outcome_of(self, frame: Frame) -> Outcome:
         """Return what came out: while nothing changes the same one, with all that it has worked out."""

@@ -3,7 +3,7 @@
 SYNONYMS = {
     "Open…": "load import scan file 読み込み インポート スキャン",
     "Save": "store keep 保管",
-    "Export…": "dxf svg glb smis vit csv png gif turntable strips curves pattern clo seamly 型紙 動画 回転 寸法 出力",
+    "Export…": "dxf svg glb smis vit csv gif turntable strips curves pattern clo seamly 型紙 動画 回転 出力",
     "Export body…": "mesh model stl obj ply cad 3d 書き出し メッシュ モデル 出力",
     "Open a backup…": "restore recover version former 復元 バックアップ 履歴",
     "Start page": "home recent welcome ホーム 最近",
