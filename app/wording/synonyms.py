@@ -10,7 +10,7 @@ SYNONYMS = {
     "Save a picture": "image photo screenshot png report 写真 スクリーンショット 報告 レポート",
     "Copy the picture": "image photo clipboard report 写真 クリップボード レポート",
     "Print the picture…": "paper page report hand out 紙 プリント 報告 レポート",
-    "Report…": "sheet paper pdf customer fitter sizes cut list hand out print 報告 シート 紙 印刷 お客様 裁断",
+    "Report…": "sheet paper pdf customer fitter sizes cut list print 報告 シート 紙 印刷 お客様 裁断",
     "Undo": "back wrong step 元に戻す 取り消し",
     "Reset to scan": "clear remove all off zero 初期化 リセット",
     "Variant A": "compare alternative version 比較 バリエーション",
