@@ -76,7 +76,10 @@ def test_choices_are_remembered_for_each_thing_and_each_format(tmp_path: Path) -
         yield settled(window)
         sheet = opened(window, "measures")
         choose(sheet, "unit", "in")
+        of_measures = list(sheet.fields.values())
         sheet.items["body"].click()
+        assert not any(field.isVisible() for field in of_measures), "they would shine through"
+        assert sheet.focusWidget() is sheet.items["body"]
         choose(sheet, "format", "obj")
         choose(sheet, "axes", "y-up")
         sheet.reject()

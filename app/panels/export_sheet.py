@@ -75,6 +75,7 @@ class ExportSheet(Sheet):
         column.addLayout(self._make_grid(settings, values))
         column.addStretch(1)
         self._right.replaceWidget(old, self._choices)
+        old.hide()
         old.deleteLater()
         if at in self.fields:
             self.fields[at].setFocus(Qt.FocusReason.OtherFocusReason)
@@ -89,13 +90,17 @@ class ExportSheet(Sheet):
         self._card.setAccessibleName(" ".join(filter(None, (name, contents, doubt))))
         self.save.setEnabled(possible)
 
+    def _choose(self, what: str) -> None:
+        self.items[what].setFocus(Qt.FocusReason.OtherFocusReason)
+        self.chosen.emit(what)
+
     def _make_list(self, exports: Sequence[Export]) -> QVBoxLayout:
         column, group = QVBoxLayout(), QButtonGroup(self)
         column.setContentsMargins(0, 0, 12, 0)
         column.setSpacing(2)
         for export in exports:
             item = self.items[export.what] = _Item(export)
-            item.clicked.connect(lambda _=False, what=export.what: self.chosen.emit(what))
+            item.clicked.connect(lambda _=False, what=export.what: self._choose(what))
             group.addButton(item)
             column.addWidget(item)
         column.addStretch(1)
