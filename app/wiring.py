@@ -98,6 +98,8 @@ def _connect_safe(window: MainWindow) -> None:
 def _connect_panels(window: MainWindow) -> None:
     session, desk, scan_desk = window.session, window.desk, window.scan_desk
     window.rail.step_chosen.connect(desk.go_to)
+    window.lines.opened.connect(window.lines_desk.show_rows)
+    window.pressure_desk.found.connect(window.lines_desk.show_rows)
     window.lines.length_previewed.connect(session.preview_line)
     window.lines.length_committed.connect(window.lines_desk.commit_length)
     window.lines.drag_cancelled.connect(lambda _: session.cancel_preview())

@@ -58,6 +58,11 @@ class PressureDesk(QObject):
             )
         return self._known.get(frame)
 
+    def of_elastics(self, frame: Frame) -> PressList | None:
+        """Return the same for the list of lines: only where it is seen, and a line is made of an elastic."""
+        seen = self._window.lines.isVisible() and frame.stages.design.worn_elastics()
+        return self.of(frame) if seen else None
+
     @property
     def shown(self) -> PressList | None:
         """What is shown beside the cut list, if that is of now."""

@@ -11,6 +11,7 @@ from PySide6.QtCore import QObject, Qt
 
 from app.panels.length_groove import Feasible
 from app.presenting.lines import line_views, pair_title, row_title
+from app.presenting.pressure import pressed_view
 from app.wording.words import number, tr
 from core.design import Design
 from core.design_lines import partner_of
@@ -37,12 +38,13 @@ class LinesDesk(QObject):
         self.show_rows()
 
     def show_rows(self) -> None:
-        """Show the rows anew: something was hidden, or ``feasible`` knows more of the lines' limits."""
+        """Show the rows anew: something was hidden, or more is known of limits or pressures."""
         frame = self._frame
         if frame is not None:
             hidden = self._window.view.hidden_lines
             views = line_views(frame.stages.design, frame, hidden, self.feasible(frame))
-            self._window.lines.set_lines(views)
+            pressed = self._window.pressure_desk.of_elastics(frame)
+            self._window.lines.set_lines([pressed_view(view, pressed) for view in views])
 
     def commit_length(self, name: str, ratio: float) -> None:
         """Set the length of a line and its linked partner."""

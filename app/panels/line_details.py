@@ -92,6 +92,9 @@ class LineDetails(QWidget):
             tone = limits.tone(view.ratio)
             self._sign.show_icon("warning" if tone else "info", tone or "text_caption")
         self._pull.setVisible(view.constrained and not view.elastic)  # an elastic has its own
+        self._presses.setVisible(bool(view.elastic))
+        self._pressed.setText(view.pressed or "\N{EN DASH}")
+        set_tag(self._pressed, "tone", view.tone)
         self._elastic.show_elastic(view.title, view.elastic)
         self._stiffness.show_stiffness(view.stiffness, view.usual_stiffness)
         self._tools["link"].setVisible(bool(view.partner))
@@ -139,6 +142,7 @@ class LineDetails(QWidget):
         left.addWidget(label(tr("Stiffness"), "caption"))
         left.addWidget(self._stiffness)
         foot.addWidget(self._pull)
+        foot.addWidget(self._make_pressed())
         foot.addStretch(1)
         self._palette = PaletteMenu(self)
         self._palette.chosen.connect(lambda colour: self.decided.emit("colour", colour))
@@ -149,6 +153,17 @@ class LineDetails(QWidget):
             foot.addWidget(tool, alignment=Qt.AlignmentFlag.AlignBottom)
             tool.clicked.connect(lambda _=False, name=name: self._press(name))
         return foot
+
+    def _make_pressed(self) -> QWidget:
+        self._presses = QWidget()
+        column = QVBoxLayout(self._presses)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(1)
+        self._pressed = label("", "body", tabular=True)
+        self._pressed.setFixedHeight(self._stiffness.sizeHint().height())
+        column.addWidget(label(tr("Largest pressure, estimated"), "caption"))
+        column.addWidget(self._pressed)
+        return self._presses
 
     def _press(self, name: str) -> None:
         if name == "colour":

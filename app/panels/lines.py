@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QKeyEvent
+from PySide6.QtGui import QKeyEvent, QShowEvent
 from PySide6.QtWidgets import QApplication, QFrame, QScrollArea, QVBoxLayout, QWidget
 
 from app.dress.parts import EmptyState, sentence
@@ -39,8 +39,10 @@ class LinesPanel(QWidget):
     """All lines, one row each, a linked pair in one; lengths in the signals are shares of those at rest [1].
 
     Signals name a line, a pair by its left one; ``decided`` carries one of its traits and the value,
-    ``elastic_asked`` the widget under which an elastic is chosen.
+    ``elastic_asked`` the widget under which an elastic is chosen; ``opened`` when the list comes to be seen.
     """
+
+    opened = Signal()
 
     length_previewed = Signal(str, float)
     length_committed = Signal(str, float)
@@ -108,6 +110,10 @@ class LinesPanel(QWidget):
             row.set_open(each == self._selected)
         if self._selected in self.rows:
             self._scroll.ensureWidgetVisible(self.rows[self._selected], 0, 8)
+
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        self.opened.emit()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         step = {Qt.Key.Key_Up: -1, Qt.Key.Key_Down: 1}.get(Qt.Key(event.key()))

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from app.panels.garment_view import PressureView
+from app.panels.line_view import LineView
 from app.panels.pressure_card import TONES, LightLimits, PressureSummary
 from app.presenting.lines import line_colours, line_title, titled
 from app.wording.words import language, number, say, tr
@@ -52,6 +55,17 @@ def _view(row: PressRow, design: Design, stale: bool) -> PressureView:
     word = light_word(row.light) if light else ""
     told = [*_figures(row), *notes, comfort().lights[row.light].told(language())]
     return PressureView(number(row.max_kpa), light, word, "\n".join(told), stale)
+
+
+def pressed_view(view: LineView, listed: PressList | None) -> LineView:
+    """Return the row of a line with what it presses with, if that is known; of a pair the larger one."""
+    known = () if listed is None else listed.rows
+    rows = [row for row in known if row.line in view.names and row.max_kpa is not None]
+    if not view.elastic or not rows:
+        return view
+    most = max(rows, key=lambda row: row.max_kpa or 0.0)
+    words = f"{number(most.max_kpa or 0.0)} kPa · {light_word(most.light)}"
+    return replace(view, pressed=words, tone=TONES[most.light])
 
 
 def _figures(row: PressRow) -> list[str]:
