@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 from PySide6.QtCore import QPoint, QRect, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetrics, QPainter
@@ -40,9 +40,9 @@ class Spot:
     @cached_property
     def wide(self) -> bool:
         """Whether the name does not fit beside the figures."""
-        advance = QFontMetrics(font("body")).horizontalAdvance(self.view.label)
+        advance = _advance(self.view.label, "body")
         if self.mixed:
-            advance += 10 + QFontMetrics(font("caption")).horizontalAdvance(self.view.unit)
+            advance += 10 + _advance(self.view.unit, "caption")
         return self.view.known and advance > name_width(self.width, alone=False)
 
     @property
@@ -57,9 +57,9 @@ class Spot:
         told += [(each, "secondary") for each in self.view.details] if self.opened else []
         result, top = [], self.figures + ROW - 4
         for words, role in told:
-            room = QRect(EDGE, top, max(self.width - 2 * EDGE, 60), 1000)
-            high = QFontMetrics(font(role)).boundingRect(room, _WRAPPED, words).height()
-            result.append((words, role, QRect(room.left(), top, room.width(), high)))
+            wide = max(self.width - 2 * EDGE, 60)
+            high = _wrapped_height(words, role, wide)
+            result.append((words, role, QRect(EDGE, top, wide, high)))
             top += high + (_GAP if self.opened else 0)
         return result
 
@@ -82,6 +82,16 @@ class Spot:
     def holds(self, place: QPoint) -> bool:
         """Tell whether a place lies on the row."""
         return self.top <= place.y() < self.top + self.height
+
+
+@lru_cache(maxsize=1000)  # a table is laid out with each frame, and few of its words are others
+def _advance(words: str, role: str) -> int:
+    return QFontMetrics(font(role)).horizontalAdvance(words)
+
+
+@lru_cache(maxsize=1000)
+def _wrapped_height(words: str, role: str, width: int) -> int:
+    return QFontMetrics(font(role)).boundingRect(QRect(0, 0, width, 1000), _WRAPPED, words).height()
 
 
 def name_width(width: int, alone: bool) -> int:
