@@ -134,3 +134,28 @@ def test_the_keyboard_alone_chooses_an_elastic() -> None:
         assert window.garment.rows["mid-bust"].elastic.words == "Strap 15 mm"
 
     run_main([], script)
+
+
+def test_an_elastic_beyond_its_table_is_told_in_a_drag_and_anew_at_the_next_edit() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        undrawn(window)
+        window.inspector.open("garment")
+        choose(window, "mid-bust", "Strap", "15 mm")
+        yield made_of(window, "mid-bust")
+        made = window.session.design
+        window.notices.clear()
+        window.session.preview_line("mid-bust", 0.52)
+        yield lambda: window.notices.notice() is not None
+        window.session.cancel_preview()
+        yield at_rest(window)
+        window.notices.clear()
+        window.lines_desk.commit_length("mid-bust", 0.52)
+        yield lambda: window.notices.notice() is not None
+        notice = window.notices.notice()
+        assert notice is not None
+        assert "its table ends at 70 %" in notice.sentence
+        yield at_rest(window)
+        assert window.session.design == made
+
+    run_main([], script)

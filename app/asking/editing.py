@@ -170,6 +170,7 @@ class Editing(QObject):
 
     def _push(self, after: Document, text: str, what: str = "") -> None:
         previewing, self._preview = self._preview is not None, None
+        self._told = self._told and previewing  # what was refused in a drag that is over is no news of this
         if self.document is not None and after != self.document:
             # A drag is an entry of its own, however soon it follows another.
             what = "" if previewing else what
