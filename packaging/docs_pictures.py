@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from PySide6.QtGui import QImage
+from PySide6.QtGui import QImage, QPainter
 
 from app.wording.display import off_screen
 
@@ -26,6 +26,8 @@ from app.commands.picture import save_window, settled_window, wait_until  # noqa
 from app.main_window import MainWindow  # noqa: E402
 from app.panels.rail import STEP_ICONS  # noqa: E402
 from app.printing.figures import make_figures  # noqa: E402
+from app.reporting.pages import pages_of  # noqa: E402
+from app.reporting.paper import A4, UNITS  # noqa: E402
 from app.wording.samples import sample_design  # noqa: E402
 from core.design import Design  # noqa: E402
 from core.elastics import find_elastic  # noqa: E402
@@ -111,6 +113,11 @@ def asking(window: MainWindow) -> None:
     wait_until(window.view.question.isVisible, QApplication.processEvents)
 
 
+def reported(window: MainWindow) -> None:
+    window.report_desk.open()
+    wait_until(window.report_desk.page.does["pdf"].isEnabled, QApplication.processEvents)
+
+
 def sliding() -> Design:
     design = replace(sample_design("person"), line_contact="sliding", firm_chest=0.1)
     return design.with_line("mid-bust", 0.93)
@@ -127,6 +134,10 @@ def made_of_elastics() -> Design:
     return design
 
 
+def for_somebody() -> Design:
+    return replace(made_of_elastics(), customer="Customer 0412")
+
+
 Shot = tuple[str, Design, dict[str, object], Callable[[MainWindow], None]]
 
 DARK = {"dark": True, "language": "ja", "size": (1280, 800)}
@@ -140,6 +151,8 @@ SHOTS: tuple[Shot, ...] = (
     ("pressure", made_of_elastics(), {"size": (1280, 800)}, pressed),
     ("garment", made_of_elastics(), {"size": (1280, 800)}, cut),
     ("garment-dark-ja", made_of_elastics(), DARK, cut),
+    ("report", for_somebody(), {"size": (1280, 800)}, reported),
+    ("report-dark-ja", for_somebody(), DARK, reported),
     ("variants", sample_design(), {"size": (1280, 800)}, variants),
     ("path", sample_design(), {"size": (1280, 800)}, drawing),
     ("start", sample_design(), {"size": (1280, 800)}, start_page),
@@ -179,6 +192,22 @@ def export_sheets() -> None:
             desk.sheet.reject()
 
 
+def printed_sheets() -> None:
+    """Show the pages of a sheet as they are printed: 100 dots to an inch."""
+    with settled_window(for_somebody()) as window:
+        reported(window)
+        handout = window.report_desk.handout
+        assert handout is not None
+        for name, language, page in (("sheet-1", "en", 0), ("sheet-2", "en", 1), ("sheet-1-ja", "ja", 0)):
+            image = QImage(827, 1169, QImage.Format.Format_RGB32)
+            image.fill(0xFFFFFF)
+            painter = QPainter(image)
+            painter.scale(827 / A4[0] / UNITS, 827 / A4[0] / UNITS)
+            pages_of(handout, language).paint(painter, page)
+            painter.end()
+            image.save(str(PICTURES / f"{name}.png"))
+
+
 def main() -> None:
     PICTURES.mkdir(parents=True, exist_ok=True)
     measure_pictures.draw(PICTURES / "measures")
@@ -189,6 +218,7 @@ def main() -> None:
             save_window(window, PICTURES / f"{name}.png")
         print(f"docs/pictures/{name}.png: {(PICTURES / f'{name}.png').stat().st_size // 1024} kB")
     export_sheets()
+    printed_sheets()
     figures()
 
 

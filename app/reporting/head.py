@@ -132,7 +132,7 @@ def _cuts(handout: Handout) -> Block:
     def paint(paper: Paper, x: float, y: float) -> None:
         paper.text(x + left, y + 4.6, caption, "caption")
         for place, (colour, title, length) in enumerate(rows):
-            base = y + 10.8 + 6.2 * place
+            base = y + 10.6 + 5.9 * place
             paper.text(x + left + end, base, length, "large", align="right")
             paper.text(x + left + end + 1.0, base, "mm", "strong")
             paint_chip(paper, x + left + end + 9.0, base - 1.4, colour)

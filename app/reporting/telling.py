@@ -183,8 +183,13 @@ def _cut_view(cut: CutRow, press: PressRow, marks: tuple[int, ...]) -> CutView:
     word = light_word(press.light) if press.light else ""
     title = piece_title(cut.line, cut.title)
     return CutView(
-        cut.line, title, say(cut.elastic) if cut.elastic else NOTHING, figures, press.light, word, marks
+        cut.line, title, _elastic(cut), figures, press.light, word, marks
     )
+
+
+def _elastic(cut: CutRow) -> str:
+    """Return what a line is made of, without the width, which stands beside it."""
+    return say(cut.elastic).removesuffix(f" {cut.width_mm or 0.0:g} mm") if cut.elastic else NOTHING
 
 
 def _measure_row(row: dict[str, Any]) -> MeasureRow:
