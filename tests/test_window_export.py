@@ -12,7 +12,7 @@ import pyvista as pv
 from export_tools import choose, opened, saved_as, told, written
 from PySide6.QtCore import QSettings, Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QWidget
+from PySide6.QtWidgets import QApplication, QFileDialog, QWidget
 from window_tools import Script, run_main, settled, undrawn
 
 import app.desks.export_desk
@@ -160,7 +160,9 @@ def test_what_cannot_be_exported_says_why_and_is_not_offered(tmp_path: Path) -> 
     run_main([], script)
 
 
-def test_a_folded_body_is_told_before_it_is_written(tmp_path: Path) -> None:
+def test_a_folded_body_is_told_before_it_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    saved_as(monkeypatch, tmp_path / "anna.stl")
+
     def script(window: MainWindow) -> Script:
         undrawn(window)
         yield settled(window)
@@ -174,8 +176,50 @@ def test_a_folded_body_is_told_before_it_is_written(tmp_path: Path) -> None:
         yield told(sheet)
         assert not sheet._doubt.isVisible(), "the body at rest is as it was scanned"
         sheet.reject()
+        window.actions_.export.trigger()
+        assert window.notices.notice().sentence == "Folded: this is no shape to work from."
+        yield lambda: window.notices.notice().sentence == "anna.stl written, in mm, z-up."
+        assert window.notices.more.text() == "1 more"
 
     run_main([], script)
+
+
+def test_a_name_with_another_ending_is_that_format_with_the_unit_chosen_for_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        sheet = opened(window, "control")
+        choose(sheet, "format", "obj")
+        choose(sheet, "unit", "in")
+        choose(sheet, "format", "stl")
+        saved_as(monkeypatch, tmp_path / "anna.OBJ")
+        sheet.save.click()
+        yield written(window)
+        assert window.notices.notice().sentence == "anna.OBJ written, in inches, z-up."
+
+    run_main([], script)
+    assert (tmp_path / "anna.OBJ").read_text().count("\nf ") == 168
+
+
+@pytest.mark.parametrize(("what", "typed"), [("body", "anna.txt"), ("picture", "anna.jpg"), ("turns", "a.b")])
+def test_an_ending_that_nothing_has_is_put_behind_the_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, what: str, typed: str
+) -> None:
+    typed_name = str(tmp_path / typed)
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *how: (typed_name, how[3].split(";;")[0]))
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        opened(window, what).save.click()
+        yield written(window)
+        assert window.notices.notice().tone == "ok"
+
+    run_main([], script)
+    ending = {"body": "glb", "picture": "png", "turns": "csv"}[what]
+    assert [path.name for path in tmp_path.iterdir()] == [f"{typed}.{ending}"]
 
 
 def test_it_speaks_japanese_and_no_word_is_cut(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

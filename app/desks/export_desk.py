@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 from PySide6.QtCore import QObject
 
 from app.asking.jobs import Job
+from app.desks.export_work import ExportWork
 from app.dress.ask import ask
 from app.dress.wishes import wish, wish_for
 from app.exporting.choices import Choices
@@ -25,7 +26,6 @@ from app.wording.export_choices import exports, format_title
 from app.wording.words import say, tr
 from core.errors import UserError
 from core.live import Frame
-from core.progress import Progress
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -58,7 +58,11 @@ class ExportDesk(QObject):
 
     def export_body(self) -> None:
         """Ask for a place and write the reshaped body, else as it was chosen last."""
-        self._ask_and_write("body", tr("Export body"), reshaped=True)
+        frame = self._window.session.frame
+        if self._ask_and_write("body", tr("Export body"), reshaped=True) and frame is not None:
+            doubt = _doubt(frame)
+            if doubt:
+                self._window.notices.show_notice("warn", doubt, lasting=True)
 
     def show_frame(self, frame: Frame) -> None:
         """Tell of the body as it is now, if somebody looks and it rests."""
@@ -91,8 +95,8 @@ class ExportDesk(QObject):
         if frame is None or sheet is None:
             return
         what = self._choices.export.what
-        name, doubt = self._file_name(what), self._doubt(what, frame)
-        outcome, manner = self._outcome_of(frame), self._manner(what)
+        name, outcome, manner = self._file_name(what), self._outcome_of(frame), self._manner(what)
+        doubt = "" if manner.before and what != "flat" else _doubt(frame)
         sheet.show_contents(name, tr("Looking what will be in it…"), doubt)
         self._job = window.jobs.run(
             tr("Preparing the export"),
@@ -108,7 +112,7 @@ class ExportDesk(QObject):
             self._window.desk.show_failure(error)
 
     def _forget(self) -> None:
-        self.sheet = None
+        self.sheet = self._outcome = None  # a body is much to hold, and quickly worked out again
         self._window.jobs.cancel(self._job)
 
     # -- a file
@@ -131,44 +135,8 @@ class ExportDesk(QObject):
             manner = replace(manner, before=False)
         if what == "turntable" and not self._may_number(Path(path), manner):
             return False
-        self._write(what, Path(path), self._outcome_of(frame), manner)
+        ExportWork(self._window, what, Path(path), self._outcome_of(frame), manner).begin()
         return True
-
-    def _write(self, what: str, path: Path, outcome: Outcome, manner: Manner) -> None:
-        """Make a file ready in a thread; draw what has to be drawn in pieces here; write it in a thread."""
-        window, words = self._window, tr("Writing {name}").format(name=path.name)
-        failed = partial(window.desk.show_failure, about=f"export {what}")
-
-        def prepare(progress: Progress) -> tuple[Ready, list[Path] | None]:
-            ready = make_ready(what, path, outcome, manner)
-            progress("writing", 0.05)
-            return ready, None if ready.draw else written(ready, None, progress)
-
-        def written(ready: Ready, drawn: Any, progress: Progress) -> list[Path]:
-            return ready.write(path, drawn, progress) or [path]
-
-        def prepared(found: object) -> None:
-            ready, files = cast(tuple[Ready, list[Path] | None], found)
-            if files is not None:
-                done(ready, files)
-            elif ready.draw is not None:
-                drawing = tr("Drawing {name}").format(name=path.name)
-                then = partial(drawn, ready)
-                window.jobs.run_pieces(drawing, ready.draw(), then, failed, waited=True)
-
-        def drawn(ready: Ready, pictures: Any) -> None:
-            write = partial(written, ready, pictures)
-            window.jobs.run(
-                words, write, lambda files: done(ready, cast(list[Path], files)), failed, waited=True
-            )
-
-        def done(ready: Ready, files: list[Path]) -> None:
-            first, last = files[0].name, files[-1].name
-            name = first if len(files) == 1 else tr("{first} to {last}").format(first=first, last=last)
-            said = tr("{name} written, {how}.") if ready.how else tr("{name} written.")
-            window.desk.show_written(f"export {what}", said.format(name=name, how=ready.how), str(files[0]))
-
-        window.jobs.run(words, prepare, prepared, failed, waited=True)
 
     def _may_number(self, path: Path, manner: Manner) -> bool:
         """Ask before a series of pictures takes the place of another, which the dialog has not seen."""
@@ -212,15 +180,14 @@ class ExportDesk(QObject):
     def _file_name(self, what: str) -> str:
         return free_name(last_folder("written"), f"{self._stem(what)}.{self._choices.kind(what)}").name
 
-    def _doubt(self, what: str, frame: Frame) -> str:
-        """Return what to mind of the body that would be written, or nothing."""
-        if self._manner(what).before and what != "flat":
-            return ""
-        if frame.at_work:
-            return tr("The run is still under way: what is written is how far it is.")
-        if is_result(frame):
-            return ""
-        return tr("{state}: this is no shape to work from.").format(state=state_title(state_of(frame)))
+
+def _doubt(frame: Frame) -> str:
+    """Return what to mind of a reshaped body that would be written, or nothing."""
+    if frame.at_work:
+        return tr("The run is still under way: what is written is how far it is.")
+    if is_result(frame):
+        return ""
+    return tr("{state}: this is no shape to work from.").format(state=state_title(state_of(frame)))
 
 
 def _sentence(ready: Ready) -> str:

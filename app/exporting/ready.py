@@ -92,7 +92,11 @@ def _table_kind(path: str, manner: Manner) -> None:
 
 
 def _in_space(space: Space) -> str:
-    return tr("in {unit}, {axes}").format(unit=space.unit, axes=space.axes)
+    return tr("in {unit}, {axes}").format(unit=_unit_words(space.unit), axes=space.axes)
+
+
+def _unit_words(unit: str) -> str:
+    return tr("inches") if unit == "in" else unit
 
 
 def _body(path: str, outcome: Outcome, manner: Manner) -> Ready:
@@ -140,7 +144,7 @@ def _measures(path: str, outcome: Outcome, manner: Manner) -> Ready:
     note += f" Estimates: {unsure}." if unsure else ""
     sheet = MeasuresSheet(values, unit, titles, note)
     told = tr("{count} measures at rest") if manner.before else tr("{count} measures as reshaped")
-    how = tr("in {unit}").format(unit=unit)
+    how = tr("in {unit}").format(unit=_unit_words(unit))
     return Ready(told.format(count=len(values)), how, lambda at, _, hear: write_measures(at, sheet))
 
 
