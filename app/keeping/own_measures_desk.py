@@ -54,7 +54,6 @@ class OwnMeasuresDesk(QObject):
         panel.adding.connect(self.begin)
         panel.changing.connect(lambda key: self.begin(key.removeprefix(OWN)))
         panel.removing.connect(self.remove)
-        panel.hidden.connect(self.leave)
         window.session.frame_ready.connect(self._follow)
         window.session.opened.connect(lambda *_: self.leave())
         said = tr("Measure between two landmarks, or round the body at a height")

@@ -20,8 +20,7 @@ from app.wording.words import tr
 
 
 class ResultPanel(QStackedWidget):
-    """The table of measures, or the form for one's own; ``opened`` when it comes to be seen, and what it
-    shows has to be new, ``hidden`` when it goes.
+    """The table of measures, or the form for one's own; ``opened`` when it comes to be seen.
 
     ``marked`` carries the key of the measure to be shown on the body, empty for none; ``framed`` when it
     is to be looked at. ``adding`` asks for one more, ``changing`` and ``removing`` carry the key of one's
@@ -29,7 +28,6 @@ class ResultPanel(QStackedWidget):
     """
 
     opened = Signal()
-    hidden = Signal()
     marked = Signal(str)
     framed = Signal()
     adding = Signal()
@@ -130,8 +128,10 @@ class ResultPanel(QStackedWidget):
         self._table.select(key)
 
     def unmark(self) -> bool:
-        """Show no measure on the body any more; returns whether there was one."""
-        had = bool(self._table.mark)
+        """Show no measure on the body any more, nor one that is being made; returns whether there was one."""
+        had = bool(self._table.mark) or self.editing
+        if self.editing:
+            self.editor.left.emit()
         self._table.select("")
         return had
 
@@ -190,4 +190,3 @@ class ResultPanel(QStackedWidget):
     def hideEvent(self, event: QHideEvent) -> None:
         """Leave the body to what is done next."""
         self.unmark()
-        self.hidden.emit()
