@@ -13,7 +13,7 @@ from app.wording.words import tr
 
 
 class ElasticPull(QPushButton):
-    """A word that opens the choice of elastics; what does not fit ends in dots."""
+    """A word that opens the choice of elastics; of one that does not fit the width at its end stays."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -47,7 +47,7 @@ class ElasticPull(QPushButton):
         tokens, painter = tokens_of(self), QPainter(self)
         painter.setFont(self.font())
         painter.setPen(QColor(tokens.text_quiet if self.isEnabled() else tokens.text_caption))
-        words = self.fontMetrics().elidedText(self._elastic, Qt.TextElideMode.ElideRight, self.width() - 24)
+        words = self.fontMetrics().elidedText(self._elastic, Qt.TextElideMode.ElideMiddle, self.width() - 24)
         painter.drawText(QRectF(5, 0, self.width() - 22, self.height()), Qt.AlignmentFlag.AlignVCenter, words)
         end = 5 + self.fontMetrics().horizontalAdvance(words) + 4
         paint_icon(painter, "caret-down", tokens.text_caption, QRectF(end, self.height() / 2 - 5, 10, 10))
