@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING
 from app.wording.display import off_screen
 from core.design import Design
 from core.errors import UserError
+from core.progress import in_one_go, quiet
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
-    from app.seeing.scene import Scene
-    from core.solution import Solution
 
 _PATIENCE = 120.0
 
@@ -30,11 +29,9 @@ def draw_picture(
 ) -> None:
     """Write a PNG of the reshaped body from one side. Raises UserError."""
     _check_name(out)
-    off_screen()
-    import pyvista as pv
-
+    from app.exporting.outcome import Manner, Outcome
+    from app.exporting.ready import make_ready
     from app.seeing.camera import VIEWS
-    from app.seeing.scene import Scene
     from core.pipeline import build
     from core.solution import run
 
@@ -42,31 +39,10 @@ def draw_picture(
     if side not in VIEWS:
         raise UserError(f"There is no view '{view}'.", f"Choose one of: {', '.join(VIEWS)}, side.")
     solution = run(build(design))
-    plotter = pv.Plotter(off_screen=True, window_size=list(size), lighting="none")
-    try:
-        scene = Scene(plotter, dark)
-        _set_up(scene, solution)
-        scene.set_view(side)
-        scene.frame_bust()
-        plotter.enable_anti_aliasing("ssaa")
-        plotter.screenshot(str(out))
-    except OSError as problem:
-        raise UserError(f"{out} cannot be written.", "Choose another folder.") from problem
-    finally:
-        plotter.close()
-
-
-def _set_up(scene: Scene, solution: Solution) -> None:
-    """Put the reshaped body of a solution with its lines into a scene."""
-    from app.presenting.frame import bands
-    from app.seeing.occlusion import bake_occlusion
-
-    stages = solution.stages
-    scene.show_body(stages.body.mesh)
-    scene.set_occlusion(bake_occlusion(stages.body.mesh))
-    scene.show_control_mesh(stages.control.mesh, stages.control.fixed)
-    scene.show_bands(bands(stages, ()))
-    scene.move_body(stages.moving.vertices, *stages.shape(solution.control_points))
+    outcome = Outcome(solution.stages, solution.control_points)
+    ready = make_ready("picture", out, outcome, Manner(view=side, size=size, dark=dark))
+    assert ready.draw is not None
+    ready.write(out, in_one_go(ready.draw()), quiet)
 
 
 def draw_window(
