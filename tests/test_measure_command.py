@@ -70,6 +70,14 @@ def test_the_page_shows_what_is_printed_and_every_definition(
         assert drawn or each.key.startswith("hip"), "the sample ends above the hip"
 
 
+def test_a_long_name_of_ones_own_keeps_the_columns(person: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    name = "Bust point left to the middle of the front, straight"
+    assert main(["measure", str(person), "--own", f"{name}=straight:bust_point_left,front_centre"]) == 0
+    heading, first, *_, last = capsys.readouterr().out.splitlines()
+    assert last.startswith(f"{name} ")
+    assert first.index(" mm") == last.index(" mm") == len(heading)
+
+
 def test_text_and_table_tell_the_same(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["measure", str(project)]) == 0
     text = capsys.readouterr().out.splitlines()

@@ -54,20 +54,22 @@ def measured_text(found: Measured, kind: str, out: str | None) -> str:
 
 
 def _plain(found: Measured) -> str:
-    heading = f"{'':34}{'before':>9}" + (f"{'after':>9}{'change':>8}" if found.solved else "")
-    return "\n".join([heading, *(_line(row, found.solved) for row in found.rows)])
+    titles = [f"{row['title']}, {row['side']}" if row["side"] else row["title"] for row in found.rows]
+    wide = max(34, *(len(title) + 1 for title in titles))
+    heading = f"{'':{wide}}{'before':>9}" + (f"{'after':>9}{'change':>8}" if found.solved else "")
+    rows = zip(titles, found.rows, strict=True)
+    return "\n".join([heading, *(_line(f"{title:{wide}}", row, found.solved) for title, row in rows)])
 
 
-def _line(row: dict[str, Any], solved: bool) -> str:
-    title = f"{row['title']}, {row['side']}" if row["side"] else row["title"]
+def _line(title: str, row: dict[str, Any], solved: bool) -> str:
     values = [row["before"], *([row["after"], row["difference"]] if solved else [])]
     if all(value is None for value in values):
-        return f"{title:34}{'-':>9}  {row['note']}"
+        return f"{title}{'-':>9}  {row['note']}"
     told = [f"{'-' if value is None else format(value, 'z.1f'):>9}" for value in values[:2]]
     told += [f"{'' if value is None else format(value, '+z.1f'):>8}" for value in values[2:]]
     unsure = f" ± {row['plus_minus']:.0f}" if row["plus_minus"] >= 0.5 else ""
     note = f"{unsure}  {row['note']}" if row["estimate"] else ""
-    return f"{title:34}{''.join(told)} {row['unit']}{note}"
+    return f"{title}{''.join(told)} {row['unit']}{note}"
 
 
 def _as_json(found: Measured) -> str:
