@@ -14,7 +14,7 @@ from window_tools import Script, run_main, settled, undrawn
 from app.lining import elastics_desk
 from app.main_window import MainWindow
 from core.design_elastics import Elastic
-from core.elastics import own_elastics, own_folder, save_elastic
+from core.elastics import own_elastics, own_folder, read_elastic, save_elastic
 from core.sewing.elastic_csv import TEMPLATE
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -58,6 +58,8 @@ def test_tables_of_ones_own_are_brought_in_or_refused_and_taken_away(
         assert sheet.views["Roll 7"].forces == ("1.3", "2.5", "3.7", "4.9")
         assert "4.9 N at 80 %" in sheet.curve.accessibleName()
         assert sheet.table.topLevelItemCount() == shipped + 1
+        sheet.export_asked.emit("Roll 7")
+        assert read_elastic(empty) == read_elastic(good)
         sheet.template_asked.emit()
         assert empty.read_text("utf-8-sig") == TEMPLATE
         chosen[0] = empty

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,8 +13,18 @@ from app.keeping.dialogs import ask_save, ask_table
 from app.panels.elastics_sheet import ElasticsSheet
 from app.presenting.elastics import elastic_views
 from app.wording.words import tr
-from core.elastics import built_in, own_elastics, read_elastic, remove_elastic, save_elastic, write_template
+from core.elastics import (
+    built_in,
+    library,
+    own_elastics,
+    read_elastic,
+    remove_elastic,
+    save_elastic,
+    write_elastic,
+    write_template,
+)
 from core.errors import UserError
+from core.project import safe_name
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -39,6 +50,7 @@ class ElasticsDesk(QObject):
         self.sheet = sheet = ElasticsSheet(self._window)
         sheet.finished.connect(self._forget)
         sheet.import_asked.connect(self.bring_in)
+        sheet.export_asked.connect(self.hand_on)
         sheet.template_asked.connect(self.save_template)
         sheet.delete_asked.connect(self.take_away)
         self._fill()
@@ -67,22 +79,30 @@ class ElasticsDesk(QObject):
         sheet.notices.show_notice("ok", tr("{name} is one of your elastics now.").format(name=elastic.name))
         self._fill(elastic.name)
 
+    def hand_on(self, name: str) -> None:
+        """Ask for a place and write an elastic as a table."""
+        design = self._window.session.design
+        known = {each.name: each for each in (*(design.elastics if design else ()), *library().values())}
+        title = tr("Export an elastic")
+        self._write(title, name, lambda path: write_elastic(path, known[name]), "")
+
     def save_template(self) -> None:
         """Ask for a place and write a table to fill in."""
+        hint = tr("Fill in what you measure, then import it.")
+        self._write(tr("Save a template"), "elastic", write_template, hint)
+
+    def _write(self, title: str, name: str, write: Callable[[Path], None], hint: str) -> None:
         sheet = self.sheet
-        if sheet is None:
-            return
-        path = ask_save(sheet, tr("Save a template"), "elastic.csv", "CSV (*.csv)", ".csv")
-        if not path:
+        path = ask_save(sheet or self._window, title, f"{safe_name(name)}.csv", "CSV (*.csv)", ".csv")
+        if not path or sheet is None:
             return
         sheet.notices.clear()
         try:
-            write_template(Path(path))
+            write(Path(path))
         except UserError as problem:
             sheet.notices.show_notice("bad", problem.message, problem.hint, lasting=True)
         else:
-            said = tr("{name} written.").format(name=Path(path).name)
-            sheet.notices.show_notice("ok", said, tr("Fill in what you measure, then import it."))
+            sheet.notices.show_notice("ok", tr("{name} written.").format(name=Path(path).name), hint)
 
     def take_away(self, name: str) -> None:
         """Ask, and take one of the designer's own away."""

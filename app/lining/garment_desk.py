@@ -46,10 +46,15 @@ class GarmentDesk(QObject):
         frame = self._frame
         if frame is None or frame is self._shown:
             return
-        if not self._window.is_settled():
+        rests = self._window.is_settled()
+        if rests or self._shown is None:
+            self._show(frame)
+        if rests:
+            self._shown = frame
+        else:
             self._panel.set_stale()
-            return
-        self._shown = frame
+
+    def _show(self, frame: Frame) -> None:
         self._panel.set_view(
             garment_view(frame, cut_list(frame.stages, frame.control_points)), doubt_of(frame)
         )

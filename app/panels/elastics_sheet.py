@@ -51,9 +51,10 @@ class ElasticView:
 
 
 class ElasticsSheet(Sheet):
-    """All elastics; ``import_asked``, ``template_asked`` and ``delete_asked``, naming one of one's own."""
+    """All elastics; ``export_asked`` names the marked one, ``delete_asked`` one of one's own."""
 
     import_asked = Signal()
+    export_asked = Signal(str)
     template_asked = Signal()
     delete_asked = Signal(str)
 
@@ -101,11 +102,13 @@ class ElasticsSheet(Sheet):
     def _make_foot(self) -> None:
         brought = self.add_button(tr("Import CSV…"), self.import_asked.emit)
         brought.setToolTip(tr("Bring in a table of your own: elongation and force, with units"))
+        handed_on = self.add_button(tr("Export CSV…"), lambda: self.export_asked.emit(self.marked), "quiet")
+        handed_on.setToolTip(tr("Write the marked elastic as a table, to hand it on or to change it"))
         template = self.add_button(tr("Save a template…"), self.template_asked.emit, "quiet")
         template.setToolTip(tr("Write an empty table (CSV) to fill in with what you measure"))
         self.delete = self.add_button(tr("Delete…"), lambda: self.delete_asked.emit(self.marked), "quiet")
         self.delete.setToolTip(tr("Take an elastic of your own away; projects that use it keep it"))
-        for place, each in enumerate((brought, template, self.delete)):
+        for place, each in enumerate((brought, handed_on, template, self.delete)):
             self.foot.removeWidget(each)
             self.foot.insertWidget(place, each)
         self.add_close()

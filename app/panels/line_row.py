@@ -70,7 +70,9 @@ class LineRow(QFrame):
         for each in (self.slider, self.percent, self.millimetres):
             each.setVisible(view.constrained)
             each.setEnabled(view.settable)
-            set_tip(each, locked_tip() if view.locked else self._tips[each])
+            set_tip(
+                each, locked_tip() if view.locked else elastic_tip() if view.elastic else self._tips[each]
+            )
         if has is self and view.settable:
             self.slider.setFocus(Qt.FocusReason.OtherFocusReason)
         self._measure.setVisible(not view.constrained)
@@ -262,6 +264,11 @@ class LineRow(QFrame):
         self._eye.setVisible(in_hand or not self.view.visible)
         self._lock.setVisible((in_hand and self.view.constrained) or self.view.locked)
         self.details.setVisible(self._open)
+
+
+def elastic_tip() -> str:
+    """Return what the length of a line means that is made of an elastic."""
+    return tr("How long its elastic is unstretched, as a share of the front part at rest.")
 
 
 def locked_tip() -> str:
