@@ -82,6 +82,17 @@ def test_the_card_says_how_much_where_and_what_that_means(card: PressureCard) ->
     assert not card.says.isHidden()
 
 
+def test_figures_of_a_former_shape_are_faint_and_have_no_light(card: PressureCard) -> None:
+    card.show_summary(pressure_summary(LISTED, DESIGN), faint=True)
+    assert card.light.isHidden()
+    assert not card.place.isEnabled()
+    assert card.largest.property("tone") == "faint"
+    card.show_summary(pressure_summary(LISTED, DESIGN), faint=False)
+    assert not card.light.isHidden()
+    assert card.place.isEnabled()
+    assert card.largest.property("tone") == ""
+
+
 def test_a_light_is_a_word_too(card: PressureCard) -> None:
     for light, word in ((GREEN, "gentle"), (AMBER, "snug"), (RED, "tight")):
         listed = PressList((replace(ROW, light=light),), {})

@@ -189,8 +189,9 @@ class PressureCard(QWidget):
         self.says.setText(view.says)
         self.force.setText(view.force)
         self.scale.show_marks(view.marks, faint)
-        for each in (self.largest, self.light, self._most, self.place, self._eye, self.force, self.scale):
+        for each in (self.largest, self._most, self.place, self._eye, self.force, self.scale):
             each.setVisible(some)
+        self.light.setVisible(some and not faint)  # a former shape has no light
         for each in (self.largest, self.says, self.force):
             set_tag(each, "tone", "faint" if faint else "")
 

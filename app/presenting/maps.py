@@ -85,7 +85,7 @@ def _line_maps() -> list[MapKind]:
             tr("Contact pressure"),
             "kPa",
             _pressure_tip(),
-            tr("An estimate, rather too much. Dashed: over a hollow."),
+            tr("An estimate, rather high. Dashed: over hollows."),
             marks=limit_marks(),
         ),
     ]
