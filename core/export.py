@@ -17,6 +17,8 @@ from core.space import Space, space_of
 
 FORMATS = ("ply", "obj", "stl", "glb")
 
+_CLAY = (216, 175, 149, 255)  # what #EDD8C9 is as glTF counts light, from black 0 to 255
+
 
 def write_mesh(
     path: str | os.PathLike[str], mesh: Mesh, progress: Progress = quiet, space: Space | None = None
@@ -33,8 +35,12 @@ def write_mesh(
     progress("writing", 0.2)
     shape = trimesh.Trimesh(space.places(mesh.vertices), mesh.faces, process=False)
     options = {}
-    if kind == "glb":  # those who show it find it smooth; other readers work normals out
+    if kind == "glb":  # those who show it find it smooth, and not of metal as where nothing is said
         shape.vertex_normals = space.normals(mesh.vertex_normals)
+        matt = trimesh.visual.material.PBRMaterial(
+            baseColorFactor=_CLAY, metallicFactor=0.0, roughnessFactor=0.9, doubleSided=True
+        )
+        shape.visual = trimesh.visual.TextureVisuals(material=matt)
         options = {"include_normals": True}
     data = shape.export(file_type=kind, **options)
     progress("writing", 0.8)

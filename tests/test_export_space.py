@@ -75,7 +75,11 @@ def test_a_glb_is_what_gltf_2_asks_for(tmp_path):
     magic, version, length, size, kind = struct.unpack("<4sII I4s", data[:20])
     assert (magic, version, length, kind) == (b"glTF", 2, len(data), b"JSON")
     told_ = json.loads(data[20 : 20 + size])
-    attributes = told_["meshes"][0]["primitives"][0]["attributes"]
+    (shape,) = told_["meshes"][0]["primitives"]
+    attributes = shape["attributes"]
+    matt = told_["materials"][shape["material"]]
+    assert matt["pbrMetallicRoughness"]["metallicFactor"] == 0.0, "where nothing is said a body is of metal"
+    assert matt["doubleSided"], "what is open is seen from inside too"
     accessor = told_["accessors"][attributes["POSITION"]]
     assert told_["asset"]["version"] == "2.0"
     assert "NORMAL" in attributes

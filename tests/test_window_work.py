@@ -22,7 +22,7 @@ import app.view_area
 import core.body
 from app.asking.jobs import Jobs
 from app.main_window import MainWindow
-from core.progress import Progress
+from core.progress import Pieces, Progress
 from core.studies.limits import SIGNS, all_limits
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -178,6 +178,40 @@ def test_a_job_that_fails_tells_who_asked_and_one_that_is_left_nobody(qtbot: Any
         qtbot.waitUntil(lambda: bool(faults))
     assert seen[-1] == 0, "whoever shows the jobs hears that this one has gone"
     jobs.close()
+
+
+def test_pieces_of_work_are_done_between_events_one_job_after_the_other(qtbot: Any) -> None:
+    jobs, order, told = Jobs(), [], []
+
+    def pieces(name: str, fault: bool = False, count: int = 3) -> Pieces[str]:
+        try:
+            for step in range(count):
+                order.append(name)
+                yield (step + 1) / count
+            if fault:
+                raise ValueError(name)
+            return name
+        finally:
+            order.append(f"{name} put away")
+
+    first = jobs.run_pieces("first", pieces("a"), told.append, told.append)
+    jobs.run_pieces("second", pieces("b", fault=True), told.append, told.append)
+    assert (order, jobs.at_work()[0]) == ([], first), "who asks does not wait"
+    qtbot.waitUntil(lambda: len(told) == 2)
+    assert first.share == 1.0
+    assert order == ["a", "a", "a", "a put away", "b", "b", "b", "b put away"]
+    assert told[0] == "a"
+    assert isinstance(told[1], ValueError)
+    assert jobs.at_work() == []
+    third = jobs.run_pieces("third", pieces("c", count=10**9), told.append, told.append)
+    jobs.run_pieces("fourth", pieces("d"), told.append, told.append)
+    qtbot.waitUntil(lambda: third.share is not None)
+    jobs.leave(third)
+    assert order[-1] == "c put away", "at once"
+    jobs.close()
+    qtbot.wait(5)
+    assert len(told) == 2
+    assert "d" not in order, "what was never begun holds nothing"
 
 
 def test_pictures_that_cannot_be_painted_leave_no_question(
