@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QByteArray, QEvent, QObject, QSettings, QSize, Qt, QTimer
+from PySide6.QtCore import QEvent, QObject, QSettings, Qt, QTimer
 from PySide6.QtWidgets import QApplication, QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
 
 from app.dress.divider import Divider
 from app.dress.focus import FocusRing, next_stop, stops
 from app.dress.parts import OverCard
-from app.dress.place import put_first, put_on_screen
+from app.dress.place import put_as_last
 from app.dress.spoken import announce
 from app.wording.words import tr
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
-
-FIRST = QSize(1600, 1000)
-"""First size of the window [px], where the screen has room for it."""
 
 NARROW, WIDE = 340, 364
 """First width of the inspector in windows narrower and wider than 1400 pixels."""
@@ -253,11 +250,7 @@ class Layout(QObject):
     def restore(self) -> None:
         """Put the window where it stood last, or on a screen that is there; ``keep`` is then due."""
         settings, self._restored = QSettings(), True
-        place = settings.value("window/geometry")
-        if isinstance(place, QByteArray) and self._window.restoreGeometry(place):
-            put_on_screen(self._window, self._window.normalGeometry())
-        else:
-            put_first(self._window, FIRST)
+        put_as_last(self._window)
         self._width = _number(settings.value("window/inspector"))
         self._height = _number(settings.value("window/strip"))
         if settings.value("window/folded") == "true":

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from PySide6.QtCore import QTimer, Signal
+from PySide6.QtCore import Signal
 from PySide6.QtGui import QAction, QImage, QPainter, QRegion
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
@@ -82,7 +82,7 @@ class ViewArea(QWidget):
         """Bring all that is seen of the document up to date."""
         first = frame.stages.body is not self._main.body
         if first:
-            self._paint_later()
+            self.viewport.paint_later()
         for body in self.beside.live:
             body.show_frame(frame)
         if first:
@@ -221,11 +221,6 @@ class ViewArea(QWidget):
         name = self.viewport.scene.view.name
         if name is not None or not self.viewport.gliding:
             self.tools.set_view(name)
-
-    def _paint_later(self) -> None:
-        """Let what the hand has done meanwhile go first: a large body takes its time to make and to paint."""
-        self.viewport.setUpdatesEnabled(False)
-        QTimer.singleShot(1, self.viewport, lambda: self.viewport.setUpdatesEnabled(True))
 
     def _show_new(self, body: Body) -> None:
         for panel in (self.tools, self.compare):

@@ -8,7 +8,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from app.application import application, log_kept
-from app.asking.session import Session
+from app.dress.waiting import Waiting
 from app.keeping.recent import file_at_start, is_first_start
 from app.showing.graphics import begin_graphics, graphics_work
 from app.wording.display import has_display
@@ -31,6 +31,8 @@ def run_window(file: str | None = None, safe: bool = False) -> int:
             "Use 'busk demo --out out' for the same session in pictures, or 'busk --help' for the commands.",
         )
     app = application()
+    # Before anything that takes long: whoever has asked for a window sees that it comes.
+    waiting = Waiting.shown()
     with log_kept():
         why = begin_graphics(safe)
         first = file is None and is_first_start()
@@ -38,6 +40,7 @@ def run_window(file: str | None = None, safe: bool = False) -> int:
         window.tell_graphics(why)
         window.layout_.restore()
         window.show()
+        waiting.close()
         window.recovery_desk.look()
         if first:
             window.start_desk.tour.begin_when_settled()
@@ -57,6 +60,8 @@ def open_window(what: str | Design | None) -> MainWindow:
     """Return a window that is opening a file or a design, or shows the start page."""
     # While the solver is at work, the window gets the interpreter lock sooner than after Python's usual 5 ms.
     sys.setswitchinterval(0.001)
+    from app.asking.session import Session
+
     # The solver's thread reads the body while this one imports the 3D libraries.
     session = Session()
     if isinstance(what, Design):

@@ -102,7 +102,8 @@ def test_a_build_that_is_cancelled_stops_while_the_skin_is_calmed(mannequin, mon
 
 
 def test_the_window_starts_without_what_only_some_commands_need():
-    rare = ("trimesh", "numba", "app.printing", "app.commands.picture", "pandas", "IPython")
+    rare = ("trimesh", "numba", "app.printing.figures", "app.commands.picture", "pandas", "IPython")
+    rare += ("pyvistaqt", "pyqtgraph")
     code = f"import sys, app.window, app.main_window; print(*[n for n in {rare} if n in sys.modules])"
     told = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     assert told.stdout.split() == []

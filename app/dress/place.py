@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import QRect, QSize, Qt
+from PySide6.QtCore import QByteArray, QRect, QSettings, QSize, Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QWidget
+
+FIRST = QSize(1600, 1000)
+"""First size of the window [px], where the screen has room for it."""
 
 TITLE = 40
 """Height that the desktop's title bar may take, which Qt does not know before a window is shown [px]."""
@@ -28,6 +31,15 @@ def fitted(place: QRect, free: Sequence[QRect]) -> QRect:
     left = min(max(place.left(), room.left()), room.right() + 1 - size.width())
     top = min(max(place.top(), room.top()), room.bottom() + 1 - size.height())
     return QRect(left, top, size.width(), size.height())
+
+
+def put_as_last(window: QWidget) -> None:
+    """Put the main window, or what stands in its place, where that stood last and a screen is there."""
+    place = QSettings().value("window/geometry")
+    if isinstance(place, QByteArray) and window.restoreGeometry(place):
+        put_on_screen(window, window.normalGeometry())
+    else:
+        put_first(window, FIRST)
 
 
 def put_first(window: QWidget, wanted: QSize) -> None:

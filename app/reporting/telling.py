@@ -182,9 +182,7 @@ def _cut_view(cut: CutRow, press: PressRow, marks: tuple[int, ...]) -> CutView:
     )
     word = light_word(press.light) if press.light else ""
     title = piece_title(cut.line, cut.title)
-    return CutView(
-        cut.line, title, _elastic(cut), figures, press.light, word, marks
-    )
+    return CutView(cut.line, title, _elastic(cut), figures, press.light, word, marks)
 
 
 def _elastic(cut: CutRow) -> str:

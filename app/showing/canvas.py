@@ -19,7 +19,6 @@ from PySide6.QtGui import (
     QResizeEvent,
 )
 from PySide6.QtWidgets import QWidget
-from pyvistaqt import QtInteractor
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 from vtkmodules.vtkRenderingCore import vtkProp
@@ -39,6 +38,8 @@ def make_canvas(parent: QWidget) -> tuple[QWidget, pv.BasePlotter]:
     if is_safe_mode() or not has_graphics_card():
         painted = PaintedCanvas(parent)
         return painted, painted.plotter
+    from pyvistaqt import QtInteractor  # noqa: PLC0415 (a fifth of a second that not every start needs)
+
     interactor = QtInteractor(parent, auto_update=False, multi_samples=0, lighting="none")
     interactor.setAcceptDrops(False)
     interactor.setFocusPolicy(Qt.FocusPolicy.NoFocus)

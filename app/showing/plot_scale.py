@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import pyqtgraph as pg
 from PySide6.QtCore import QRectF
 from PySide6.QtGui import QPainterPath
 
@@ -44,9 +43,11 @@ class Scale:
 
     def path(self, turns: Numbers, values: Numbers) -> QPainterPath:
         """Return a curve [px], broken where a value is not finite."""
+        from pyqtgraph import arrayToQPath  # noqa: PLC0415 (no window waits for its first curve)
+
         x = self.area.left() + (turns - self.first) * self.turn_width
         y = self.area.bottom() - ((values - self.low) / self._span + _ROOM) * self._height
-        return QPainterPath(pg.arrayToQPath(x, y, connect="finite"))
+        return QPainterPath(arrayToQPath(x, y, connect="finite"))
 
     def levels(self) -> list[float]:
         """Return the round values that get a line and a number."""

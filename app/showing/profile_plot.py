@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QColor,
@@ -193,7 +192,9 @@ class ProfilePlot(QWidget):
         painter.drawText(pill, Qt.AlignmentFlag.AlignCenter, text)
 
     def _path(self, places: Floats) -> QPainterPath:
-        return QPainterPath(pg.arrayToQPath(*self.to_pixels(places).T))
+        from pyqtgraph import arrayToQPath  # noqa: PLC0415 (no window waits for its first curve)
+
+        return QPainterPath(arrayToQPath(*self.to_pixels(places).T))
 
     def _spot(self, place: Floats) -> QPointF:
         x, y = self.to_pixels(place)[0].tolist()

@@ -110,8 +110,14 @@ class Viewport(QWidget):
         self._place_label()
         draw(self._canvas)
 
+    def paint_later(self) -> None:
+        """Let what the hand has done meanwhile go first: a large body takes its time to make and to paint."""
+        self.setUpdatesEnabled(False)
+        QTimer.singleShot(1, self, lambda: self.setUpdatesEnabled(True))
+
     def picture(self, labels: bool = True) -> QImage:
         """Return what is seen now at its best, with its labels or without, in device pixels."""
+        self.setUpdatesEnabled(True)
         self.request_draw()
         self._rest.stop()
         self._smoothing.use("ssaa")
