@@ -19,6 +19,7 @@ from core.project import read_scan_file, save_project
 
 ROOT = Path(__file__).parent.parent
 WORN = ["--line", "mid-bust=70%", "--elastic", "mid-bust=plush 12"]
+RUNS_AWAY = ["--line", "mid-bust=60%", "--settings=line_force=explicit", "--settings=line_stiffness=60"]
 NO_DISPLAY = ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM", "VTK_DEFAULT_OPENGL_WINDOW")
 
 
@@ -72,6 +73,7 @@ def test_the_customer_of_a_project_is_taken_and_can_be_overruled(mannequin: Path
         (["--out", "sheet.pdf", "--system", "xx"], "no table of sizes 'xx'"),
         (["--out", "sheet.pdf", "--allowance", "40"], "cannot be taken off"),
         ([], "--out"),
+        (["--out", "a.pdf", *RUNS_AWAY], "ran away"),
     ],
 )
 def test_what_cannot_be_is_refused_before_anything_is_written(

@@ -9,12 +9,14 @@ from pathlib import Path
 import pytest
 from pdf_tools import Pdf
 from PySide6.QtCore import Qt
+from PySide6.QtPrintSupport import QPrinter
 from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled, undrawn
 
 from app.main_window import MainWindow
 from app.reporting.handout import SHOTS
 from app.reporting.paper import A4
+from app.reporting.pdf import write_pdf
 from app.wording.words import language
 from core.measures import before_after, measure_rows
 
@@ -135,6 +137,35 @@ def test_the_sheet_is_saved_in_another_language(tmp_path: Path, monkeypatch: pyt
         bust = next(row["before"] for row in data["measures"] if row["key"] == "bust_girth")
         assert f"{bust:.1f}" in pdf.text()
         assert (tmp_path / "sheet.csv").read_text("utf-8-sig").startswith("section,key,title")
+
+    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+
+
+def test_the_printer_gets_the_same_pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Dialog:
+        def __init__(self, printer: QPrinter, parent: object) -> None:
+            printer.setOutputFormat(QPrinter.OutputFormat.PdfFormat)
+            printer.setOutputFileName(str(tmp_path / "printed.pdf"))
+
+        def exec(self) -> int:
+            return 1
+
+    monkeypatch.setattr("app.desks.report_desk.QPrintDialog", Dialog)
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.report_desk.open()
+        yield made(window)
+        window.report_desk.page.does["print"].click()
+        printed = Pdf(tmp_path / "printed.pdf")
+        write_pdf(tmp_path / "written.pdf", window.report_desk.pages, "sheet")
+        written = Pdf(tmp_path / "written.pdf")
+        assert printed.sizes == written.sizes == [(210, 297)] * 2
+        assert printed.text() == written.text()
+        first, other = (pdf.pieces(0)[0] for pdf in (printed, written))
+        assert abs(first.left - other.left) < 0.3
+        assert abs(first.top - other.top) < 0.3
 
     assert run_main(["resources/samples/mannequin.ply"], script) == 0
 
