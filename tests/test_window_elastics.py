@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from garment_tools import at_rest, choose, made_of, open_menu
+from garment_tools import at_rest, choose, cut_rows, made_of, open_menu
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
@@ -159,5 +159,28 @@ def test_an_elastic_beyond_its_table_is_told_in_a_drag_and_anew_at_the_next_edit
         assert "its table ends at 70 %" in notice.sentence
         yield at_rest(window)
         assert window.session.design == made
+
+    run_main([], script)
+
+
+def test_a_linked_pair_is_made_of_the_same_in_one_step() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        undrawn(window)
+        window.line_maker.add("straps")
+        window.lines_desk.commit_length("strap left", 0.97)
+        window.inspector.open("garment")
+        yield at_rest(window)
+        steps, before = window.session.undo_stack.count(), cut_rows(window)
+        choose(window, "strap right", "Strap", "12 mm")
+        yield made_of(window, "strap left", "strap right")
+        assert window.session.undo_stack.count() == steps + 1
+        assert window.session.undo_stack.undoText() == "Straps made of Strap 12 mm"
+        design = window.session.design
+        assert design is not None
+        assert design.linked("strap left") == ("strap left", "strap right")
+        for name, row in cut_rows(window).items():
+            assert row.reached_front_mm == pytest.approx(before[name].reached_front_mm, abs=0.2)
+        assert window.garment.rows["strap left"].elastic.words == "Strap 12 mm"
 
     run_main([], script)

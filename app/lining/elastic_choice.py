@@ -129,8 +129,8 @@ class ElasticChoice(QObject):
         if self._session.design is not asked:
             self.choose(names, elastic)
             return
-        ratios = {line.name: line.ratio for line in made.lines}
-        found = [name for name in names if name in ratios and ratios[name] != asked.ratio(name)]
+        ratios = {name: _shared_ratio(made, asked.linked(name)) for name in names if name in made.worn()}
+        found = [name for name, ratio in ratios.items() if ratio != asked.ratio(name)]
 
         def remade(before: Design) -> Design:
             # Through the door that a locked line keeps shut.
@@ -153,6 +153,11 @@ class ElasticChoice(QObject):
 
 def _stages(frame: Frame, design: Design) -> Stages:
     return frame.stages if frame.stages.design is design else build(design, frame.stages)
+
+
+def _shared_ratio(made: Design, pair: tuple[str, ...]) -> float:
+    """Return the mean of both sides: set apart by a hair, a linked pair would be none any more."""
+    return sum(made.ratio(name) for name in pair) / len(pair)
 
 
 def _put_on(design: Design, names: Iterable[str], still: Set[str]) -> Design:
