@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QLineEdit
+from PySide6.QtWidgets import QLineEdit, QScrollArea
 
 from app.dress.wishes import wish
 from app.main_window import MainWindow
@@ -134,7 +134,7 @@ def test_a_measure_is_shown_on_the_body_until_esc_and_framed_at_a_double_click()
         QTest.keyClick(table, Qt.Key.Key_Escape)
         assert (window.result.mark, scene.measure.shown) == ("", False)
         click(table, "hip_girth")
-        assert not window.result.mark, "what is missing cannot be shown"
+        assert (window.result.mark, scene.measure.shown) == ("hip_girth", False), "it can only be read"
         click(table, "apex_lift")
         assert not scene.measure.shown, "the body at rest has none"
         window.view.set_after(True)
@@ -149,6 +149,26 @@ def test_a_measure_is_shown_on_the_body_until_esc_and_framed_at_a_double_click()
         assert scene.measure.shown
         window.desk.go_to("lines")
         assert not scene.measure.shown
+
+    run_main([], script)
+
+
+def test_what_is_opened_by_keys_is_scrolled_to_with_all_that_it_tells() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.desk.go_to("result")
+        yield lambda: measured(window)
+        table, room = window.result.findChild(MeasureTable), window.result.findChild(QScrollArea)
+        for _ in range(12):
+            QTest.keyClick(table, Qt.Key.Key_Down)
+        key = window.result.mark
+        opened = table.place_of(key)
+        assert opened.height() > 2 * table.place_of("bust_girth").height()
+        yield lambda: not table.visibleRegion().isEmpty()
+        yield lambda: table.visibleRegion().boundingRect().contains(opened.adjusted(4, 1, -4, -1))
+        window.result.unmark()
+        assert room.verticalScrollBar().value() > 0, "what is closed does not jump"
 
     run_main([], script)
 

@@ -88,7 +88,7 @@ class MeasureTable(QWidget):
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Mark the measure under the pointer."""
         view = self._view_at(event.position().toPoint())
-        self.select(view.key if view is not None and _marks(view) else "")
+        self.select("" if view is None else view.key)
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
         """Ask for the measure to be looked at that the first click has opened."""
@@ -112,7 +112,7 @@ class MeasureTable(QWidget):
 
     def _step(self, turn: int) -> bool:
         """Go so many measures on, and read them out; tells whether there was one."""
-        views = [view for view in self.rows if view.key and _marks(view)]
+        views = [view for view in self.rows if view.key]
         if not turn or not views:
             return False
         keys = [view.key for view in views]
@@ -180,8 +180,3 @@ class MeasureTable(QWidget):
 
     def _view_at(self, place: QPoint) -> MeasureView | None:
         return next((spot.view for spot in self._spots if spot.holds(place)), None)
-
-
-def _marks(view: MeasureView) -> bool:
-    """Tell whether a measure can be opened: one's own that the scan does not show can still be changed."""
-    return view.known or view.own

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import Signal
+from PySide6.QtCore import QTimer, Signal
 from PySide6.QtGui import QHideEvent, QShowEvent
 from PySide6.QtWidgets import QFrame, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
 
@@ -51,6 +51,8 @@ class ResultPanel(QStackedWidget):
         for name in ("framed", "changing", "removing"):
             getattr(self._table, name).connect(getattr(self, name))
         self._table.marked.connect(self._mark)
+        self._scroll = QTimer(self, singleShot=True, interval=0)  # once what is opened has got its room
+        self._scroll.timeout.connect(self._scroll_to_mark)
         page = QWidget()
         column = QVBoxLayout(page)
         column.setContentsMargins(14, 8, 14, 12)
@@ -154,7 +156,7 @@ class ResultPanel(QStackedWidget):
         there = self._table.place_of(self.mark)
         self._table.set_rows([*self._measured, *self._live], self._stale)
         if self.mark and there.isNull():  # one's own that was added has come
-            self._scroll_to(self.mark)
+            self._scroll.start()
 
     @property
     def doubt(self) -> str:
@@ -163,12 +165,11 @@ class ResultPanel(QStackedWidget):
 
     def _mark(self, key: str) -> None:
         if key:
-            self._scroll_to(key)
+            self._scroll.start()
         self.marked.emit(key)
 
-    def _scroll_to(self, key: str) -> None:
-        self._column.activate()  # the table may have grown by what is shown now
-        place = self._table.place_of(key).translated(self._table.pos())
+    def _scroll_to_mark(self) -> None:
+        place = self._table.place_of(self.mark).translated(self._table.pos())
         self._area.ensureVisible(0, place.bottom(), 0, 0)
         self._area.ensureVisible(0, place.top(), 0, 0)
 
