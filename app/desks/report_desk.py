@@ -54,6 +54,7 @@ class ReportDesk(QObject):
         self._asked: Frame | None = None  # the one that a sheet is being made of
         self._job: Job | None = None
         self._language = ""
+        self._laid: tuple[Handout | None, str] = (None, "")
         self._occlusion: tuple[object, Floats] | None = None
         window.pages.addWidget(self.page)
         said = tr("Sizes, lengths to cut, measures, pressures and pictures on paper: look, save, print")
@@ -165,7 +166,10 @@ class ReportDesk(QObject):
         """Show the sheet as far as it is known, and what is under way."""
         design, frame = self._window.session.design, self._window.session.frame
         stale = frame is None or not self._is_of(frame)
-        self.pages = pages_of(self.handout, self._language) if self.handout is not None else None
+        if self._laid != (self.handout, self._language):
+            # Not with every frame of a run: it takes as long as some of them.
+            self._laid = self.handout, self._language
+            self.pages = pages_of(self.handout, self._language) if self.handout is not None else None
         words = ""
         if stale:
             waits = tr("The sheet is made as soon as the run rests.")

@@ -6,7 +6,7 @@ import json
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, lru_cache
 from importlib import resources
 
 LANGUAGES = {"en": "English", "ja": "日本語"}
@@ -59,14 +59,20 @@ def say(english: str) -> str:
 
     ``english`` is one or more sentences with names and numbers filled in; one that no pattern fits stays.
     """
-    messages = _messages(_code)
+    return _said(_code, english)
+
+
+@lru_cache(4096)  # the same is said again and again, and hundreds of patterns are tried for each
+def _said(code: str, english: str) -> str:
+    messages = _messages(code)
     for pattern, translated in messages:
         match = pattern.fullmatch(english)
         if match:
-            return translated.format(**{name: say(value) for name, value in match.groupdict().items()})
+            places = match.groupdict().items()
+            return translated.format(**{name: _said(code, value) for name, value in places})
     sentences = _SENTENCE_END.split(english) if messages else [english]
     if len(sentences) > 1:
-        return "".join(say(each) for each in sentences)
+        return "".join(_said(code, each) for each in sentences)
     # A sentence that begins with the name of a line; a name of a file, with its dot, stays as it is.
     begins_small = english.endswith((".", "?")) and re.match(r"[a-z][a-z-]* ", english)
     return english[0].upper() + english[1:] if begins_small else english
