@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QWidget
+from PySide6.QtWidgets import QApplication, QPushButton, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.dress.theme import apply_theme
@@ -112,3 +112,11 @@ def test_figures_of_a_former_shape_fade_and_rows_stay_what_they_are(qtbot: QtBot
     panel.set_view(GarmentView((STRAP,), worn=True))
     assert panel.rows == {"strap left": strap}, "what has the keyboard keeps it"
     assert strap.cut.property("tone") == ""
+
+
+def test_without_a_piece_no_list_leaves(qtbot: QtBot) -> None:
+    panel = panel_of(qtbot, STRAP)
+    buttons = {each.text(): each for each in panel.findChildren(QPushButton)}
+    panel.set_view(GarmentView((BARE,)))
+    assert panel.nothing.isVisible()
+    assert [buttons[words].isEnabled() for words in ("Copy", "CSV…", "Elastics…")] == [False, False, True]

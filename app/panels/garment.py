@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QShowEvent
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QPushButton, QScrollArea, QVBoxLayout, QWidget
 
 from app.dress.parts import EmptyState, sentence
 from app.dress.press_row import press_row
@@ -62,7 +62,8 @@ class GarmentPanel(QWidget):
         for each in (self.nothing, self._doubt, self.offer):
             column.addWidget(each)
         column.addWidget(self._area, 1)
-        column.addWidget(self._make_buttons())
+        self._buttons = self._make_buttons()
+        column.addWidget(self._buttons)
         column.addStretch(0)
         self.set_view(GarmentView(()))
 
@@ -73,6 +74,8 @@ class GarmentPanel(QWidget):
         self._doubt.setVisible(bool(doubt))
         self.tissue.show_tissue(view.tissue, view.notes)
         self.tissue.setVisible(view.worn)
+        for leaves in self._buttons.findChildren(QPushButton)[:2]:
+            leaves.setEnabled(view.worn)  # without a piece there is no list
         self.nothing.setVisible(not view.worn)
         self.offer.setVisible(view.worn and view.bare)
         self._area.setVisible(bool(view.rows))
