@@ -136,8 +136,8 @@ class ElasticChoice(QObject):
             # Through the door that a locked line keeps shut.
             return reduce(lambda d, name: d.with_line(name, ratios[name]), found, dress(before))
 
-        cut = tr("Cut to reach the same length; the skin beside it may shift by a millimetre or two.")
-        bare = tr("Set to reach the same length; the skin beside it may shift by a millimetre or two.")
+        cut = tr("Cut to reach the same length; the skin beside it may shift by 1 to 2 mm.")
+        bare = tr("Set to reach the same length; the skin beside it may shift by 1 to 2 mm.")
         self._commit(names, elastic, remade, cut if elastic else bare)
 
     def _commit(self, names: tuple[str, ...], elastic: Elastic | None, edit: Dress, said: str) -> None:
@@ -148,7 +148,7 @@ class ElasticChoice(QObject):
         text = words.format(line=line, elastic=say(elastic.name) if elastic else "")
         self._session.edit(edit, text)
         if self._session.design is not before and said:
-            self._window.notices.show_notice("ok", f"{text}.", said)
+            self._window.notices.show_notice("ok", tr("{text}.").format(text=text), said)
 
 
 def _stages(frame: Frame, design: Design) -> Stages:
