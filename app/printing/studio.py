@@ -32,7 +32,7 @@ Picture = npt.NDArray[np.uint8]
 FINER = 2
 """Pixels drawn for each one of a picture, in both directions: no stairs at the outlines."""
 
-LONGEST = 1280
+LONGEST = 960
 """Width and height that is drawn at once [px]: a tenth of a second without a graphics card."""
 
 
