@@ -133,8 +133,10 @@ class MainWindow(QMainWindow):
 
     def is_settled(self) -> bool:
         """Tell whether the session's design is solved to the end and shown."""
-        frame, design = self.session.frame, self.session.design
-        return frame is not None and frame.stages.design is design and not frame.at_work
+        frame, session = self.session.frame, self.session
+        if frame is None or frame.stages.design is not session.design:
+            return False
+        return session.is_answered and not frame.at_work
 
     def tell_graphics(self, why: str) -> None:
         """Say once why the view is drawn safely, if it is, and notice when it has been drawn."""

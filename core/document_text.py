@@ -20,7 +20,9 @@ def to_texts(document: Document) -> dict[str, str]:
         return {DESIGN: to_json(document.design)}
     # An older program would drop the variants at its next save: it must not read this.
     variants = {"shown": document.shown, "others": others}
-    return {DESIGN: to_json(document.design, WITH_VARIANTS), VARIANTS: json.dumps(variants, indent=1)}
+    # Nor one that could read the design that is shown, but not a variant of it: it says by itself why.
+    written = max([WITH_VARIANTS, *(each["format"] for each in others.values())])
+    return {DESIGN: to_json(document.design, written), VARIANTS: json.dumps(variants, indent=1)}
 
 
 def from_texts(texts: Mapping[str, str]) -> Document:

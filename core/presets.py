@@ -124,6 +124,11 @@ def own_folder() -> Path:
     return Path(platformdirs.user_data_path("Busk", appauthor=False)) / "presets"
 
 
+def own_file(title: str) -> Path:
+    """Return where an own preset of that title lies, or would lie."""
+    return own_folder() / f"{safe_name(title)}.json"
+
+
 def own_presets() -> tuple[list[Preset], list[LineError]]:
     """Return the designer's own presets, and why some of them cannot be read."""
     presets, problems = [], []
@@ -137,9 +142,8 @@ def own_presets() -> tuple[list[Preset], list[LineError]]:
 
 def save_preset(preset: Preset) -> Path:
     """Write a preset into the designer's own folder, over one of the same name. Raises ProjectError."""
-    folder = own_folder()
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / f"{safe_name(preset.title)}.json"
+    path = own_file(preset.title)
+    path.parent.mkdir(parents=True, exist_ok=True)
     with whole_file(path) as partial:
         text = json.dumps({"format": FORMAT, **asdict(preset)}, indent=1, ensure_ascii=False)
         partial.write_text(text, encoding="utf-8")

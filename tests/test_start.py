@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import QMimeData, QPoint, QSettings, Qt, QUrl
+from PySide6.QtCore import QMimeData, QPoint, QRect, QSettings, Qt, QUrl
 from PySide6.QtGui import QDragEnterEvent, QDragLeaveEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
@@ -90,7 +90,11 @@ def the_tour_stops_beside_four_parts(window: MainWindow) -> None:
         card, ring = tour.mark.geometry(), tour.mark.ring.geometry()
         assert tour.mark.isVisible()
         assert window.rect().contains(card)
+        assert not card.intersects(window.top.geometry()), "the menus can be opened meanwhile"
         assert not card.adjusted(10, 8, -10, -12).intersects(ring)
+        low = QRect(0, 0, window.width(), window.top.height() + 20)
+        tour.mark.point_at(low, window.rect().adjusted(0, window.top.height(), 0, 0))
+        assert not tour.mark.geometry().intersects(window.top.geometry()), "nor beside what is near them"
         QTest.keyClick(tour.mark, Qt.Key.Key_Return)
     assert stops == [0, 1, 2, 3]
     assert not tour.mark.isVisible()

@@ -10,12 +10,14 @@ from PySide6.QtCore import QSize
 from PySide6.QtGui import QDesktopServices, QGuiApplication, QImage
 from PySide6.QtPrintSupport import QPrintDialog, QPrinter
 from PySide6.QtWidgets import QPushButton, QWidget
+from pytestqt.qtbot import QtBot
 from window_tools import Script, run_main
 
 from app.desks import picture_desk
 from app.desks.picture_desk import fitted
 from app.main_window import MainWindow
 from app.showing import fine_picture
+from app.showing.wipe import WipeHandle
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -109,3 +111,34 @@ def test_the_view_is_as_before_when_a_picture_fails(monkeypatch: pytest.MonkeyPa
 def test_a_picture_is_as_large_as_the_page() -> None:
     assert fitted(QSize(200, 100), QSize(1000, 800)).getRect() == (0, 0, 1000, 500)
     assert fitted(QSize(100, 200), QSize(1000, 800)).getRect() == (300, 0, 400, 800)
+
+
+def test_a_wiped_picture_has_the_border_and_no_knob(qtbot: QtBot) -> None:
+    handle = WipeHandle(room := QWidget())
+    qtbot.addWidget(room)
+    handle.resize(handle.width(), 120)
+
+    def widths() -> list[int]:
+        rows = pixels(handle.grab().toImage())
+        return [len(np.unique(row, axis=0)) for row in rows]
+
+    with_knob = widths()
+    handle.set_bare(True)
+    line = widths()
+    assert len(set(line)) == 1, "one line from top to bottom"
+    assert line[0] > 1
+    handle.set_bare(False)
+    assert widths() == with_knob != line
+
+
+def test_the_knob_of_a_wipe_is_out_while_a_picture_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    said: list[bool] = []
+    monkeypatch.setattr(WipeHandle, "set_bare", lambda _, bare: said.append(bare))
+
+    def script(window: MainWindow) -> Script:
+        yield window.is_settled
+        window.view.compare_by("wipe")
+        window.view.picture()
+        assert said == [True, False]
+
+    run_main(["resources/samples/mannequin.ply"], script)

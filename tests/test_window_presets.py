@@ -7,9 +7,10 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QWidget
 from window_tools import Script, run_main, settled, undrawn
 
+from app.lining import preset_desk
 from app.main_window import MainWindow
 from core.design import Design, ScanSource
-from core.presets import built_in, is_worn, with_preset
+from core.presets import built_in, is_worn, own_file, with_preset
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -37,6 +38,33 @@ def test_the_worn_preset_stands_over_the_list_with_what_it_leaves_out() -> None:
         window.lines_desk.commit_length("mid-bust", 1.0)
         assert head.presets.text() == "Presets"
         assert head.note.isHidden()
+
+    run_main([], script)
+
+
+def test_a_preset_is_replaced_only_by_one_who_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    names: list[str] = []
+    answers: list[str] = []
+    asked: list[str] = []
+    monkeypatch.setattr(preset_desk, "ask_name", lambda *_: names.pop(0))
+    monkeypatch.setattr(preset_desk, "ask", lambda _, question, *__: asked.append(question) or answers.pop(0))
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        undrawn(window)
+        names[:] = ["Longline"]
+        window.preset_desk.ask()
+        first = own_file("Longline").read_bytes()
+        assert not asked, "there is none of that name"
+        window.lines_desk.commit_length("mid-bust", 0.9)
+        names[:], answers[:] = ["Longline", ""], [""]
+        window.preset_desk.ask()
+        assert asked == ["Replace the preset Longline?"]
+        assert own_file("Longline").read_bytes() == first
+        assert not names, "the name was asked for again"
+        names[:], answers[:] = ["Longline"], ["replace"]
+        window.preset_desk.ask()
+        assert own_file("Longline").read_bytes() != first
 
     run_main([], script)
 

@@ -139,6 +139,31 @@ def a_picture_is_saved_without_the_handle(window: MainWindow) -> None:
     assert shown == [True, False, True]
 
 
+def test_a_panel_that_was_folded_is_folded_at_the_next_start() -> None:
+    def fold(window: MainWindow) -> Script:
+        yield settled(window)
+        undrawn(window)
+        panel = window.section_desk.panel
+        assert not panel.is_folded
+        panel.fold.click()
+        assert panel.is_folded
+
+    def unfold(window: MainWindow) -> Script:
+        yield settled(window)
+        undrawn(window)
+        panel = window.section_desk.panel
+        assert panel.is_folded
+        panel.fold.click()
+
+    def look(window: MainWindow) -> Script:
+        yield settled(window)
+        undrawn(window)
+        assert not window.section_desk.panel.is_folded
+
+    for script in (fold, unfold, look):
+        run_main(["resources/samples/mannequin.ply"], script)
+
+
 class Heard(QObject):
     """Notes when a widget is hidden and shown."""
 

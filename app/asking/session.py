@@ -106,6 +106,11 @@ class Session(Editing):
         self._open(kept.document, kept.project, kept.stamp, unsaved=True)
 
     @property
+    def is_answered(self) -> bool:
+        """Whether the frame answers what was asked last; after an undo it may be an older one."""
+        return self.frame is not None and self.frame.revision >= self._revision
+
+    @property
     def unsaved(self) -> bool:
         """Whether there is something to lose."""
         return not self.undo_stack.isClean() or self._saving.at_work

@@ -13,6 +13,7 @@ UNTIL_THEN = {
     "motion": "full",  # or reduced
     "autosave": "10",  # seconds after an edit
     "export": "{}",  # what was chosen to export, as app.exporting.choices keeps it
+    "section_folded": "no",  # whether the section's panel shows its place alone
     "size_system": "jp",  # the key of a table of sizes
     "size_allowance": "0",  # mm taken off the under-bust for a tape that is worn tight
 }

@@ -87,7 +87,9 @@ class Tour(QObject):
         if self._place >= 0:
             parts = self._stops()[self._place][2]()
             places = [QRect(part.mapTo(self._window, QPoint(0, 0)), part.size()) for part in parts]
-            self.mark.point_at(reduce(QRect.united, places))
+            # Not over the menus: they can be opened meanwhile, as all else can.
+            room = self._window.rect().adjusted(0, self._window.top.geometry().bottom() + 1, 0, 0)
+            self.mark.point_at(reduce(QRect.united, places), room)
 
     def _stops(self) -> tuple[Stop, ...]:
         window = self._window

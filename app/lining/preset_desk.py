@@ -8,14 +8,23 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 
-from app.dress.ask import ask_name
+from app.dress.ask import ask, ask_name
 from app.dress.parts import pull_down
 from app.presenting.lines import row_title
 from app.wording.words import say, tr
 from core.design import Design
 from core.design_lines import LONGEST_TITLE
 from core.errors import UserError
-from core.presets import Preset, built_in, is_worn, own_presets, preset_from, save_preset, with_preset
+from core.presets import (
+    Preset,
+    built_in,
+    is_worn,
+    own_file,
+    own_presets,
+    preset_from,
+    save_preset,
+    with_preset,
+)
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -91,11 +100,19 @@ class PresetDesk(QObject):
         taken, name = {preset.title for preset in own_presets()[0]}, tr("My lines")
         names = chain([name], (f"{name} {number}" for number in count(2)))
         offered = next(each for each in names if each not in taken)
-        title = ask_name(
+        while title := ask_name(
             self._window, tr("Save lines as preset"), tr("Name of the preset"), offered, LONGEST_TITLE
-        )
-        if title:
-            self.save(title)
+        ):
+            if not own_file(title).exists() or self._may_replace(title):
+                self.save(title)
+                return
+            offered = title
+
+    def _may_replace(self, title: str) -> bool:
+        """Ask whether the preset of that name may go; without an answer the name is asked for again."""
+        question = tr("Replace the preset {name}?").format(name=title)
+        said = tr("There is one of that name already. Its lines will be lost.")
+        return ask(self._window, question, said, [("replace", tr("Replace"))]) == "replace"
 
     def save(self, title: str) -> None:
         """Keep the present lines as a preset."""

@@ -66,10 +66,10 @@ class CoachMark(OverCard):
         self.setAccessibleName(f"{title}. {words}")
         self.adjustSize()
 
-    def point_at(self, target: QRect) -> None:
-        """Stand beside ``target``, a part of the parent, and put the ring round it."""
+    def point_at(self, target: QRect, room: QRect) -> None:
+        """Stand beside ``target``, a part of the parent, within ``room``, and put the ring round it."""
         self.adjustSize()
-        self.move(_beside(target, self.rect(), self._window.rect()))
+        self.move(_beside(target, self.rect(), room))
         self.ring.surround(target)
         for each in (self.ring, self):
             each.show()
@@ -127,12 +127,12 @@ def _beside(target: QRect, card: QRect, room: QRect) -> QPoint:
     across, down = target.center().x() - card.width() // 2, target.center().y() - card.height() // 2
     places = (
         (room.right() - target.right() - card.width(), QPoint(target.right() + _AWAY, down)),
-        (target.left() - card.width(), QPoint(target.left() - card.width() - _AWAY, down)),
-        (target.top() - card.height(), QPoint(across, target.top() - card.height() - _AWAY)),
+        (target.left() - room.left() - card.width(), QPoint(target.left() - card.width() - _AWAY, down)),
+        (target.top() - room.top() - card.height(), QPoint(across, target.top() - card.height() - _AWAY)),
         (room.bottom() - target.bottom() - card.height(), QPoint(across, target.bottom() + _AWAY)),
     )
     _, place = max(places, key=lambda each: min(each[0], _AWAY + 1))
     return QPoint(
-        max(0, min(place.x(), room.width() - card.width())),
-        max(0, min(place.y(), room.height() - card.height())),
+        max(room.left(), min(place.x(), room.right() + 1 - card.width())),
+        max(room.top(), min(place.y(), room.bottom() + 1 - card.height())),
     )

@@ -102,7 +102,13 @@ def _groups() -> tuple[tuple[str, tuple[Setting, ...]], ...]:
             tr("Safety"),
             (
                 Amount(
-                    "autosave", tr("Autosave"), every.format(least=AUTOSAVE[0], most=AUTOSAVE[1]), "s", 1.0, 0
+                    "autosave",
+                    tr("Autosave"),
+                    every.format(least=AUTOSAVE[0], most=AUTOSAVE[1]),
+                    "s",
+                    1.0,
+                    0,
+                    (float(AUTOSAVE[0]), float(AUTOSAVE[1])),
                 ),
             ),
         ),

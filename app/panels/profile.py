@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QHBoxLayout, QSlider, QStyle, QStyleOptionSlider, 
 from app.dress.parts import FloatingPanel, ToolButton
 from app.dress.spoken import speak_value
 from app.dress.theme import font, label, tokens_of
+from app.dress.wishes import wish, wish_for
 from app.panels.figure_field import FigureField
 from app.showing.live_plot import PullTitle, Quantity
 from app.showing.profile_plot import Drawn, ProfilePlot
@@ -65,7 +66,7 @@ class ProfilePanel(FloatingPanel):
         self.readout.setWordWrap(True)
         column.addWidget(self.readout)
         self.row.addLayout(column)
-        self.set_folded(False)
+        self.set_folded(wish("section_folded") == "yes")
         self._fit(WIDE)
         if parent is not None:
             parent.installEventFilter(self)
@@ -126,7 +127,7 @@ class ProfilePanel(FloatingPanel):
         self.export = menu.addAction(tr("Export the curves as CSV…"))
         self.export.triggered.connect(self.export_asked)
         self.fold = ToolButton("caret-down", size=14, room=24)
-        self.fold.clicked.connect(lambda: self.set_folded(not self.is_folded))
+        self.fold.clicked.connect(self._turn_fold)
         close = ToolButton("x", tr("Close the section  P"), size=14, room=24)
         close.clicked.connect(self.closed)
         head.addWidget(self.title)
@@ -134,6 +135,10 @@ class ProfilePanel(FloatingPanel):
         head.addWidget(self.fold)
         head.addWidget(close)
         return head
+
+    def _turn_fold(self) -> None:
+        self.set_folded(not self.is_folded)
+        wish_for("section_folded", "yes" if self.is_folded else "no")
 
     def show_plane(self, axis: str, at: float, low: float, high: float) -> None:
         """Show which plane it is, where [mm], and how far it can go; nothing is emitted."""

@@ -3,18 +3,18 @@
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
 
-import unicodedata
 from typing import Any
 
 from PySide6.QtCore import QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QAction, QActionGroup, QColor, QKeyEvent, QPainter, QPaintEvent
-from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QMenu, QPushButton, QSizePolicy, QWidget
+from PySide6.QtGui import QAction, QActionGroup, QPainter, QPaintEvent
+from PySide6.QtWidgets import QHBoxLayout, QMenu, QPushButton, QSizePolicy, QWidget
 
 from app.dress.icons import paint_icon
 from app.dress.parts import Segment
 from app.dress.theme import font, tokens_of
+from app.panels.typed_field import TypedField, read_figure
 from app.wording.model_choices import Amount, Choice, Setting
-from app.wording.words import number
+from app.wording.words import number, tr
 
 
 class Field(QWidget):
@@ -112,60 +112,65 @@ class AmountField(Field):
 
     def __init__(self, amount: Amount) -> None:
         super().__init__()
-        self._amount = amount
-        self._value: float | None = None
-        self.edit = _NumberEdit(amount.unit)
-        self.edit.editingFinished.connect(self._enter)
-        self.edit.given_up.connect(lambda: self.show_value(self._value))
+        self.edit = AmountEdit(amount)
+        self.edit.entered.connect(self.chosen)
         self.hold(self.edit)
 
+    def describe(self, title: str, tip: str) -> None:
+        self.edit.tip = tip
+        super().describe(title, tip)
+
     def show_value(self, value: Any) -> None:
-        self._value = value
-        shown = "" if value is None else number(self._amount.scale * value, self._amount.digits)
-        self.edit.setText(shown.replace(",", ""))
-        self.edit.setModified(False)
-
-    def _enter(self) -> None:
-        if not self.edit.isModified():
-            return
-        self.edit.setModified(False)
-        text = unicodedata.normalize("NFKC", self.edit.text()).replace(",", ".").strip("%× ")
-        try:
-            value = float(text) / self._amount.scale if text or self._amount.key != "gain" else None
-        except ValueError:
-            value = self._value
-        shown = self._value
-        self.show_value(shown)
-        if value != shown:
-            self.chosen.emit(value)
+        self.edit.show_value(value)
 
 
-class _NumberEdit(QLineEdit):
-    """A number that reads as text with its unit; ``given_up`` at Esc."""
+class AmountEdit(TypedField):
+    """The number itself; ``entered`` carries another one that was typed, or None for none."""
 
-    given_up = Signal()
+    entered = Signal(object)
 
-    def __init__(self, unit: str) -> None:
-        super().__init__()
-        self._unit = unit
+    def __init__(self, amount: Amount) -> None:
+        super().__init__(amount.unit)
+        self.tip = ""
+        self._amount = amount
+        self._value: float | None = None
         self.setFont(font("body", tabular=True))
         self.setAlignment(_RIGHT)
-        room = self.fontMetrics().horizontalAdvance(unit) + 6 if unit else 0
+        room = self.fontMetrics().horizontalAdvance(amount.unit) + 6 if amount.unit else 0
         self.setTextMargins(0, 0, room, 0)
         self.setFixedSize(QSize(86, 26))
 
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        if event.key() == Qt.Key.Key_Escape:
-            self.given_up.emit()
-        else:
-            super().keyPressEvent(event)
+    def show_value(self, value: float | None) -> None:
+        """Show a value, whatever is being typed."""
+        self._value = value
+        self._show()
 
-    def paintEvent(self, event: QPaintEvent) -> None:
-        super().paintEvent(event)
-        painter = QPainter(self)
-        painter.setFont(font("caption"))
-        painter.setPen(QColor(tokens_of(self).text_caption))
-        painter.drawText(self.rect().adjusted(0, 1, -8, 0), _RIGHT, self._unit)
+    def _words(self) -> str:
+        return "" if self._value is None else self._plain(self._value)
+
+    def _read(self, text: str) -> float | None:
+        if not text.strip() and self._amount.key == "gain":
+            return None
+        figure, (low, high) = read_figure(text), self._amount.limits
+        if figure is None:
+            raise ValueError(tr("“{text}” is no number.").format(text=text))
+        if not low <= figure / self._amount.scale <= high:
+            said = tr("It goes from {low} to {high}{unit}.")
+            unit = f" {self._amount.unit}" if self._amount.unit else ""
+            raise ValueError(said.format(low=self._plain(low), high=self._plain(high), unit=unit))
+        return figure / self._amount.scale
+
+    def _take(self, value: float | None) -> None:
+        # What is shown follows once it is taken: a choice may ask for more, or be refused.
+        if value != self._value:
+            self.entered.emit(value)
+
+    def _refuse(self, why: str) -> None:
+        super()._refuse(why)
+        self.setAccessibleDescription(why or self.tip)
+
+    def _plain(self, value: float) -> str:
+        return number(self._amount.scale * value, self._amount.digits).replace(",", "")
 
 
 def field_of(setting: Setting) -> Field:

@@ -35,6 +35,7 @@ def fine_picture(panes: Panes, finer: float) -> QImage:
     handles = [handle for handle in panes.findChildren(PlaneHandle) if not handle.isHidden()]
     sheets: list[_Sheet] = []
     try:
+        panes.handle.set_bare(True)
         for handle in handles:
             handle.hide()
         for viewport in panes.viewports:
@@ -43,6 +44,7 @@ def fine_picture(panes: Panes, finer: float) -> QImage:
     finally:
         for sheet in sheets:
             sheet.take_away()
+        panes.handle.set_bare(False)
         for handle in handles:
             handle.show()
     return image

@@ -43,11 +43,17 @@ class WipeHandle(QAbstractSlider):
         self.setToolTip(tr("Drag, or use the arrow keys. A double click puts it in the middle."))
         self._room = parent
         self._grip = 0.0
+        self._bare = False
         self.valueChanged.connect(lambda _: self._speak())
         self._speak()
 
     def _speak(self) -> None:
         speak_value(self, f"{100.0 * self.share():.0f} %")
+
+    def set_bare(self, bare: bool) -> None:
+        """Leave the knob out, which is for the hand, or draw it again; the line stays."""
+        self._bare = bare
+        self.update()
 
     def share(self) -> float:
         """Return where the line is: 0 at the left edge of the view, 1 at the right one."""
@@ -86,6 +92,8 @@ class WipeHandle(QAbstractSlider):
         middle = self.width() / 2.0
         painter.fillRect(QRectF(middle - 2.0, 0.0, 4.0, self.height()), QColor(0, 0, 0, 40))
         painter.fillRect(QRectF(middle - 1.0, 0.0, 2.0, self.height()), QColor("#FFFFFF"))
+        if self._bare:
+            return
         knob = QRectF(0.0, 0.0, *_KNOB)
         knob.moveCenter(QPointF(middle, self.height() / 2.0))
         lively = self.hasFocus() or self.isSliderDown()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
@@ -30,7 +31,10 @@ class Choice:
 
 @dataclass(frozen=True)
 class Amount:
-    """A field ``key`` of the design that is a number, shown ``scale`` times as large with its ``unit``."""
+    """A field ``key`` of the design that is a number, shown ``scale`` times as large with its ``unit``.
+
+    ``limits`` are the least and the largest number; without them any can be typed.
+    """
 
     key: str
     title: str
@@ -38,6 +42,7 @@ class Amount:
     unit: str
     scale: float
     digits: int
+    limits: tuple[float, float] = (-math.inf, math.inf)
 
     def words(self, value: float | None) -> str:
         """Return a value as it is written."""
@@ -110,12 +115,14 @@ def _hold() -> Choice:
 def _stiffness() -> Amount:
     low, high = RANGES["line_stiffness"]
     tip = tr("How stiff lines are against the body, from {low} to {high}; the paper gives no number.")
-    return Amount("line_stiffness", tr("Stiffness"), tip.format(low=low, high=number(high, 0)), "×", 1.0, 1)
+    return Amount(
+        "line_stiffness", tr("Stiffness"), tip.format(low=low, high=number(high, 0)), "×", 1.0, 1, (low, high)
+    )
 
 
 def _height() -> Amount:
     tip = tr("Where the mid-bust line runs between fold (0 %) and bust point (100 %), from 25 to 75 %.")
-    return Amount("line_height", tr("Height of the mid-bust line"), tip, "%", 100.0, 0)
+    return Amount("line_height", tr("Height of the mid-bust line"), tip, "%", 100.0, 0, (0.25, 0.75))
 
 
 def _force() -> Choice:
@@ -152,7 +159,7 @@ def _prestress() -> Amount:
     tip = tr(
         "How far springs under tension are stretched at rest, from 10 to 100 %; the paper gives no number."
     )
-    return Amount("prestress", tr("Tension of the springs"), tip, "%", 100.0, 0)
+    return Amount("prestress", tr("Tension of the springs"), tip, "%", 100.0, 0, RANGES["prestress"])
 
 
 def _weights() -> Choice:
@@ -215,4 +222,4 @@ def _gain() -> Amount:
         "How strongly the conventional force answers a volume error, from 0 to 10. Leave it empty for 97 "
         "% of the limit from which on it vibrates."
     )
-    return Amount("gain", tr("Conventional gain"), tip, "", 1.0, 2)
+    return Amount("gain", tr("Conventional gain"), tip, "", 1.0, 2, (0.0, 10.0))
