@@ -8,6 +8,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
+from app.panels.figure_field import FigureField
 from app.panels.line_parts import StiffnessField
 from app.panels.number_field import NumberField
 from app.panels.typed_field import Refusal
@@ -77,6 +78,22 @@ def test_a_refusal_says_under_the_field_what_can_be_typed_and_goes_with_the_next
 def test_a_stiffness_that_cannot_be_names_its_range(text: str) -> None:
     with pytest.raises(ValueError, match="A stiffness goes from"):
         StiffnessField()._read(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "mm"), [("-3cm", -30.0), ("12", 12.0), ("12 mm", 12.0), ("−1.5in", -38.1), ("1,5 cm", 15.0)]
+)
+def test_a_field_of_millimetres_takes_other_units_of_length(qtbot: QtBot, text: str, mm: float) -> None:
+    field, heard = FigureField("mm", "Place", widest="−888.8"), []
+    qtbot.addWidget(field)
+    field.entered.connect(heard.append)
+    for typed in (text, "3 kg"):
+        field.selectAll()
+        field.insert(typed)
+        field.setModified(True)
+        qtbot.keyClick(field, Qt.Key.Key_Return)
+    assert heard == [pytest.approx(mm)], "kilograms are refused"
+    assert "3 kg" in field.accessibleDescription()
 
 
 def test_fields_of_several_lines_are_told_apart_by_ear() -> None:

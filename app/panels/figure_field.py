@@ -3,15 +3,23 @@
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
 
+import unicodedata
+
 from PySide6.QtCore import QSize, Qt, Signal
 
 from app.dress.theme import font
 from app.panels.typed_field import TypedField, read_figure
 from app.wording.words import number, tr
 
+_LENGTHS = {"": 1.0, "mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, '"': 25.4}
+"""Units that may be typed into a field of millimetres [mm]."""
+
 
 class FigureField(TypedField):
-    """Shows a value in ``unit`` with ``digits``; ``entered`` carries another one that was typed."""
+    """Shows a value in ``unit`` with ``digits``; ``entered`` carries another one that was typed.
+
+    Into a field of millimetres other units of length can be typed.
+    """
 
     entered = Signal(float)
 
@@ -50,10 +58,14 @@ class FigureField(TypedField):
         return number(self._value, self._digits, self._signed).replace(",", "")
 
     def _read(self, text: str) -> float:
-        value = read_figure(text)
-        if value is None:
+        value, factor = read_figure(text), 1.0
+        if self._unit == "mm":  # who types another unit means it
+            plain = unicodedata.normalize("NFKC", text).strip()
+            unit = plain.lstrip("+-\N{MINUS SIGN}0123456789., ").lower()
+            factor = _LENGTHS.get(unit, 0.0)
+        if value is None or not factor:
             raise ValueError(tr("“{text}” is no number.").format(text=text))
-        return value
+        return value * factor
 
     def _take(self, value: float) -> None:
         self._value = value
