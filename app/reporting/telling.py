@@ -18,6 +18,7 @@ from core.measuring.own import OWN
 from core.press_list import PressRow
 from core.sewing.comfort import comfort
 from core.sheet import SOUND, Sheet
+from core.sizes import built_in
 
 NOTHING = "\N{EN DASH}"
 """What stands in a table where nothing is known."""
@@ -70,8 +71,8 @@ def state_words(sheet: Sheet) -> tuple[str, str]:
 
 
 def other_sizes(sheet: Sheet) -> str:
-    """Return the size as it is written in each system, the chosen one first."""
-    said = (f"{_system(each)} {each['size'] or NOTHING}" for each in sheet.sizes)
+    """Return the size as each system writes it, the chosen one first; a star where others find another."""
+    said = (f"{_system(each)} {each['size'] or NOTHING}{'*' * bool(each['caution'])}" for each in sheet.sizes)
     # What belongs together is not parted at the end of a line, nor does a line begin with a dot.
     return "\N{NO-BREAK SPACE}· ".join(each.replace(" ", "\N{NO-BREAK SPACE}") for each in said)
 
@@ -85,6 +86,16 @@ def size_rule(sheet: Sheet) -> str:
     sisters = ", ".join(each["size"] for each in chosen["sisters"])
     more = tr("Sister sizes: {sizes}").format(sizes=sisters) if sisters else ""
     return _joined([f"{_system(chosen)}{_colon()}{rule}", more])
+
+
+def size_cautions(sheet: Sheet) -> str:
+    """Return where others find another size, in the words of the tables, or nothing."""
+    told: dict[str, list[str]] = {}
+    for each in sheet.sizes:
+        if each["caution"]:
+            told.setdefault(_caution(each), []).append(_system(each))
+    words = "; ".join(f"{_listed(systems)}{_colon()}{caution}" for caution, systems in told.items())
+    return tr("* Others find another size. {words}").format(words=words) if words else ""
 
 
 def cut_views(sheet: Sheet, order: Sequence[str]) -> tuple[list[CutView], list[str]]:
@@ -140,10 +151,8 @@ def note_groups(sheet: Sheet) -> Iterator[tuple[str, list[str]]]:
     """Give what is to be known of the figures: what to look at, how sure they are, what is left out."""
     if sheet.warnings:
         yield tr("To look at"), [say(each) for each in sheet.warnings]
-    yield (
-        tr("Measured"),
-        [tr("Before: on the scan. After: on the body as the model reshapes it."), size_rule(sheet)],
-    )
+    told = tr("Before: on the scan. After: on the body as the model reshapes it.")
+    yield tr("Measured"), [each for each in (told, size_rule(sheet), size_cautions(sheet)) if each]
     estimated = [*sheet.cuts.notes] if sheet.cuts.rows else []
     limits = _limits() if sheet.cuts.rows else []
     yield tr("Estimated"), [*map(say, estimated), *limits, *_unsure(sheet)]
@@ -234,6 +243,12 @@ def _unsure(sheet: Sheet) -> list[str]:
 def _system(size: dict[str, Any]) -> str:
     key = str(size["key"])
     return key.upper() if len(key) == 2 else str(size["system"])
+
+
+def _caution(size: dict[str, Any]) -> str:
+    """Return the caution of a size in the language of the sheet; its data speak English."""
+    known = next((table.caution for table in built_in() if table.key == size["key"]), None)
+    return known.told(language()) if known else str(size["caution"])
 
 
 def _place(line: str, order: Sequence[str]) -> int:
