@@ -199,13 +199,14 @@ def shape_warnings(shown: Shown) -> list[str]:
     if condition is None or state not in ("folded", "overstrained"):
         return []
     if state == "folded":
-        what = f"a triangle of the control mesh has turned by {condition.largest_turn:.0f} degrees"
+        turn = f"{condition.largest_turn:.0f}"
+        said = f"The shape is folded: a triangle of the control mesh has turned by {turn} degrees."
     else:
-        low, high = 100.0 * condition.shortest, 100.0 * condition.longest
-        what = f"edges of the control mesh have {low:.0f} to {high:.0f} % of their rest lengths"
+        low, high = f"{100.0 * condition.shortest:.0f}", f"{100.0 * condition.longest:.0f}"
+        said = f"The shape is overstrained: edges of the mesh have {low} to {high} % of their rest lengths."
     line = blamed_line(shown.stages)
     wish = f" Set {line.name} {'longer' if line.ratio < 1.0 else 'shorter'}." if line else ""
-    return [f"The shape is {state}: {what}. It does not tell how a body would look.{wish}"]
+    return [f"{said} It does not tell how a body would look.{wish}"]
 
 
 def blamed_line(stages: Stages) -> WornLine | None:
@@ -220,8 +221,9 @@ def still_lines(stages: Stages) -> list[str]:
     own = {line.name for line in stages.design.own_lines}
     still = [line.name for line in stages.model.lines if not line.constrains]
     return [
-        f"{name} lies on {'points that do not move' if name in own else 'the rib cage'}: "
-        "it is measured, and no length that is set moves it."
+        f"{name} lies on points that do not move: it is measured, and no length that is set moves it."
+        if name in own
+        else f"{name} lies on the rib cage: it is measured, and no length that is set moves it."
         for name in still
         if name in stages.design.worn()
     ]
