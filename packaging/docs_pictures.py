@@ -164,12 +164,6 @@ SHOTS: tuple[Shot, ...] = (
 )
 
 
-def shrink(path: Path) -> None:
-    """Keep 256 colours: the pictures travel with every clone."""
-    image = QImage(str(path))
-    image.convertToFormat(QImage.Format.Format_Indexed8).save(str(path), quality=0)
-
-
 def figures() -> None:
     """Draw the figures of the paper again, and write the page on them."""
     with TemporaryDirectory() as folder:
