@@ -20,7 +20,7 @@ from core.reading.raw_scan import RawScan
 from core.reading.scan_file import read_raw, scan_bytes
 from core.reading.surface import FEWEST_POINTS, is_cloud, surface_of
 from core.standing.body_size import MILLIMETRES
-from core.standing.upright import Pose, find_pose
+from core.standing.upright import STANDING, Pose, find_pose
 
 TORSO = 600.0
 """About how high the scan of a torso is [mm]."""
@@ -104,16 +104,16 @@ def body_of(
     vertices, faces, repairs = repair(scan.vertices, scan.faces, progress)
     if len(faces) == 0:
         raise ScanError(f"{name} has no sound triangles.", "Export the scan again.")
-    progress("finding up and front", 0.0)
+    progress(STANDING, 0.0)
     try:
-        pose = find_pose(vertices, faces, unit=unit, up=up, front=front)
+        pose = find_pose(vertices, faces, unit=unit, up=up, front=front, progress=progress)
     except ScanError as refusal:
         lies = as_it_lies(vertices, unit)
         mesh = Mesh(vertices @ lies.file_to_mm[:3, :3].T, faces)
         raise RefusedError(
             refusal, Body(mesh, lies, (*said, *repairs), scan_name(name), rebuilt)
         ) from refusal
-    progress("finding up and front", 1.0)
+    progress(STANDING, 1.0)
     turn = pose.file_to_mm[:3, :3]
     skin, cut = _off_the_stand(Skin(vertices @ turn.T, faces), pose.stand)
     mesh, mendings = mended(Mesh(skin.vertices, skin.faces), progress)

@@ -68,10 +68,11 @@ def test_the_tree_holds_the_vertices_of_the_body_alone(mannequin):
 def test_preparing_a_body_tells_how_far_it_is_and_can_be_stopped(ball):
     heard = []
     skin_of(Mesh(ball.vertices, ball.faces), lambda _, share: heard.append(share))
-    assert len(heard) > 4
+    assert len(heard) > 8
     assert heard == sorted(heard)
-    with pytest.raises(Cancelled):
-        skin_of(ball, _stop_after(2))
+    for times in range(8):
+        with pytest.raises(Cancelled):
+            skin_of(Mesh(ball.vertices, ball.faces), _stop_after(times))
 
 
 def test_thinning_a_giant_skin_tells_how_far_it_is_and_can_be_stopped(ball, monkeypatch):
@@ -83,6 +84,23 @@ def test_thinning_a_giant_skin_tells_how_far_it_is_and_can_be_stopped(ball, monk
     assert heard == sorted(heard)
     with pytest.raises(Cancelled):
         calm.calmed(rough, _stop_after(3))
+
+
+def test_each_long_step_of_understanding_a_scan_asks_whether_to_go_on(mannequin):
+    heard = []
+    read_scan(mannequin, progress=lambda what, share: heard.append((what, share)))
+    count = {what: sum(each == what for each, _ in heard) for what, _ in heard}
+    assert count["finding up and front"] >= 4
+    assert count["closing holes"] >= 2
+    heard.clear()
+    calm.calmed(read_scan(mannequin).mesh, lambda what, share: heard.append((what, share)))
+    assert len(heard) >= 6
+    assert [share for _, share in heard] == sorted(share for _, share in heard)
+
+
+def test_a_skin_without_plates_has_the_normals_of_the_body(ball):
+    normals = skin_of(ball).mesh.vertex_normals
+    assert normals is ball.vertex_normals
 
 
 def test_a_build_that_is_cancelled_stops_while_the_skin_is_calmed(mannequin, monkeypatch):

@@ -51,9 +51,9 @@ class Skin:
         return box_of(self.mesh.vertices)
 
 
-def split_plates(mesh: Mesh) -> Skin:
-    """Return ``mesh`` with the rims of its cut plates doubled."""
-    plate_face = plate_faces(mesh)
+def split_plates(mesh: Mesh, progress: Progress = quiet) -> Skin:
+    """Return ``mesh`` with the rims of its cut plates doubled. Raises Cancelled."""
+    plate_face = plate_faces(mesh, progress)
     count = len(mesh.vertices)
     on_plate, on_skin = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
     on_plate[mesh.faces[plate_face]] = True
@@ -67,15 +67,18 @@ def split_plates(mesh: Mesh) -> Skin:
     return Skin(Mesh(mesh.vertices[source], faces), source, plate)
 
 
-def plate_faces(mesh: Mesh) -> Flags:
-    """Return which faces belong to a flat area larger than ``PLATE_AREA``, shape (m,)."""
+def plate_faces(mesh: Mesh, progress: Progress = quiet) -> Flags:
+    """Return which faces belong to a flat area larger than ``PLATE_AREA``, shape (m,). Raises Cancelled."""
     count = len(mesh.faces)
     half = np.sort(mesh.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     key = half[:, 0] * len(mesh.vertices) + half[:, 1]
+    progress(PREPARING, 0.01)
     order = np.argsort(key, kind="stable")
+    progress(PREPARING, 0.04)
     twin = np.flatnonzero(np.diff(key[order]) == 0)
     a, b = order[twin] // 3, order[twin + 1] // 3
     flat = np.einsum("ij,ij->i", mesh.face_normals[a], mesh.face_normals[b]) > np.cos(np.radians(1.0))
+    progress(PREPARING, 0.07)
     links = sparse.coo_array((np.ones(int(flat.sum())), (a[flat], b[flat])), shape=(count, count))
     areas_number, label = connected_components(links, directed=False)
     facing = np.stack([np.bincount(label, column, areas_number) for column in mesh.area_vectors.T], axis=1)
@@ -96,11 +99,15 @@ def skin_of(mesh: Mesh, progress: Progress = quiet) -> Skin:
     progress(PREPARING, 0.0)
     skin = _KNOWN.get(mesh)
     if skin is None:
-        skin = _KNOWN[mesh] = split_plates(mesh)
+        skin = _KNOWN[mesh] = split_plates(mesh, progress)
+    progress(PREPARING, 0.1)
+    normals = mesh.vertex_normals
+    if len(skin.source) == len(normals):  # nothing is doubled: they are the same, which takes seconds to find
+        vars(skin.mesh)["vertex_normals"] = normals
     # They are kept where they belong once they were asked for.
-    kept: tuple[tuple[object, str], ...] = (skin, "normals"), (mesh, "vertex_normals")
-    kept += (mesh, "boundary_loops"), (skin, "tree"), (skin, "box")
+    kept: tuple[tuple[object, str], ...] = (skin, "normals"), (mesh, "boundary_loops")
+    kept += (skin, "tree"), (skin, "box")
     for done, (owner, what) in enumerate(kept, 1):
-        progress(PREPARING, done / (len(kept) + 1))
+        progress(PREPARING, 0.1 + 0.9 * done / (len(kept) + 1))
         getattr(owner, what)
     return skin

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 from scipy import sparse
 
@@ -35,6 +38,10 @@ EDGE = 4.5
 """Edge for which the rounds of smoothing are given [mm]."""
 
 
+def _go_on() -> None:
+    """Nobody asks for an end."""
+
+
 def calmed(mesh: Mesh, progress: Progress = quiet) -> Mesh:
     """Return ``mesh`` without the noise of the scanner; one without noise and of usual size stays as it is.
 
@@ -44,8 +51,7 @@ def calmed(mesh: Mesh, progress: Progress = quiet) -> Mesh:
     if len(mesh.faces) > GIANT:
         # noise as large as the triangles would fold the thinned skin
         smooth = _smoothed(mesh, 0.05 * _edge(mesh), 10, progress)
-        progress(CALMING, 0.6)
-        mesh = thinned(smooth, CELL)
+        mesh = thinned(smooth, CELL, partial(progress, CALMING, 0.6))
     return _smoothed(mesh, NOISELESS, 40, progress, 0.8)
 
 
@@ -54,10 +60,8 @@ def _smoothed(mesh: Mesh, noiseless: float, most: int, progress: Progress, begun
 
     ``begun`` is the share of the work that was done before.
     """
-    progress(CALMING, begun)
-    mean, vertices = _mean_of_neighbours(mesh), mesh.vertices
-    progress(CALMING, begun + 0.05)
-    noise = _noise(mesh, mean)
+    mean, vertices = _mean_of_neighbours(mesh, partial(progress, CALMING, begun)), mesh.vertices
+    noise = _noise(mesh, mean, partial(progress, CALMING, begun + 0.05))
     if noise < noiseless:
         return mesh
     rounds = int(np.clip(8.0 * noise * (EDGE / _edge(mesh)) ** 2, 1, most))
@@ -77,31 +81,39 @@ def noise_of(mesh: Mesh) -> float:
     return _noise(mesh, _mean_of_neighbours(mesh))
 
 
-def _noise(mesh: Mesh, mean: sparse.csr_array) -> float:
+def _noise(mesh: Mesh, mean: sparse.csr_array, ask: Callable[[], None] = _go_on) -> float:
+    ask()
     if len(mesh.faces) == 0:
         return 0.0
     bend = mean @ mesh.vertices - mesh.vertices
-    height = np.einsum("ij,ij->i", mean @ bend - bend, mesh.vertex_normals)
+    ask()
+    normals = mesh.vertex_normals
+    ask()
+    height = np.einsum("ij,ij->i", mean @ bend - bend, normals)
     raw = 1.48 * float(np.median(np.abs(height))) / WHITE
     return float(np.sqrt(max(raw**2 - (SHAPE * _edge(mesh) ** 2) ** 2, 0.0)))
 
 
-def thinned(mesh: Mesh, cell: float) -> Mesh:
+def thinned(mesh: Mesh, cell: float, ask: Callable[[], None] = _go_on) -> Mesh:
     """Return ``mesh`` with the vertices in each cell of edge ``cell`` [mm] averaged to one.
 
     Vertices that look different ways stay apart, so that sheets lying on each other do not grow together.
-    Source: after Rossignac and Borrel 1993.
+    ``ask`` is called between its steps, and may raise Cancelled. Source: after Rossignac and Borrel 1993.
     """
+    ask()
     place = np.floor((mesh.vertices - mesh.vertices.min(axis=0)) / cell).astype(np.int64)
     key = (place[:, 0] << 20 | place[:, 1]) << 20 | place[:, 2]
     member, count = _numbered(key)
+    ask()
     normals = mesh.vertex_normals
+    ask()
     one = np.empty(len(count), dtype=np.int64)
     one[member] = np.arange(len(member))  # any vertex of the cell
     against = np.einsum("ij,ij->i", normals, normals[one[member]]) < 0.0
     share = np.bincount(member, against) / count
     sheets = (share >= OTHER_SHEET) & (share <= 1.0 - OTHER_SHEET)
     member, count = _numbered(2 * member + (against & sheets[member]))
+    ask()
     vertices = np.stack([np.bincount(member, mesh.vertices[:, k]) for k in range(3)], axis=1) / count[:, None]
     faces = member[mesh.faces]
     faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
@@ -133,10 +145,16 @@ def _edge(mesh: Mesh) -> float:
     return max(float(np.median(np.sqrt(np.einsum("ij,ij->i", sides, sides)))), 1e-9)
 
 
-def _mean_of_neighbours(mesh: Mesh) -> sparse.csr_array:
-    """Return the matrix that averages the neighbours of each vertex, shape (n, n)."""
+def _mean_of_neighbours(mesh: Mesh, ask: Callable[[], None] = _go_on) -> sparse.csr_array:
+    """Return the matrix that averages the neighbours of each vertex, shape (n, n).
+
+    ``ask`` is called between its steps, and may raise Cancelled.
+    """
+    ask()
     corner, count = mesh.faces, len(mesh.vertices)
     pairs = (corner.ravel(), corner[:, [1, 2, 0]].ravel())
     around = sparse.csr_array((np.ones(corner.size), pairs), shape=(count, count))
+    ask()
     around = around + around.T
+    ask()
     return sparse.csr_array(sparse.diags_array(1.0 / np.maximum(around.sum(axis=0), 1.0)) @ around)

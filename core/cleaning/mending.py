@@ -27,6 +27,7 @@ CRACK = 30.0
 def mended(mesh: Mesh, progress: Progress = quiet) -> tuple[Mesh, tuple[str, ...]]:
     """Return an upright ``mesh`` [mm] mended, and a sentence a repair and an open hole. Raises Cancelled."""
     mesh, sewn, closed = mend(mesh, progress)
+    progress("closing holes", 1.0)
     sentences = []
     if sewn:
         sentences.append(f"Joined {counted(sewn, 'vertex')} along seams between parts of the scan.")
@@ -41,6 +42,7 @@ def mend(mesh: Mesh, progress: Progress = quiet) -> tuple[Mesh, int, int]:
     Old vertices keep their order, those sewn to another are gone; new ones come last. A closed hole follows
     the curvature of the skin round it. Source: ours.
     """
+    progress("closing holes", 0.0)
     skin = Skin(mesh.vertices, mesh.faces)
     start, end = skin.sides.ends(skin.sides.border)
     if len(start) == 0:

@@ -8,6 +8,7 @@ import numpy as np
 
 from core.errors import ScanError
 from core.mesh import Faces, Floats, Points, frozen, unit
+from core.progress import Progress, quiet
 from core.sections import hull_perimeter
 from core.standing.body_size import MILLIMETRES, find_unit
 from core.standing.refusal import LEAST, refuse_unlike
@@ -64,6 +65,9 @@ class Pose:
 
 __all__ = ["AXES", "MILLIMETRES", "Pose", "find_pose"]
 
+STANDING = "finding up and front"
+"""What is said to be at work."""
+
 
 def find_pose(
     vertices: Points,
@@ -72,12 +76,13 @@ def find_pose(
     unit: str | None = None,
     up: str | None = None,
     front: str | None = None,
+    progress: Progress = quiet,
 ) -> Pose:
     """Find how the body stands in its file, from its shape alone.
 
     ``vertices``, shape (n, 3) [file units], and ``faces``, shape (m, 3), without specks. ``unit``, ``up`` and
     ``front`` overrule the shape: they are "+x" .. "-z", the nearest axis, or numbers "x,y,z", exactly so.
-    Raises ScanError if this is no upper body. Source: ours.
+    Raises ScanError if this is no upper body, Cancelled. Source: ours.
     """
     unit = unit and unit.strip().lower()
     if unit is not None and unit not in MILLIMETRES:
@@ -87,7 +92,9 @@ def find_pose(
     told_up, told_front = read_directions(up, front)
     told = told_up is not None and told_front is not None
     cloud = even_cloud(vertices, faces)
+    progress(STANDING, 0.3)
     readings = _readings(cloud, told_up, told_front)
+    progress(STANDING, 0.9)
     if told_up and told_front and readings[0].evidence < LEAST:  # against the shape: then to the letter
         readings = _readings(cloud, Told(told_up.direction, exact=True), told_front)
     if not told:
