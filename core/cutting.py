@@ -16,6 +16,11 @@ from core.solving.newtons import newtons_per_unit
 UNEVEN = 0.1
 """A tension that differs by more than this along a line is told [1]."""
 
+FRONT_ONLY = (
+    "Front part only, up to the edge of the control mesh: what goes on over shoulder or back is not in it."
+)
+"""What is said of a line that ends where the control mesh does."""
+
 
 @dataclass(frozen=True)
 class CutRow:
@@ -24,7 +29,8 @@ class CutRow:
     ``reached_front_mm`` is the front part as it is worn, ``reached_whole_mm`` the whole closed band, or the
     same for an open line. ``cut_mm`` = whole / (1 + ``elongation``) + ``allowance_mm``. None stands for what
     is not known, an empty ``elastic`` for a line that is made of nothing in particular. ``notes`` are
-    sentences.
+    sentences. ``front_only`` tells of an open line that ends where the control mesh does, as straps do: its
+    lengths are those of the part that is modelled, and no whole piece can be cut to them.
     """
 
     line: str
@@ -40,6 +46,7 @@ class CutRow:
     cut_mm: float | None = None
     estimate: bool = True
     notes: tuple[str, ...] = ()
+    front_only: bool = False
 
 
 @dataclass(frozen=True)
@@ -84,15 +91,27 @@ def _row(stages: Stages, line: Line, reached: float, tensions: Mapping[str, Line
         reached,
         reached + line.back_length,
     )
+    if _goes_on(stages, line):
+        row = replace(row, front_only=True, notes=(FRONT_ONLY,))
     tension = tensions.get(line.name)
     if tension is not None:
-        row = replace(row, tension_n=tension.mean, notes=_uneven(tension))
+        row = replace(row, tension_n=tension.mean, notes=(*row.notes, *_uneven(tension)))
     if elastic is None:
         return _noted(row, "No elastic is chosen for it: choose one to get its length to cut.")
     if design.line_hold == "held":
         return _held(row, elastic)
     elongation = reached / (design.ratio(line.name) * line.rest_length) - 1.0
     return _stretched(row, elastic, elongation, elastic.force(elongation))
+
+
+def _goes_on(stages: Stages, line: Line) -> bool:
+    """Return whether an open line has an end where nothing moves any more, and no band to be sewn to."""
+    first, last = int(line.path[0]), int(line.path[-1])
+    if line.back_length > 0.0 or first == last:
+        return False
+    control = stages.control
+    inside = {point for each in stages.model.lines if each.back_length > 0.0 for point in each.path[1:-1]}
+    return any(bool(control.fixed[end]) and end not in inside for end in (first, last))
 
 
 def _held(row: CutRow, elastic: Elastic) -> CutRow:

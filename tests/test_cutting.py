@@ -10,16 +10,18 @@ import numpy as np
 import pytest
 
 from app.cli import main
-from core.cutting import cut_list
+from core.cutting import FRONT_ONLY, cut_list
 from core.design_elastics import Elastic
 from core.design_lines import LineTraits, OwnLine, WornLine
 from core.elastics import find_elastic, write_elastic
 from core.exact import solve_exact
+from core.own_lines import ready_made
 from core.pipeline import build, targets_of
 from core.sewing.tensions import line_tensions
 from core.solution import run
 from core.solver import Targets, iterate
 from core.solving.newtons import newtons_per_unit
+from core.template import read_template
 
 EDGE = Elastic("edge", 10.0, ((0.0, 0.0), (0.2, 0.8), (0.5, 1.8), (1.0, 4.0)), 15.0)
 HOOKE = Elastic("straight", 10.0, ((0.0, 0.0), (1.0, 6.0)), 20.0, "by hand", estimate=False)
@@ -142,9 +144,22 @@ def test_an_open_line_is_its_own_whole_and_a_ring_is_closed(built):
     stages = stages_of(stages, [("arc", 0.8)], [("arc", EDGE)])
     _, rows, _, _ = listed(stages)
     row = rows["arc"]
-    assert not row.closed
+    assert not (row.closed or row.front_only)
     assert row.reached_whole_mm == row.reached_front_mm
     assert row.cut_mm == pytest.approx(0.8 * line_of(stages, "arc").rest_length + 15.0, rel=1e-12)
+
+
+def test_a_piece_that_goes_on_beyond_the_control_mesh_is_told_from_a_whole_one(built):
+    stages = built("mannequin")
+    template = read_template("168")
+    ready = ready_made(template)
+    upright = OwnLine("upright", tuple(template.point(row, 3) for row in range(1, 4)))  # from the under-bust
+    own = (*ready["straps"], *ready["rings"], upright)
+    worn = [(line.name, 0.98) for line in own]
+    stages = stages_of(stages, [("mid-bust", 0.97), *worn], [("strap left", EDGE)], own_lines=own)
+    _, rows, _, _ = listed(stages)
+    assert {name for name, row in rows.items() if row.front_only} == {"strap left", "strap right"}
+    assert {name for name, row in rows.items() if FRONT_ONLY in row.notes} == {"strap left", "strap right"}
 
 
 def test_a_slack_elastic_is_listed_as_slack(built):

@@ -91,6 +91,7 @@ class GarmentRow(QFrame):
         self.title.setText(view.title)
         set_tip(self.title, view.title)
         self.cut.setText(view.cut or NOTHING)
+        self.cut.setFont(font("body" if view.front_only else "heading", tabular=True))
         self.tension.setText(view.tension or NOTHING)
         self.stretch.setText(view.stretch)
         self.stretch.setVisible(view.stretch_percent is None)
@@ -169,7 +170,7 @@ class _StretchField(FigureField):
 def spoken(view: CutView) -> str:
     """Return a piece for ears."""
     figures = (
-        (view.cut, tr("cut {value} mm")),
+        (view.cut, tr("front part {value} mm") if view.front_only else tr("cut {value} mm")),
         (view.stretch, tr("stretched by {value}")),
         (view.tension, "{value} N"),
     )

@@ -26,6 +26,7 @@ class CutView:
 
     ``elastic`` is what it is called here, empty for none. What is not known is an empty text; ``notes`` are
     sentences that say why, or what to look at. ``stretch_percent`` is a number where the designer sets it.
+    The lengths of one that is ``front_only`` are no whole piece.
     """
 
     line: str
@@ -38,6 +39,7 @@ class CutView:
     tension: str = ""
     notes: tuple[str, ...] = ()
     stretch_percent: float | None = None
+    front_only: bool = False
 
 
 @dataclass(frozen=True)

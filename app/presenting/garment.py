@@ -76,6 +76,7 @@ def _view(row: CutRow, design: Design, color: str, still: bool) -> CutView:
         "" if row.tension_n is None else number(row.tension_n, 1),
         tuple(told(note, design) for note in row.notes if row.elastic),
         100.0 * row.elongation if set_here and row.elongation is not None else None,
+        row.front_only,
     )
 
 
