@@ -144,7 +144,7 @@ def test_an_open_line_is_its_own_whole_and_a_ring_is_closed(built):
     stages = stages_of(stages, [("arc", 0.8)], [("arc", EDGE)])
     _, rows, _, _ = listed(stages)
     row = rows["arc"]
-    assert not (row.closed or row.front_only)
+    assert (row.closed, row.front_only) == (False, False)
     assert row.reached_whole_mm == row.reached_front_mm
     assert row.cut_mm == pytest.approx(0.8 * line_of(stages, "arc").rest_length + 15.0, rel=1e-12)
 
