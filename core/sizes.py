@@ -15,7 +15,7 @@ import platformdirs
 
 from core.errors import SizeError
 from core.sizing.rule import allowance_sentence, band_sentences, cup_sentences
-from core.sizing.table import Scale, SizeTable, Words
+from core.sizing.table import BAND, Scale, SizeTable, Words
 from core.sizing.table_file import read_table, table_of
 
 ALLOWANCE = (0.0, 20.0)
@@ -27,10 +27,11 @@ _LONGEST = 5000.0  # mm; no girth of a body is longer
 
 @dataclass(frozen=True)
 class Neighbour:
-    """The next band or cup: its ``name``, the ``label`` of that size with all else as it is.
+    """The next band or cup: its ``name``, and the ``label`` of the size beyond that border.
 
     ``part`` is "band" or "cup", ``up`` whether it is the larger one. ``missing_mm`` is how far the border is:
-    what the under-bust girth would have to change for a band, the difference of the girths for a cup.
+    what the under-bust girth would have to change for a band, the bust girth for a cup, the other one kept.
+    So a larger band often comes with a smaller cup. The label is empty where no cup is that small or large.
     """
 
     part: str
@@ -102,7 +103,7 @@ def size(table: SizeTable, underbust_mm: float, bust_mm: float, allowance_mm: fl
         label=table.labelled(band, cup),
         band=band.name if band else "",
         cup=cup.name if cup else "",
-        neighbours=tuple(_neighbours(table, underbust, over)),
+        neighbours=tuple(_neighbours(table, underbust, bust)),
         sisters=tuple(_sisters(table, underbust, over)),
         rule=rule,
     )
@@ -190,12 +191,13 @@ def _check(underbust_mm: float, bust_mm: float, allowance_mm: float) -> None:
         )
 
 
-def _neighbours(table: SizeTable, underbust: float, over: float | None) -> Iterator[Neighbour]:
+def _neighbours(table: SizeTable, underbust: float, bust: float) -> Iterator[Neighbour]:
     """Yield the bands and cups next to a body: below and above, or the nearest if it lies outside."""
-    band = table.bands.step(table.bands.place(underbust))
-    cup = None if over is None else table.cups.step(table.cups.place(over))
+    band, over = table.bands.step(table.bands.place(underbust)), table.over(underbust, bust)
     for up, place, missing in _next(table.bands, underbust):
         step = table.bands.steps[place]
+        under = step.middle if table.cup_from == BAND else underbust + (missing if up else -missing)
+        cup = table.cups.step(table.cups.place(round(bust - under, 6)))
         yield Neighbour("band", up, step.name, table.labelled(step, cup), missing * table.unit_mm)
     if over is None:
         return

@@ -1,11 +1,13 @@
 """Tables of sizes as files: shipped ones are whole, own ones are read, broken ones say what is wrong."""
 
 import json
+import re
 from importlib import resources
 from pathlib import Path
 
 import pytest
 
+from app.wording.words import say, use_language
 from core.errors import SizeError
 from core.sizes import built_in, own_folder, own_tables, sizes
 from core.sizing.table_file import read_table, table_of
@@ -169,3 +171,18 @@ def test_the_page_tells_what_the_code_does(monkeypatch):
         assert f"<!-- {name} -->\n\n{text}\n\n<!-- end of {name} -->" in page, "run benchmarks/sizes_page.py"
     assert sizes(723.0, 871.0)["eu"].label == "70B"
     assert '`sizes(723, 871)["eu"].label` is `70B`' in page
+
+
+def test_every_rule_is_said_in_japanese_too():
+    rules = {
+        s
+        for u in (450, 690, 676, 1500)
+        for d in (-60, 50, 113, 480)
+        for a in sizes(u, u + d, 3.0).values()
+        for s in a.rule
+    }
+    use_language("ja")
+    try:
+        assert [rule for rule in rules if re.search("[a-z]{3}", say(rule))] == []
+    finally:
+        use_language("en")
