@@ -91,7 +91,7 @@ def _row(stages: Stages, line: Line, reached: float, tensions: Mapping[str, Line
         reached,
         reached + line.back_length,
     )
-    if _goes_on(stages, line):
+    if goes_on(stages, line):
         row = replace(row, front_only=True, notes=(FRONT_ONLY,))
     tension = tensions.get(line.name)
     if tension is not None:
@@ -104,7 +104,7 @@ def _row(stages: Stages, line: Line, reached: float, tensions: Mapping[str, Line
     return _stretched(row, elastic, elongation, elastic.force(elongation))
 
 
-def _goes_on(stages: Stages, line: Line) -> bool:
+def goes_on(stages: Stages, line: Line) -> bool:
     """Return whether an open line has an end where nothing moves any more, and no band to be sewn to."""
     first, last = int(line.path[0]), int(line.path[-1])
     if line.back_length > 0.0 or first == last:

@@ -71,6 +71,7 @@ class PressList:
                 "amber_kpa": limits.amber_kpa,
                 "red_kpa": limits.red_kpa,
                 "lights": {name: words.en for name, words in limits.lights.items()},
+                "beyond": [{"from_kpa": kpa, "says": words.en} for kpa, words in limits.beyond],
                 "sources": [{"name": each.name, "says": each.words.en} for each in limits.sources],
                 "doubts": [each.en for each in limits.doubts],
             },

@@ -14,6 +14,7 @@ from types import MappingProxyType
 import numpy as np
 
 from core.centre_line import USUAL_WIDTH
+from core.cutting import goes_on
 from core.mesh import Flags, Floats, Points
 from core.pipeline import Stages
 from core.sewing.comfort import comfort
@@ -35,6 +36,12 @@ LEFT_OUT = (
     "The body stands and breathes evenly: sitting and breathing in can double the pressure.",
 )
 """What the figures leave out."""
+
+NOT_FOR_STRAPS = (
+    "The limits of the light are for soft parts round the trunk: "
+    "they were not set for what goes over shoulders."
+)
+"""What is said of a line that goes on beyond the control mesh, as straps do."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,4 +198,6 @@ def _told(stages: Stages, name: str, tension: LineTension) -> tuple[str, ...]:
         said.append("Its tension follows from the stiffness of tissue alone, an estimate.")
     if not stages.design.traits_of(name).width:
         said.append(f"It is taken to be {USUAL_WIDTH:g} mm wide: no width was told.")
+    if any(line.name == name and goes_on(stages, line) for line in stages.model.lines):
+        said.append(NOT_FOR_STRAPS)
     return tuple(said)

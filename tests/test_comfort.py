@@ -20,10 +20,20 @@ def test_the_light_goes_by_the_largest_pressure() -> None:
     assert band_pressure(band, 200.0).light == GREEN
 
 
+def test_a_pressure_is_not_called_near_to_what_it_is_far_above() -> None:
+    limits = comfort()
+    said = [limits.says(kpa).en.split(",")[0] for kpa in (0.5, 2.0, 4.0, 4.6, 4.7, 9.0, 9.2, 374.7)]
+    assert said[2:4] == ["Near the pressure that wearers complained of: let it be longer"] * 2
+    assert said[4:6] == ["Beyond the pressure that wearers complained of"] * 2
+    assert said[6:] == ["Far above all that was measured under garments"] * 2
+    assert len(set(said)) == 5
+
+
 def test_the_limits_are_told_with_sources_and_doubts_in_both_languages() -> None:
     limits = comfort()
     assert 0.0 < limits.amber_kpa < limits.red_kpa < 35.0 * 0.133322  # where wearers complained
-    texts = [*limits.lights.values(), *limits.doubts, *(source.words for source in limits.sources)]
+    beyond = [words for _, words in limits.beyond]
+    texts = [*limits.lights.values(), *beyond, *limits.doubts, *(source.words for source in limits.sources)]
     assert len(limits.sources) >= 4
     assert all(words.en.endswith(".") and words.ja.endswith("。") for words in texts)
     assert "estimate" in limits.doubts[0].en

@@ -17,6 +17,8 @@ from core.elastics import find_elastic, write_elastic
 from core.exact import solve_exact
 from core.own_lines import ready_made
 from core.pipeline import build, targets_of
+from core.press_list import press_list
+from core.pressure import NOT_FOR_STRAPS
 from core.sewing.tensions import line_tensions
 from core.solution import run
 from core.solver import Targets, iterate
@@ -157,8 +159,10 @@ def test_a_piece_that_goes_on_beyond_the_control_mesh_is_told_from_a_whole_one(b
     own = (*ready["straps"], *ready["rings"], upright)
     worn = [(line.name, 0.98) for line in own]
     stages = stages_of(stages, [("mid-bust", 0.97), *worn], [("strap left", EDGE)], own_lines=own)
-    _, rows, _, _ = listed(stages)
+    _, rows, points, _ = listed(stages)
     assert {name for name, row in rows.items() if row.front_only} == {"strap left", "strap right"}
+    pressed = {row.line for row in press_list(stages, points).rows if NOT_FOR_STRAPS in row.notes}
+    assert pressed == {"strap left", "strap right"}  # the light was not made for them
     assert {name for name, row in rows.items() if FRONT_ONLY in row.notes} == {"strap left", "strap right"}
 
 

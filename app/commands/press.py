@@ -65,10 +65,11 @@ def _limits() -> list[str]:
     amber, red = f"{limits.amber_kpa:g}", f"{limits.red_kpa:g}"
     begins = {GREEN: f"below {amber}", AMBER: f"from {amber}", RED: f"from {red}"}
     lights = [f"  {name}, {begins[name]} kPa: {words.en}" for name, words in limits.lights.items()]
+    beyond = [f"  from {kpa:g} kPa: {words.en}" for kpa, words in limits.beyond]
     doubts = [f"  {words.en}" for words in limits.doubts]
     sources = [f"  {each.name}: {each.words.en}" for each in limits.sources]
     heading = "The light goes by the largest pressure:"
-    return ["", heading, *lights, *doubts, "  Between these figures:", *sources]
+    return ["", heading, *lights, *beyond, *doubts, "  Between these figures:", *sources]
 
 
 def _figure(value: float | None, wide: int, digits: int) -> str:

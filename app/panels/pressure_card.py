@@ -134,7 +134,7 @@ class PressureScale(QWidget):
             painter.drawText(QRectF(zone.left(), 38, zone.width(), 16), centred, limits.words[place])
         painter.setPen(QColor(tokens.text_caption))
         for x, kpa in zip(ends[1:3], (limits.amber_kpa, limits.red_kpa), strict=True):
-            painter.drawText(QRectF(x - 20, 24, 40, 16), centred, number(kpa, 0))
+            painter.drawText(QRectF(x - 25, 24, 50, 16), centred, f"{number(kpa, 0)} kPa")
         painter.setOpacity(_FADED if self._faint else 1.0)
         for _, colour, kpa in self.marks:
             x = self.x_of(kpa)

@@ -11,7 +11,7 @@ from app.presenting.lines import line_colours, line_title, titled
 from app.wording.words import language, number, say, tr
 from core.design import Design
 from core.press_list import PressList, PressRow
-from core.pressure import LEFT_OUT, mmhg
+from core.pressure import LEFT_OUT, NOT_FOR_STRAPS, mmhg
 from core.sewing.comfort import AMBER, GREEN, RED, comfort
 
 
@@ -53,7 +53,7 @@ def _view(row: PressRow, design: Design, stale: bool) -> PressureView:
         return PressureView("", "", "", "\n".join(notes))
     light = "" if stale else row.light
     word = light_word(row.light) if light else ""
-    told = [*_figures(row), *notes, comfort().lights[row.light].told(language())]
+    told = [*_figures(row), *notes, comfort().says(row.max_kpa).told(language())]
     return PressureView(number(row.max_kpa), light, word, "\n".join(told), stale)
 
 
@@ -66,6 +66,11 @@ def pressed_view(view: LineView, listed: PressList | None) -> LineView:
     most = max(rows, key=lambda row: row.max_kpa or 0.0)
     words = f"{number(most.max_kpa or 0.0)} kPa · {light_word(most.light)}"
     return replace(view, pressed=words, tone=TONES[most.light])
+
+
+def _unmeant(row: PressRow) -> list[str]:
+    """Return that the limits were set for other bands, of a line of which that holds."""
+    return [say(note) for note in row.notes if note == NOT_FOR_STRAPS]
 
 
 def _figures(row: PressRow) -> list[str]:
@@ -127,7 +132,7 @@ def pressure_summary(listed: PressList | None, design: Design) -> PressureSummar
         light_word(most.light),
         place,
         f"{place_words(most)}\n{look}",
-        comfort().lights[most.light].told(language()),
+        " ".join([comfort().says(most.max_kpa).told(language()), *_unmeant(most)]),
         tr("All bands press with {force} N, whichever way").format(force=number(listed.force_n)),
         marks,
     )

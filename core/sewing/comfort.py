@@ -19,12 +19,14 @@ GREEN, AMBER, RED = "green", "amber", "red"
 class Comfort:
     """From which pressure [kPa] the light is amber and red, what each light says, and how sure that is.
 
+    ``beyond`` are pressures [kPa] above which more has to be said than the red light does, the lowest first.
     The limits are an estimate of ours between the figures of the ``sources``: guidance, nothing medical.
     """
 
     amber_kpa: float
     red_kpa: float
     lights: Mapping[str, Words]
+    beyond: tuple[tuple[float, Words], ...]
     sources: tuple[Source, ...]
     doubts: tuple[Words, ...]
 
@@ -32,15 +34,22 @@ class Comfort:
         """Return "green", "amber" or "red" for a pressure [kPa]."""
         return RED if kpa >= self.red_kpa else AMBER if kpa >= self.amber_kpa else GREEN
 
+    def says(self, kpa: float) -> Words:
+        """Return what is said of a pressure [kPa]."""
+        above = [words for limit, words in self.beyond if kpa >= limit]
+        return above[-1] if above else self.lights[self.light(kpa)]
+
 
 @cache
 def comfort() -> Comfort:
     """Return the limits that come with Busk."""
     values = json.loads((resources.files("resources") / "pressure.json").read_text(encoding="utf-8"))
     lights = {name: _words(values["lights"][name]) for name in (GREEN, AMBER, RED)}
+    beyond = tuple((each["from_kpa"], _words(each)) for each in values["beyond"])
     sources = tuple(Source(each["name"], _words(each)) for each in values["sources"])
     doubts = tuple(_words(each) for each in values["doubts"])
-    return Comfort(values["amber_kpa"], values["red_kpa"], MappingProxyType(lights), sources, doubts)
+    amber, red = values["amber_kpa"], values["red_kpa"]
+    return Comfort(amber, red, MappingProxyType(lights), beyond, sources, doubts)
 
 
 def _words(values: Mapping[str, Any]) -> Words:
