@@ -94,6 +94,8 @@ class ReportDesk(QObject):
             return
         said = tr("Customer {name}").format(name=customer) if customer else tr("No customer")
         self._window.session.change({"customer": customer}, said)
+        if self.handout is not None:
+            self._take(self.handout)  # at once: it may be given away with the next word
 
     def _speak(self, code: str) -> None:
         self._language = code
@@ -108,7 +110,7 @@ class ReportDesk(QObject):
             return
         if self._is_of(frame):
             if self.handout is not None:
-                self._take(replace(self.handout, sheet=replace(self.handout.sheet, heading=self._heading())))
+                self._take(self.handout)
             return
         if self._asked is not None and _alike(self._asked, frame):
             return
@@ -159,7 +161,10 @@ class ReportDesk(QObject):
         self._show()
 
     def _take(self, handout: Handout) -> None:
-        self.handout = handout
+        """Show a sheet under its present heading; its sizes are those that it was made with."""
+        made = handout.sheet.heading
+        heading = replace(self._heading(), system=made.system, allowance_mm=made.allowance_mm)
+        self.handout = replace(handout, sheet=replace(handout.sheet, heading=heading))
         self._show()
 
     def _show(self) -> None:

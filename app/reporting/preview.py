@@ -40,7 +40,7 @@ class ReportPage(QWidget):
         self.customer.setFont(font("body"))
         self.customer.setFixedHeight(30)
         self.customer.setPlaceholderText(tr("Name or number"))
-        self.customer.editingFinished.connect(lambda: self.named.emit(self.customer.text().strip()))
+        self.customer.editingFinished.connect(self._tell_name)
         self.languages = Segment(list(LANGUAGES.items()), wide=True)
         self.languages.chosen.connect(self.language_chosen)
         self.zoom = Segment([("page", tr("Whole page")), ("width", tr("Full width"))], wide=True)
@@ -55,7 +55,7 @@ class ReportPage(QWidget):
             "pdf": button(tr("Save as PDF…"), "primary"),
         }
         for name, press in self.does.items():
-            press.clicked.connect(lambda _=False, name=name: self.wanted.emit(name))
+            press.clicked.connect(lambda _=False, name=name: self._want(name))
         self.facts, self.state = label("", "secondary"), sentence("", "secondary")
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
@@ -82,9 +82,18 @@ class ReportPage(QWidget):
 
     def show_choices(self, customer: str, language: str) -> None:
         """Show whose the sheet is, unless that is being typed, and which language it speaks."""
-        if not self.customer.hasFocus():
+        typing = self.customer.hasFocus() and self.customer.isModified()
+        if not typing and self.customer.text() != customer:
             self.customer.setText(customer)
         self.languages.set_choice(language)
+
+    def _want(self, what: str) -> None:
+        self._tell_name()  # a press of a button leaves the keyboard in the field: its name is not told yet
+        self.wanted.emit(what)
+
+    def _tell_name(self) -> None:
+        self.customer.setModified(False)
+        self.named.emit(self.customer.text().strip())
 
     def _column(self) -> QWidget:
         column = QWidget()
