@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+from app.seeing.body import BodyActor
 from app.seeing.occlusion import bake_occlusion
 from app.seeing.paint import clay_colours
 from app.seeing.skin import plate_faces, split_plates
@@ -70,6 +71,24 @@ def test_splitting_keeps_every_triangle_where_it_is(mannequin: Mesh) -> None:
     flat = plate_faces(mannequin)
     assert skin.plate[skin.mesh.faces[flat]].all()
     assert not skin.plate[skin.mesh.faces[~flat]].any()
+
+
+# -- what moves
+
+
+def test_what_another_control_mesh_carries_no_more_stands_where_it_rests() -> None:
+    ball = pv.Icosphere(radius=150.0, nsub=4)
+    mesh = Mesh(ball.points, ball.regular_faces)
+    actor = BodyActor(pv.Plotter(off_screen=True), mesh, LOOKS[False])
+    first, then = np.arange(0, 40), np.arange(20, 60)
+    for indices, shift in ((first, 9.0), (first, 12.0), (then, 5.0)):
+        actor.move(indices, mesh.vertices[indices] + shift, np.tile([0.0, 0.0, 1.0], (len(indices), 1)))
+    moved = np.isin(np.arange(len(mesh.vertices)), then)
+    assert np.array_equal(actor.displacement, np.where(moved[:, None], 5.0, 0.0) * np.ones(3))
+    drawn = np.concatenate([pv.wrap(part.actor.mapper.GetInput()).points for part in actor._parts])
+    assert np.abs(drawn[:, None] - mesh.vertices[None, :20]).max(axis=2).min(axis=0).max() < 1e-4
+    fresh = BodyActor(pv.Plotter(off_screen=True), mesh, LOOKS[False])
+    assert np.array_equal(actor._normals[:20], fresh._normals[:20])
 
 
 # -- ambient occlusion

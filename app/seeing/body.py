@@ -48,6 +48,7 @@ class BodyActor:
         self._colours: Colours = np.zeros(rest.vertices.shape, dtype=np.uint8)
         self._moves: Flags = np.zeros(len(mesh.vertices), dtype=bool)
         self._moves[moving] = True
+        self._carried = NONE
         self._roughly = False
         self._still: SkinPart | None = None
         self._moving: SkinPart | None = None
@@ -108,6 +109,9 @@ class BodyActor:
 
     def move(self, indices: Indices, points: Points, normals: Points | None = None) -> None:
         """Move body vertices: indices (k,), positions (k, 3) [mm], unit normals (k, 3), else worked out."""
+        if indices is not self._carried:
+            self._put_back(np.setdiff1d(self._carried, indices))
+            self._carried = indices
         self.points[indices] = points
         self._shift[indices] = points - self.rest.vertices[indices]
         if not self._moves[indices].all():
@@ -148,6 +152,12 @@ class BodyActor:
     @property
     def _parts(self) -> tuple[SkinPart, ...]:
         return tuple(part for part in (self._still, self._moving, self._rough) if part is not None)
+
+    def _put_back(self, indices: Indices) -> None:
+        """Let vertices stand where they rest, shape (k,): another control mesh carries them no more."""
+        self.points[indices] = self.rest.vertices[indices]
+        self._shift[indices] = 0.0
+        self._normals[indices] = self._skin.normals[indices]
 
     def _part(self, moving: Indices) -> None:
         """Part the skin anew into faces that stand still and faces that move, all of them at rest."""
