@@ -5,11 +5,13 @@ import io
 import json
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from app.cli import main
+from app.presenting.garment import as_table
 from core.cutting import FRONT_ONLY, cut_list
 from core.design_elastics import Elastic
 from core.design_lines import LineTraits, OwnLine, WornLine
@@ -237,3 +239,16 @@ def test_the_command_prints_what_python_says(mannequin, built, capsys, tmp_path)
 def test_what_cannot_be_cut_is_said_in_a_sentence(mannequin, capsys, words, sentence):
     assert main(["cut", str(mannequin), *words]) == 2
     assert re.search(sentence, capsys.readouterr().err)
+
+
+def test_the_list_leaves_in_the_order_of_the_window_with_what_presses(built):
+    lines = [("under-bust", 0.8), ("mid-bust", 0.98), ("full-bust", 0.98)]
+    stages = stages_of(built("mannequin"), lines, [("under-bust", EDGE)])
+    cuts, _, points, _ = listed(stages)
+    pressed = press_list(stages, points)
+    heading, *rows = as_table(SimpleNamespace(stages=stages), cuts, pressed)
+    assert [row[0] for row in rows] == ["Full bust", "Mid-bust", "Under-bust"]
+    most = {row.line: f"{row.max_kpa:.1f}" for row in pressed.rows}
+    at = heading.index("Largest pressure kPa")
+    assert [row[at] for row in rows] == [most[name] for name in ("full-bust", "mid-bust", "under-bust")]
+    assert {row[at] for row in as_table(SimpleNamespace(stages=stages), cuts, None)[1:]} == {""}

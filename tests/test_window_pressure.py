@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from PySide6.QtCore import Qt
+from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QLabel
 from window_tools import Script, drag, run_main, settled, undrawn
@@ -181,6 +182,7 @@ def test_beside_the_cut_list_stands_what_each_line_presses_with(asked: list[floa
         assert f"{listed.force_n:.1f} N" in card.force.text()
         assert card.scale.marks == (("Mid-bust", "#E5536B", row.max_kpa),)
         limits_and_what_is_left_out_are_told(card)
+        the_copied_list_has_it_in_the_order_of_the_panel(window, row.max_kpa)
         yield from a_click_turns_to_the_place(window, listed)
         drag(window, "mid-bust", 20, release=False)
         yield lambda: desk.shown is None
@@ -223,6 +225,13 @@ def test_an_opened_line_of_elastic_tells_what_it_presses_with(asked: list[float]
         yield lambda: details._pressed.text() == f"{known(window).rows[0].max_kpa:.1f} kPa · gentle"
 
     run_main([], script)
+
+
+def the_copied_list_has_it_in_the_order_of_the_panel(window: MainWindow, kpa: float) -> None:
+    window.garment.copy_asked.emit()
+    heading, *rows = (line.split("\t") for line in QGuiApplication.clipboard().text().splitlines())
+    at = heading.index("Largest pressure kPa")
+    assert [(row[0], row[at]) for row in rows] == [("Mid-bust", f"{kpa:.1f}")]
 
 
 def limits_and_what_is_left_out_are_told(card: PressureCard) -> None:

@@ -65,4 +65,7 @@ class GarmentDesk(QObject):
 
     def _as_table(self) -> list[list[str]]:
         frame = self._frame
-        return [] if frame is None else as_table(frame, cut_list(frame.stages, frame.control_points))
+        if frame is None:
+            return []
+        cuts = cut_list(frame.stages, frame.control_points)
+        return as_table(frame, cuts, self._window.pressure_desk.shown)

@@ -9,6 +9,7 @@ from app.wording.words import number, say, tr
 from core.cutting import CutList, CutRow
 from core.design import Design
 from core.live import Frame
+from core.press_list import PressList
 
 
 def garment_view(frame: Frame, cuts: CutList) -> GarmentView:
@@ -38,8 +39,11 @@ def told(sentence: str, design: Design) -> str:
     return say(titled(sentence, design))
 
 
-def as_table(frame: Frame, cuts: CutList) -> list[list[str]]:
-    """Return the cut list as plain cells, with a heading."""
+def as_table(frame: Frame, cuts: CutList, pressed: PressList | None) -> list[list[str]]:
+    """Return the cut list as plain cells, with a heading, in the order of the list of lines.
+
+    ``pressed`` is what the lines press with, if that is known of this frame.
+    """
     heading = [
         tr("Line"),
         tr("Elastic"),
@@ -47,13 +51,17 @@ def as_table(frame: Frame, cuts: CutList) -> list[list[str]]:
         tr("Cut mm"),
         tr("Stretch %"),
         tr("Tension N"),
+        tr("Largest pressure kPa"),
         tr("Front on the body mm"),
         tr("Whole on the body mm"),
         tr("Allowance mm"),
         tr("Note"),
     ]
     design = frame.stages.design
-    return [heading, *(_cells(row, design) for row in cuts.rows)]
+    order = list(line_colours((line.name for line in frame.stages.model.lines), design))
+    rows = sorted(cuts.rows, key=lambda row: order.index(row.line))
+    most = {row.line: row.max_kpa for row in pressed.rows} if pressed is not None else {}
+    return [heading, *(_cells(row, most.get(row.line), design) for row in rows)]
 
 
 def _off(name: str, design: Design, color: str) -> CutView:
@@ -80,13 +88,14 @@ def _view(row: CutRow, design: Design, color: str, still: bool) -> CutView:
     )
 
 
-def _cells(row: CutRow, design: Design) -> list[str]:
+def _cells(row: CutRow, kpa: float | None, design: Design) -> list[str]:
     stretch = None if row.elongation is None else 100.0 * row.elongation
     figures = (
         row.width_mm,
         row.cut_mm,
         stretch,
         row.tension_n,
+        kpa,
         row.reached_front_mm,
         row.reached_whole_mm,
         row.allowance_mm,
