@@ -13,9 +13,11 @@ from core.design_lines import WornLine
 from core.elastics import find_elastic
 from core.errors import LineError
 from core.exact import solve_exact
+from core.own_lines import ready_made
 from core.pipeline import build, targets_of
 from core.sewing.as_worn import as_worn, made_as_worn
 from core.sewing.tensions import line_tensions
+from core.template import read_template
 
 STRAP, BAND = find_elastic("strap 15"), find_elastic("plush 12")
 
@@ -101,3 +103,15 @@ def test_a_line_of_elastic_becomes_one_of_the_model_again(built, contact):
     assert bare.elastics == ()
     for name, ratio in lines:
         assert bare.ratio(name) == pytest.approx(ratio, abs=2e-4)
+
+
+def test_a_linked_pair_stays_one_though_its_sides_are_uneven(built):
+    stages = built("person")
+    design = replace(stages.design, own_lines=ready_made(read_template("168"))["straps"], lines=())
+    design = design.with_line("strap left", 0.96).with_line("strap right", 0.96)
+    made = made_as_worn(build(design, stages), {"strap left": STRAP, "strap right": STRAP})
+    assert made.ratio("strap left") == made.ratio("strap right") < 0.8
+    assert made.linked("strap left") == ("strap left", "strap right")
+    alone = made_as_worn(build(design, stages), {"strap left": STRAP})
+    assert alone.ratio("strap right") == 0.96
+    assert alone.ratio("strap left") < 0.8

@@ -12,7 +12,9 @@ from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled, undrawn
 
 from app.keeping import tables
+from app.lining.elastic_choice import FIRST_STRETCH, LIFT_TOLD
 from app.main_window import MainWindow
+from app.presenting.bust import bust_move, up_words
 from app.wording.words import number
 from core.design_elastics import Elastic
 from core.elastics import save_elastic
@@ -80,18 +82,40 @@ def test_one_elastic_is_chosen_for_all_and_taken_off_again_without_moving_the_bo
         assert window.garment.offer.isVisible()
         window.garment.offer.asked.emit()
         pick(window, "Strap", "15 mm")
-        yield made_of(window, "mid-bust", "full-bust")
+        yield made_of(window, "mid-bust", "full-bust", "under-bust")
         assert not window.garment.offer.isVisible()
         assert window.session.undo_stack.undoText() == "All lines made of Strap 15 mm"
+        assert cut_rows(window)["under-bust"].elongation == pytest.approx(FIRST_STRETCH)
         choose(window, "mid-bust", "No elastic")
-        yield made_of(window, "full-bust")
+        yield made_of(window, "full-bust", "under-bust")
         choose(window, "full-bust", "No elastic")
-        yield made_of(window)
+        yield made_of(window, "under-bust")
         design = window.session.design
         assert design is not None
         assert design.ratio("full-bust") == pytest.approx(0.985, abs=1e-3)
-        for name, row in cut_rows(window).items():
-            assert row.reached_front_mm == pytest.approx(before[name].reached_front_mm, abs=SAME)
+        after = cut_rows(window)
+        for name, row in before.items():
+            assert after[name].reached_front_mm == pytest.approx(row.reached_front_mm, abs=SAME)
+
+    run_main([], script)
+
+
+def test_a_lift_that_goes_with_the_elastic_is_told() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        undrawn(window)
+        window.line_maker.add("straps")
+        window.lines_desk.commit_length("strap left", 0.95)
+        window.inspector.open("garment")
+        yield at_rest(window)
+        assert window.session.frame is not None
+        before = bust_move(window.session.frame).mean.up
+        choose(window, "strap left", "Strap", "15 mm")
+        yield made_of(window, "strap left", "strap right")
+        after, notice = bust_move(window.session.frame).mean.up, window.notices.notice()
+        assert notice is not None
+        assert abs(after - before) >= LIFT_TOLD
+        assert (notice.tone, f"{up_words(before)} are now {up_words(after)}" in notice.hint) == ("warn", True)
 
     run_main([], script)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Set
+from dataclasses import dataclass
 from functools import partial, reduce
 from typing import TYPE_CHECKING, cast
 
@@ -13,19 +14,23 @@ from PySide6.QtWidgets import QMenu, QWidget
 from app.asking.jobs import Job
 from app.dress.parts import pull_down
 from app.lining.elastic_menu import fill_elastics
+from app.presenting.bust import move_between, up_words
 from app.presenting.lines import row_title
 from app.wording.words import number, say, tr
 from core.design import Design
 from core.design_elastics import Elastic
 from core.live import Frame
 from core.pipeline import Stages, build
-from core.sewing.as_worn import made_as_worn
+from core.sewing.as_worn import made_as_worn, reached_points
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
 
 FIRST_STRETCH = 0.2
 """How far a band on points that do not move is stretched at first [1]: a start to go on from, no advice."""
+
+LIFT_TOLD = 0.2
+"""From so much on it is told that the bust points stand lower or higher than before [mm]."""
 
 Elastics = dict[str, Elastic | None]
 """What lines are to be made of, by name; None is nothing in particular."""
@@ -59,10 +64,11 @@ class ElasticChoice(QObject):
             self._offer(design.linked(name), design.traits_of(name).elastic, under)
 
     def show_menu_of_all(self, under: QWidget) -> None:
-        """Offer elastics for all worn lines."""
-        design = self._session.design
-        if design is not None:
-            self._offer(tuple(sorted(design.worn())), "", under)
+        """Offer elastics for all lines of the cut list: those worn, and bands on points that do not move."""
+        frame, design = self._session.frame, self._session.design
+        if frame is not None and design is not None:
+            still = {line.name for line in frame.stages.model.lines if not line.constrains}
+            self._offer(tuple(sorted(design.worn() | still)), "", under)
 
     def choose(self, names: tuple[str, ...], elastic: Elastic | None) -> None:
         """Make lines of an elastic, or of nothing in particular."""
@@ -84,13 +90,13 @@ class ElasticChoice(QObject):
             self._window.jobs.cancel(self._job)
             self._job = self._window.jobs.run(
                 tr("Finding how long to cut it"),
-                lambda progress: made_as_worn(_stages(frame, design), worn),
-                lambda made: self._take(names, elastic, dress, design, cast(Design, made)),
+                lambda progress: _made(_stages(frame, design), worn),
+                lambda made: self._take(names, elastic, dress, design, cast(_Made, made)),
                 self._window.desk.show_failure,
                 waited=True,
             )
         else:
-            self._commit(names, elastic, dress, "")
+            self._commit(names, elastic, dress)
 
     def stretch(self, name: str, share: float) -> None:
         """Stretch the elastic of a line on points that do not move by ``share`` [1]."""
@@ -108,12 +114,11 @@ class ElasticChoice(QObject):
         fill_elastics(self._menu, chosen, design.elastics, partial(self.choose, names))
         self._menu.addSeparator()
         group = QActionGroup(self._menu)
-        for reach, words, tip in (
-            (True, tr("It reaches the same: the body hardly moves"), ""),
-            (False, tr("It is as long unstretched: the body changes"), ""),
+        for reach, words in (
+            (True, tr("It reaches the same length: lift may change a little")),
+            (False, tr("It is as long unstretched: the body changes")),
         ):
             action = group.addAction(words)
-            action.setToolTip(tip)
             action.setCheckable(True)
             action.setChecked(reach == self.reach)
             action.triggered.connect(lambda _=False, reach=reach: setattr(self, "reach", reach))
@@ -123,41 +128,69 @@ class ElasticChoice(QObject):
         pull_down(self._menu, under)
 
     def _take(
-        self, names: tuple[str, ...], elastic: Elastic | None, dress: Dress, asked: Design, made: Design
+        self, names: tuple[str, ...], elastic: Elastic | None, dress: Dress, asked: Design, made: _Made
     ) -> None:
         """Take the lengths that were found, or look again if something was edited meanwhile."""
         if self._session.design is not asked:
             self.choose(names, elastic)
             return
-        ratios = {name: _shared_ratio(made, asked.linked(name)) for name in names if name in made.worn()}
+        ratios = {name: made.design.ratio(name) for name in names if name in made.design.worn()}
         found = [name for name, ratio in ratios.items() if ratio != asked.ratio(name)]
 
         def remade(before: Design) -> Design:
             # Through the door that a locked line keeps shut.
             return reduce(lambda d, name: d.with_line(name, ratios[name]), found, dress(before))
 
-        cut = tr("Cut to reach the same length; the skin beside it may shift by 1 to 2 mm.")
-        bare = tr("Set to reach the same length; the skin beside it may shift by 1 to 2 mm.")
-        self._commit(names, elastic, remade, cut if elastic else bare)
+        self._commit(names, elastic, remade, made)
 
-    def _commit(self, names: tuple[str, ...], elastic: Elastic | None, edit: Dress, said: str) -> None:
+    def _commit(
+        self, names: tuple[str, ...], elastic: Elastic | None, edit: Dress, made: _Made | None = None
+    ) -> None:
         before = self._session.design
         assert before is not None
         line = row_title(names[0], before) if set(names) <= set(before.linked(names[0])) else tr("All lines")
         words = tr("{line} made of {elastic}") if elastic else tr("{line} without an elastic")
         text = words.format(line=line, elastic=say(elastic.name) if elastic else "")
         self._session.edit(edit, text)
-        if self._session.design is not before and said:
-            self._window.notices.show_notice("ok", tr("{text}.").format(text=text), said)
+        if self._session.design is not before and made is not None:
+            tone = "warn" if made.lifts_otherwise else "ok"
+            self._window.notices.show_notice(tone, tr("{text}.").format(text=text), made.told(bool(elastic)))
+
+
+@dataclass(frozen=True)
+class _Made:
+    """A ``design`` whose lines reach what they reached, and the lift ``before`` and ``after`` [mm]."""
+
+    design: Design
+    before: float
+    after: float
+
+    @property
+    def lifts_otherwise(self) -> bool:
+        """Whether the lift is so far another one that it must be told."""
+        return abs(self.after - self.before) >= LIFT_TOLD
+
+    def told(self, cut: bool) -> str:
+        """Return in a sentence what stayed and what did not."""
+        if not self.lifts_otherwise:
+            same = tr("Cut to reach the same length; the lift stays.")
+            return same if cut else tr("Set to reach the same length; the lift stays.")
+        words = tr("It reaches the same length, but bust points {before} are now {after}: set it to taste.")
+        return words.format(before=up_words(self.before), after=up_words(self.after))
+
+
+def _made(stages: Stages, elastics: Elastics) -> _Made:
+    design = made_as_worn(stages, elastics)
+    return _Made(design, _lift(stages), _lift(build(design, stages)))
+
+
+def _lift(stages: Stages) -> float:
+    """Return how far the bust points stand above where they are at rest, in the exact answer [mm]."""
+    return move_between(stages.rest_marks, stages.watch(reached_points(stages))).mean.up
 
 
 def _stages(frame: Frame, design: Design) -> Stages:
     return frame.stages if frame.stages.design is design else build(design, frame.stages)
-
-
-def _shared_ratio(made: Design, pair: tuple[str, ...]) -> float:
-    """Return the mean of both sides: set apart by a hair, a linked pair would be none any more."""
-    return sum(made.ratio(name) for name in pair) / len(pair)
 
 
 def _put_on(design: Design, names: Iterable[str], still: Set[str]) -> Design:

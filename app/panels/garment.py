@@ -141,7 +141,7 @@ class GarmentPanel(QWidget):
             "bands",
             tr("No elastic chosen yet"),
             tr("Of an elastic, Busk knows how long to cut it. Choose one for all lines, or for each below."),
-            tr("Choose for all worn lines…"),
+            tr("Choose for all lines…"),
         )
         card.asked.connect(lambda: self.all_asked.emit(card))
         return card

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -31,10 +31,15 @@ def made_as_worn(stages: Stages, elastics: Mapping[str, Elastic | None]) -> Desi
 
     Raises LineError where an elastic cannot do it, or nothing balances.
     """
+    return as_worn(stages, reached_points(stages), elastics)
+
+
+def reached_points(stages: Stages) -> Points:
+    """Return the control points of the exact answer, (n, 3) [mm]. Raises LineError if nothing balances."""
     balance = solve_exact(stages.model, targets_of(stages.design, stages).ratios)
     if not balance.found:
         raise no_balance()
-    return as_worn(stages, stages.model.tensegric.expand(balance.state.moved), elastics)
+    return stages.model.tensegric.expand(balance.state.moved)
 
 
 def as_worn(stages: Stages, control_points: Points, elastics: Mapping[str, Elastic | None]) -> Design:
@@ -42,7 +47,8 @@ def as_worn(stages: Stages, control_points: Points, elastics: Mapping[str, Elast
 
     ``control_points`` (n, 3) [mm] are those of the design as it stands; None is no elastic, a line with the
     stiffness of the model. A line on points that do not move keeps its ratio, and all of them where lengths
-    are held. Raises LineError where an elastic cannot do it.
+    are held. A linked pair stays one: both take the mean of what each side would need. Raises LineError where
+    an elastic cannot do it.
     """
     design, lines = stages.design, {line.name: line for line in stages.model.lines}
     made = design
@@ -70,7 +76,13 @@ def as_worn(stages: Stages, control_points: Points, elastics: Mapping[str, Elast
             f"No length of elastic was found with which {', '.join(moving)} would reach the same.",
             "Let the lines be longer, or take stronger or wider elastics.",
         )
-    return tried
+    return _at(tried, {name: _shared(tried, design.linked(name), moving) for name in moving})
+
+
+def _shared(made: Design, pair: tuple[str, ...], moving: Collection[str]) -> float:
+    """Return the mean of both sides: set apart by a hair, a linked pair would be none any more."""
+    ratios = [made.ratio(name) for name in pair if name in moving]
+    return sum(ratios) / len(ratios)
 
 
 def _stretch(stages: Stages, line: Line, elastic: Elastic | None, tension: float) -> float:
