@@ -1,6 +1,7 @@
 """Sizes: every worked example of the sources, and what must hold for every pair of girths."""
 
 import json
+import re
 from itertools import pairwise
 
 import pytest
@@ -94,7 +95,7 @@ def test_the_rule_is_told_with_the_numbers_put_in():
     answer = made("jp", 72.3, 87.1)
     assert answer.rule == (
         "Under-bust 72.3 cm gives band 70 (67.5 to 72.5).",
-        "Bust less under-bust 14.8 cm gives cup C (14 to 16).",
+        "Bust less under-bust 14.8 cm gives cup C (13.75 to 16.25).",
     )
     gap = made("jp", 70, 81.3)
     assert gap.label == "B70"
@@ -103,6 +104,18 @@ def test_the_rule_is_told_with_the_numbers_put_in():
         "The table itself names 11.5 to 13.5 for B; what lies between two steps goes to the nearest.",
     )
     assert "The table itself names 3 for C" in made("uk", 32, 35.2).rule[-1]
+
+
+@pytest.mark.parametrize("key", ["jp", "eu", "fr", "it", "au"])
+@pytest.mark.parametrize("bust", [84.77, 87.1])
+def test_the_borders_that_are_told_are_as_far_as_the_neighbours(key, bust):
+    answer, underbust = made(key, 71.1, bust), 71.1
+    for part, value in (("band", underbust), ("cup", bust - underbust)):
+        told = next(
+            re.findall(r"\((.*) to (.*)\)", each)[0] for each in answer.rule if f"gives {part}" in each
+        )
+        away = [each.missing_mm for each in answer.neighbours if each.part == part]
+        assert away == pytest.approx([10 * (value - float(told[0])), 10 * (float(told[1]) - value)])
 
 
 def test_both_neighbours_are_told_with_what_is_missing():

@@ -60,10 +60,9 @@ def _sentences(words: _Words, scale: Scale, value: float, unit: str) -> tuple[st
         if place < 0:
             return (words.below.format(told, scale.steps[0].name, plain(scale.borders[0])),)
         return (words.above.format(told, scale.steps[-1].name, plain(scale.borders[-1])),)
-    named, point = (step.least, step.most), step.least == step.most
-    ends = named if step.says(value) and not point else scale.ends(place)
-    rule = words.inside.format(told, step.name, *map(plain, ends))
-    return (rule,) if step.says(value) else (rule, _gap(step.name, *map(plain, named)))
+    # The borders that decide, in gaps of the source too: how far the next step is counts from them.
+    rule = words.inside.format(told, step.name, *map(plain, scale.ends(place)))
+    return (rule,) if step.says(value) else (rule, _gap(step.name, plain(step.least), plain(step.most)))
 
 
 def _gap(name: str, least: str, most: str) -> str:
