@@ -173,6 +173,10 @@ def test_even_breasts_measure_alike_and_volumes_tell_how_unsure_they_are() -> No
     assert left.estimate
     assert 0.1 * left.value < left.plus_minus < 0.3 * left.value
     assert found["asymmetry_volume"].value == pytest.approx(left.value - right.value)
+    off = found["asymmetry_volume"].plus_minus
+    assert off**2 == pytest.approx(left.plus_minus**2 + right.plus_minus**2), (
+        "no surer than what it is made of"
+    )
     for name in ("cup_depth", "cup_width", "root_length", "bust_point_to_fold"):
         pair = [found[f"{name}_{side}"].value for side in ("left", "right")]
         assert pair[0] == pytest.approx(pair[1], rel=0.01)
@@ -183,16 +187,18 @@ def test_own_measures_of_each_kind(person: tuple[Mesh, Landmarks]) -> None:
         OwnMeasure("Span", "straight", ("bust_point_left", "bust_point_right")),
         OwnMeasure("Fall", "skin", ("bust_point_left", "fold_left")),
         OwnMeasure("Ribs", "girth", ("fold_left",), -30.0),
+        OwnMeasure("Up", "girth", (), 200.0),
         OwnMeasure("Low", "girth", (), -5000.0 + 2100.0),
         OwnMeasure("Neck", "skin", ("neck_front", "bust_point_left")),
     )
     mesh, landmarks = person
     found = measures(mesh, landmarks, own)
-    assert list(found)[-5:] == [f"own:{each.name}" for each in own]
+    assert list(found)[-6:] == [f"own:{each.name}" for each in own]
     assert found["own:Span"].value == found["bust_point_distance"].value
     assert found["own:Fall"].value == found["bust_point_to_fold_left"].value
     height = float(landmarks.position("fold_left")[2]) - 30.0
     assert found["own:Ribs"].value == girth_at(mesh, height).tape_mm
+    assert found["own:Up"].value == girth_at(mesh, float(mesh.vertices[:, 2].min()) + 200.0).tape_mm
     assert found["own:Low"].value is None
     assert found["own:Neck"].value is None
     assert found["own:Low"].note != found["own:Neck"].note

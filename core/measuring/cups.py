@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from math import hypot
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -185,10 +186,7 @@ def _sides(subject: Subject) -> Iterator[Measure]:
         yield missing("asymmetry_volume", next(each.note for each in volumes if each.value is None))
         return
     curves = tuple(curve for each in volumes for curve in each.curves)
-    sure, unsure = min(each.confidence for each in volumes), max(each.plus_minus for each in volumes)
-    unit = definition_of("asymmetry_volume")[0].unit
-    share = abs(values[0] - values[1]) / max(sum(values) / 2.0, 1e-9)
-    # Both tops are taken by the same rule: what is unsure of the volumes is unsure of their difference.
-    yield Measure(
-        "asymmetry_volume", values[0] - values[1], unit, curves, sure, True, share * unsure, UNSEEN_CHEST
-    )
+    sure, unit = min(each.confidence for each in volumes), definition_of("asymmetry_volume")[0].unit
+    # Nothing says that two roots are taken wrong alike: each side may be off by itself.
+    off = hypot(*(each.plus_minus for each in volumes))
+    yield Measure("asymmetry_volume", values[0] - values[1], unit, curves, sure, True, off, UNSEEN_CHEST)

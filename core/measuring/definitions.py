@@ -51,7 +51,9 @@ class Measure:
 GIRTHS, CUPS, BUST = "Girths", "Cups", "Bust"
 AREAS, BOTH = "Sections and volumes", "Left and right"
 
-_TAPE = "A tape lies level round the trunk and bridges hollows; arms are left out."
+TAPE = "A tape lies level round the trunk and bridges hollows; arms are left out."
+"""How a tape lies, said of every girth."""
+
 _SKIN = "The same level, but along the skin into every hollow."
 
 _TABLE = (
@@ -60,7 +62,7 @@ _TABLE = (
         "Bust girth",
         "mm",
         "Bust girth",
-        f"At the mean height of the bust points. {_TAPE} The standard measures over a brassiere.",
+        f"At the mean height of the bust points. {TAPE} The standard measures over a brassiere.",
         GIRTHS,
     ),
     Definition("bust_girth_skin", "Bust outline", "mm", "", f"Ours. {_SKIN}", GIRTHS),
@@ -69,7 +71,7 @@ _TABLE = (
         "Under-bust girth",
         "mm",
         "Under bust girth",
-        f"Directly below the breasts, at the first height where no breast is nicked any more. {_TAPE}",
+        f"Directly below the breasts, at the first height where no breast is nicked any more. {TAPE}",
         GIRTHS,
     ),
     Definition("underbust_girth_skin", "Under-bust outline", "mm", "", f"Ours. {_SKIN}", GIRTHS),
@@ -78,7 +80,7 @@ _TABLE = (
         "High bust girth",
         "mm",
         "",
-        f"Ours: level, just below the lower one of the armpits. {_TAPE}",
+        f"Ours: level, just below the lower one of the armpits. {TAPE}",
         GIRTHS,
     ),
     Definition("high_bust_girth_skin", "High bust outline", "mm", "", f"Ours. {_SKIN}", GIRTHS),
@@ -87,7 +89,7 @@ _TABLE = (
         "Waist girth",
         "mm",
         "Waist girth",
-        f"Where the trunk is narrowest. {_TAPE} The standard goes midway between lowest rib and hip bone, "
+        f"Where the trunk is narrowest. {TAPE} The standard goes midway between lowest rib and hip bone, "
         "which a scan does not show.",
         GIRTHS,
     ),
@@ -97,7 +99,7 @@ _TABLE = (
         "Hip girth",
         "mm",
         "Hip girth",
-        f"Where the trunk is widest round below the waist. {_TAPE} The standard goes over the greatest "
+        f"Where the trunk is widest round below the waist. {TAPE} The standard goes over the greatest "
         "prominence of the buttocks.",
         GIRTHS,
     ),
@@ -196,7 +198,8 @@ _TABLE = (
         "ml",
         "",
         "Ours, an estimate: between the skin within the root and a smooth chest that goes on from the skin "
-        "round it. No skin shows the top of the root: it is taken half as high over its ends as it is wide. "
+        "round it: what stands out, less than all of the breast. No skin shows the top of the root: it is "
+        "taken half as high over its ends as it is wide; ± tells what 15 mm lower would make. "
         "Reshaped, what the skin of that side has gained is added.",
         AREAS,
         True,
@@ -222,7 +225,8 @@ _TABLE = (
         "Left breast larger",
         "ml",
         "",
-        "Ours, an estimate: how much larger the left breast is than the right one.",
+        "Ours, an estimate: how much larger the left breast is than the right one; ± takes "
+        "each volume as unsure by itself.",
         BOTH,
     ),
 )
