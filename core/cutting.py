@@ -165,7 +165,13 @@ def _notes(rows: tuple[CutRow, ...], tissue: float) -> tuple[str, ...]:
         notes.append(f"The force of {'; '.join(guessed)} is an estimate: measure your own before you cut.")
     if any(row.closed and row.cut_mm for row in rows):
         notes.append("The back of a band is taken to be stretched as far as its front.")
-    if any(row.cut_mm for row in rows):
+    allowances = {row.allowance_mm for row in rows if row.cut_mm}
+    if len(allowances) == 1:
+        notes.append(
+            f"Lengths to cut hold the allowance for seams, {allowances.pop():g} mm each; hooks and eyes, rings "
+            "and slides are not taken off."
+        )
+    elif allowances:
         notes.append(
             "Lengths to cut hold the allowance for seams; hooks and eyes, rings and slides are not taken off."
         )

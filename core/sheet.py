@@ -84,12 +84,14 @@ Line2 = tuple[tuple[float, float], ...]
 class SectionCurves:
     """A cut of the body across ``axis`` at ``at_mm``, before and after; ``box`` is the part that can move.
 
-    ``bust_point`` is where that is in the cut before; of a level cut the middle of both.
+    ``bust_point`` is where that is in the cut before; of a level cut the middle of both. A side is cut
+    through its bust point, which moves aside: ``after_at_mm`` is where it is after.
     """
 
     name: str
     axis: str
     at_mm: float
+    after_at_mm: float
     box: tuple[tuple[float, float], tuple[float, float]]
     bust_point: tuple[float, float]
     before: tuple[Line2, ...]
@@ -137,6 +139,11 @@ class Sheet:
     definitions: tuple[dict[str, Any], ...] = field(
         default_factory=lambda: tuple(asdict(each) for each in DEFINITIONS.values())
     )
+
+    @property
+    def sound(self) -> bool:
+        """Whether its figures can be worked with."""
+        return self.state in SOUND
 
     def as_data(self) -> dict[str, Any]:
         """Return the sheet ready for JSON."""
@@ -216,13 +223,16 @@ def _sections(stages: Stages, control_points: Points) -> tuple[SectionCurves, ..
     left, middle = (both[0], np.mean(both, axis=0)) if both else (laid[0], laid.mean(axis=0))
     rest, places = stages.body.mesh, deform(stages.binding, control_points)
     free = control.mesh.vertices[~control.fixed]
+    vertex = int(np.linalg.norm(rest.vertices - left, axis=1).argmin())
+    aside = float(places[vertex, 0] - rest.vertices[vertex, 0])
     found = []
-    for name, axis, mark in (("side", "x", left), ("bust", "z", middle)):
+    for name, axis, mark, moved in (("side", "x", left, aside), ("bust", "z", middle, 0.0)):
         plane = Plane(axis, float(mark[AXES.index(axis)]))
-        slicer, flat = Slicer(rest, plane), plane.flat(free)
+        after, flat = Plane(axis, plane.at + moved), plane.flat(free)
         box = _pair(flat.min(axis=0) - AROUND), _pair(flat.max(axis=0) + AROUND)
-        curves = (tuple(map(_line, slicer.curves(each))) for each in (rest.vertices, places))
-        found.append(SectionCurves(name, axis, plane.at, box, _pair(plane.flat(mark)), *curves))
+        cuts = (plane, rest.vertices), (after, places)
+        curves = (tuple(map(_line, Slicer(rest, each).curves(shape))) for each, shape in cuts)
+        found.append(SectionCurves(name, axis, plane.at, after.at, box, _pair(plane.flat(mark)), *curves))
     return tuple(found)
 
 

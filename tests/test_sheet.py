@@ -8,6 +8,7 @@ import json
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from core.cutting import cut_list
@@ -93,6 +94,21 @@ def test_the_sections_go_through_the_bust(worn: Solution, sheet: Sheet) -> None:
         assert low < high
         assert isinstance(across, float)
         assert isinstance(up, float)
+
+
+def test_the_side_is_cut_through_the_bust_point_before_and_after(worn: Solution, sheet: Sheet) -> None:
+    side, lift = sheet.sections[0], sheet.lift
+    assert lift is not None
+    assert abs(side.after_at_mm - side.at_mm) > 0.3, "it has moved aside"
+    across, up = side.bust_point
+    moved = across + lift.left_forward, up + lift.left_up
+    for curves, place in ((side.before, side.bust_point), (side.after, moved)):
+        ends = np.concatenate([np.stack([each[:-1], each[1:]], axis=1) for each in map(np.array, curves)])
+        ends = ends[(ends[:, 0] != ends[:, 1]).any(axis=1)]
+        along = ends[:, 1] - ends[:, 0]
+        share = np.einsum("kx,kx->k", place - ends[:, 0], along) / np.einsum("kx,kx->k", along, along)
+        foot = ends[:, 0] + np.clip(share, 0.0, 1.0)[:, None] * along
+        assert np.linalg.norm(foot - place, axis=1).min() < 0.2
 
 
 def test_a_body_at_rest_has_an_empty_cut_list(built: Built) -> None:
