@@ -23,7 +23,7 @@ class OwnMeasure:
     """A measure of the designer's own.
 
     ``kind`` is one of ``KINDS``. The first two go between the two landmarks in ``marks``; a girth lies
-    ``level`` [mm] above the one landmark in ``marks``, or at the height ``level`` [mm] if there is none.
+    ``level`` [mm] above the one landmark in ``marks``, or if there is none above the scan's lowest point.
     Raises UserError for what cannot be measured.
     """
 
@@ -51,17 +51,18 @@ class OwnMeasure:
     @property
     def text(self) -> str:
         """How it is taken, in a sentence."""
+        places = [mark.replace("_", " ") for mark in self.marks]
         if self.kind == "straight":
-            return f"Yours: straight from {self.marks[0]} to {self.marks[1]}."
+            return f"Yours: straight from {places[0]} to {places[1]}."
         if self.kind == "skin":
-            return f"Yours: the shortest way over the skin from {self.marks[0]} to {self.marks[1]}."
-        if not self.marks:
-            return f"Yours: a tape, level, at a height of {self.level:g} mm."
+            return f"Yours: the shortest way over the skin from {places[0]} to {places[1]}."
+        if not places:
+            return f"Yours: a tape, level, {self.level:g} mm above the lowest point of the scan."
         if self.level > 0.0:
-            return f"Yours: a tape, level, {self.level:g} mm above {self.marks[0]}."
+            return f"Yours: a tape, level, {self.level:g} mm above {places[0]}."
         if self.level < 0.0:
-            return f"Yours: a tape, level, {-self.level:g} mm below {self.marks[0]}."
-        return f"Yours: a tape, level, at {self.marks[0]}."
+            return f"Yours: a tape, level, {-self.level:g} mm below {places[0]}."
+        return f"Yours: a tape, level, at {places[0]}."
 
 
 def put_measure(
@@ -77,7 +78,8 @@ def put_measure(
 HELP = (
     "NAME=KIND:PLACES: a measure of your own, may be repeated. 'Gore=straight:bust_point_left,front_centre' "
     "is straight between two landmarks, 'Arc=skin:...' the shortest way over the skin, "
-    "'Ribs=girth:waist_front+60' a tape 60 mm above a landmark, 'Chest=girth:1250' one at that height in mm"
+    "'Ribs=girth:waist_front+60' a tape 60 mm above a landmark, 'Chest=girth:1250' one so "
+    "high above the lowest point of the scan"
 )
 """What a user has to know to write a measure."""
 

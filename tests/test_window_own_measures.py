@@ -152,9 +152,14 @@ def test_a_girth_lies_where_the_skin_is_clicked_or_off_a_landmark() -> None:
         form.kept.emit()
         (level,) = own(window)
         assert (level.kind, level.marks) == ("girth", ())
-        assert level.level == pytest.approx(skin[2], abs=0.5), (
-            "the form counts whole mm from the lowest point"
-        )
+        assert window.session.frame is not None
+        low = window.session.frame.stages.body.mesh.vertices[:, 2].min()
+        assert level.level == pytest.approx(skin[2] - low, abs=0.5), "whole mm from the lowest point"
+        yield lambda: listed(window, level.name)
+        (view,) = (each for each in window.result.measured if each.own)
+        height = f"{level.level:.0f} mm above the lowest point of the scan"
+        assert height in view.tip
+        assert height in level.text, "the command line says the same"
         window.own_measures_desk.begin()
         form.kind.button("girth").click()
         form.at.chosen.emit("fold_left")

@@ -86,8 +86,7 @@ class MeasuresDesk(QObject):
         self._rest, self._worn = cast(tuple[Measures, Measures], found)
         frame = self._asked
         assert frame is not None  # a job that was let go of does not come here
-        own, low = frame.stages.design.own_measures, float(frame.stages.body.mesh.vertices[:, 2].min())
-        self._panel.set_measured(measured_views(self._rest, self._worn, own, low))
+        self._panel.set_measured(measured_views(self._rest, self._worn, frame.stages.design.own_measures))
         self._show_sizes()
         self._show_mark()
 

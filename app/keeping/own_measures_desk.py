@@ -85,7 +85,7 @@ class OwnMeasuresDesk(QObject):
             self._window.view.set_layer("bands", False)  # they would cover what is shown
         self._panel.set_editing(True)
         self._hand.begin()
-        self._form.begin(draft_of(known, _low(frame)) if known else Draft(), self._titles, self._former)
+        self._form.begin(draft_of(known) if known else Draft(), self._titles, self._former)
         self._form.name.setFocus()
 
     def leave(self) -> None:
@@ -131,7 +131,7 @@ class OwnMeasuresDesk(QObject):
         """Take the height of the skin that is clicked."""
         frame, place = self._window.session.frame, self._window.view.viewport.skin_at(at)
         if frame is not None and place is not None and self._form.draft.kind == "girth":
-            self._form.set_height(round(float(place[2]) - _low(frame)))
+            self._form.set_height(round(float(place[2]) - float(frame.stages.body.mesh.vertices[:, 2].min())))
 
     def _answer(self, what: str) -> None:
         if what == "leave":
@@ -189,9 +189,4 @@ class OwnMeasuresDesk(QObject):
         if frame is None or design is None:
             return None
         taken = {each.name for each in design.own_measures} - {self._former}
-        return measure_of(self._form.draft, self._suggested(), taken, _low(frame))
-
-
-def _low(frame: Frame) -> float:
-    """Return where the lowest point of the scan lies [mm]."""
-    return float(frame.stages.body.mesh.vertices[:, 2].min())
+        return measure_of(self._form.draft, self._suggested(), taken)

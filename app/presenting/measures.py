@@ -25,14 +25,12 @@ def measure_views(frame: Frame) -> list[MeasureView]:
     return [replace(row, group=group) for row in rows]
 
 
-def measured_views(
-    before: Measures, after: Measures, own: Sequence[OwnMeasure] = (), low: float = 0.0
-) -> list[MeasureView]:
+def measured_views(before: Measures, after: Measures, own: Sequence[OwnMeasure] = ()) -> list[MeasureView]:
     """Return what was measured on the body at rest and reshaped, group by group.
 
-    ``own`` are the measures of the designer's own, ``low`` is where the lowest point of the scan lies [mm].
+    ``own`` are the measures of the designer's own.
     """
-    told = {f"{OWN}{each.name}": own_words(each, low) for each in own}
+    told = {f"{OWN}{each.name}": own_words(each) for each in own}
     views = [_measured(row, told) for row in measure_rows(before, after)]
     groups = list(dict.fromkeys(view.group for view in views))
     return sorted(views, key=lambda view: groups.index(view.group))

@@ -13,8 +13,8 @@ from core.landmark import CERTAIN
 from core.measuring.definitions import Measure
 
 
-def own_words(own: OwnMeasure, low: float) -> str:
-    """Return how a measure of the designer's own is taken; ``low`` is the lowest point of the scan [mm]."""
+def own_words(own: OwnMeasure) -> str:
+    """Return how a measure of the designer's own is taken."""
     places = [landmark_title(name) for name in own.marks]
     if own.kind != "girth":
         ways = {
@@ -23,7 +23,7 @@ def own_words(own: OwnMeasure, low: float) -> str:
         }
         return ways[own.kind].format(start=places[0], end=places[1])
     if not places:
-        height = number(own.level - low, 0)
+        height = number(own.level, 0)
         return tr("Yours: a tape, level, {mm} mm above the lowest point of the scan.").format(mm=height)
     at, above, below = (
         tr("Yours: a tape, level, at {place}."),
@@ -34,16 +34,16 @@ def own_words(own: OwnMeasure, low: float) -> str:
     return words.format(place=places[0], mm=number(abs(own.level), 0))
 
 
-def draft_of(own: OwnMeasure, low: float) -> Draft:
+def draft_of(own: OwnMeasure) -> Draft:
     """Return a measure as the form shows it."""
     if own.kind != "girth":
         return Draft(own.name, own.kind, (own.marks[0], own.marks[1]))
     at = own.marks[0] if own.marks else ""
-    return Draft(own.name, own.kind, at=at, level=own.level if at else own.level - low)
+    return Draft(own.name, own.kind, at=at, level=own.level)
 
 
-def measure_of(draft: Draft, suggested: str, taken: Collection[str], low: float) -> OwnMeasure | None:
-    """Return the measure of a draft, None while a place is missing; ``low`` as for ``own_words``.
+def measure_of(draft: Draft, suggested: str, taken: Collection[str]) -> OwnMeasure | None:
+    """Return the measure of a draft, None while a place is missing.
 
     Without a name it gets the ``suggested`` one. Raises UserError if its name is ``taken``.
     """
@@ -54,8 +54,7 @@ def measure_of(draft: Draft, suggested: str, taken: Collection[str], low: float)
     name = draft.name or _free(suggested, taken)
     if name in taken:
         raise UserError(f"There is a measure {name} already.", "Give it a name of its own.")
-    level = draft.level if draft.at else draft.level + low
-    return OwnMeasure(name, draft.kind, draft.marks, level if draft.kind == "girth" else 0.0)
+    return OwnMeasure(name, draft.kind, draft.marks, draft.level if draft.kind == "girth" else 0.0)
 
 
 def suggested_name(draft: Draft, titles: Mapping[str, str]) -> str:

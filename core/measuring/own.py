@@ -38,7 +38,8 @@ def _girth(key: str, subject: Subject, own: OwnMeasure) -> Measure:
     at = marks[0] if marks else None
     if marks and at is None:
         return Measure(key, None, "mm", confidence=0.0, note=NO_MARK)
-    level = trunk_levels(subject.mesh, [own.level + (float(at.position[2]) if at else 0.0)])[0]
+    ground = float(at.position[2] if at else subject.mesh.vertices[:, 2].min())
+    level = trunk_levels(subject.mesh, [ground + own.level])[0]
     if level.tape == 0.0:
         return Measure(key, None, "mm", confidence=0.0, note=NO_TRUNK)
     bridged, note = over_gaps(level)
