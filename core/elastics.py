@@ -13,9 +13,10 @@ import platformdirs
 from core.design_elastics import Elastic
 from core.errors import LineError, UserError
 from core.project import safe_name, whole_file
-from core.sewing.elastic_csv import LARGEST, TEMPLATE, csv_of, elastic_from_csv
+from core.sewing.elastic_csv import ALLOWANCE, LARGEST, TEMPLATE, csv_of, elastic_from_csv, tells_allowance
 
 __all__ = [
+    "ALLOWANCE",
     "Elastic",
     "built_in",
     "find_elastic",
@@ -25,6 +26,7 @@ __all__ = [
     "read_elastic",
     "remove_elastic",
     "save_elastic",
+    "told_allowance",
     "write_elastic",
     "write_template",
 ]
@@ -103,6 +105,15 @@ def find_elastic(text: str) -> Elastic:
 
 def read_elastic(path: Path, width_mm: float | None = None) -> Elastic:
     """Read a table of one's own; its name is the file's unless it tells one. Raises LineError."""
+    return elastic_from_csv(_text_of(path), path.stem, width_mm)
+
+
+def told_allowance(path: Path) -> bool:
+    """Return whether a table tells the allowance, or ``ALLOWANCE`` is taken. Raises LineError."""
+    return tells_allowance(_text_of(path))
+
+
+def _text_of(path: Path) -> str:
     try:
         if path.stat().st_size > LARGEST:
             raise LineError(f"The table {path.name} is far too large.", "Keep one row for each point.")
@@ -111,11 +122,12 @@ def read_elastic(path: Path, width_mm: float | None = None) -> Elastic:
         raise LineError(
             f"The table {path.name} cannot be read: {problem.strerror}.", "Check its name and place."
         ) from problem
+    if b"\0" in data:
+        raise LineError(f"The file {path.name} is no text.", "Save the table as CSV, then import that.")
     try:
-        text = data.decode("utf-8-sig")
+        return data.decode("utf-8-sig")
     except UnicodeDecodeError:
-        text = data.decode("cp932", errors="replace")  # what spreadsheets write in Japan
-    return elastic_from_csv(text, path.stem, width_mm)
+        return data.decode("cp932", errors="replace")  # what spreadsheets write in Japan
 
 
 def write_elastic(path: Path, elastic: Elastic) -> None:

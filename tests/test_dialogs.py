@@ -165,6 +165,12 @@ def test_enter_gives_the_first_answer_and_escape_none(parent: QWidget) -> None:
     assert ask(parent, "Both?", "", [("yes", "Yes"), ("no", "No")]) == ""
 
 
+def test_enter_loses_nothing_that_cannot_be_brought_back(parent: QWidget) -> None:
+    for name in ("replace", "delete", "discard"):
+        when_asked(lambda sheet: next(each for each in buttons(sheet) if each.isDefault()).click())
+        assert ask(parent, "Lose it?", "", [(name, "Yes")]) == ""
+
+
 def test_a_name_that_is_asked_for_is_not_empty(parent: QWidget) -> None:
     def type_nothing(sheet: Sheet) -> None:
         sheet.findChild(QLineEdit).setText("  ")

@@ -12,6 +12,7 @@ from core.design_text import from_json, to_json
 from core.document import Document
 from core.document_text import DESIGN, VARIANTS, from_texts, to_texts
 from core.elastics import (
+    ALLOWANCE,
     built_in,
     find_elastic,
     library,
@@ -19,6 +20,7 @@ from core.elastics import (
     own_folder,
     read_elastic,
     save_elastic,
+    told_allowance,
     write_elastic,
 )
 from core.errors import LineError, UserError
@@ -123,8 +125,8 @@ def test_tables_come_in_many_units_and_marks(heading, rows, per_newton):
         (HEAD + "10,1\n", "too few rows"),
         (HEAD + "0,0\n10,1\n", "too few rows"),
         (HEAD + "0,0.4\n10,1\n20,2\n", "begins with 0.4 N at no elongation"),
-        (HEAD + "10,1\n20,x\n", "Row 2 of the table roll"),
-        (HEAD + "10,1\n20\n", "Row 2 of the table roll"),
+        (HEAD + "10,1\n20,x\n", "Line 3 of the table roll"),
+        ("# width: 12\n\n" + HEAD + "10,1\n\n20\n", "Line 6 of the table roll"),
         (HEAD + "10,1\n20,2\n10,0.8\n", "goes back after 20 % and 2 N"),
         (HEAD + "10,100\n20,90000\n", "Look at its units"),
     ],
@@ -145,6 +147,21 @@ def test_a_file_that_is_not_there_or_too_large_is_told(tmp_path):
     (tmp_path / "large.csv").write_bytes(b"1" * 2_000_000)
     with pytest.raises(LineError, match="far too large"):
         read_elastic(tmp_path / "large.csv")
+
+
+def test_a_spreadsheet_is_asked_for_as_a_table(tmp_path):
+    (tmp_path / "roll.xlsx").write_bytes(b"PK\3\4\0\0# width: 12")
+    with pytest.raises(LineError, match=r"roll\.xlsx is no text.*as CSV"):
+        read_elastic(tmp_path / "roll.xlsx")
+
+
+def test_a_table_without_an_allowance_is_known_by_it(tmp_path):
+    path = tmp_path / "roll.csv"
+    path.write_text("# width: 12\n" + HEAD + "10,1\n20,2\n")
+    assert not told_allowance(path)
+    assert read_elastic(path).allowance_mm == ALLOWANCE
+    write_elastic(path, ROLL)
+    assert told_allowance(path)
 
 
 def test_spreadsheets_of_japan_are_read(tmp_path):

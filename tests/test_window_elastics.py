@@ -49,11 +49,14 @@ def test_tables_of_ones_own_are_brought_in_or_refused_and_taken_away(
         sheet.import_asked.emit()
         refusal = sheet.notices.notice()
         assert refusal is not None
-        assert "Row 2 of the table Roll 8 has no two numbers" in refusal.sentence
+        assert "Line 5 of the table Roll 8 has no two numbers" in refusal.sentence
         assert not own_folder().exists()
         chosen[0] = good
         sheet.import_asked.emit()
         assert sheet.marked == "Roll 7"
+        notice = sheet.notices.notice()
+        assert notice is not None
+        assert "no allowance for seams: 20 mm go into every length" in notice.hint
         assert sheet.delete.isEnabled()
         assert sheet.views["Roll 7"].forces == ("1.3", "2.5", "3.7", "4.9")
         assert "4.9 N at 80 %" in sheet.curve.accessibleName()
@@ -66,7 +69,7 @@ def test_tables_of_ones_own_are_brought_in_or_refused_and_taken_away(
         sheet.import_asked.emit()
         refusal = sheet.notices.notice()
         assert refusal is not None
-        assert "Row 1" in refusal.sentence, "a table that is not filled in is none"
+        assert "Line 6" in refusal.sentence, "a table that is not filled in is none"
         sheet.table.mark("Roll 7")
         sheet.delete.click()
         assert "Roll 7" not in sheet.views

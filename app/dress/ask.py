@@ -12,6 +12,9 @@ from app.dress.sheet import Sheet
 from app.dress.theme import label
 from app.wording.words import tr
 
+LOSING = ("delete", "discard", "replace")
+"""Answers that nothing brings back: Enter does not give them."""
+
 _WIDTH = 460
 
 
@@ -19,7 +22,7 @@ def ask(parent: QWidget | None, question: str, said: str, answers: Sequence[tupl
     """Return the name of the answer that is chosen, or an empty text.
 
     ``answers`` are names with the words on their buttons: first the one that Enter gives, then others, from
-    right to left. Esc, and the button *Cancel*, give none.
+    right to left. Esc, and the button *Cancel*, give none, and so does Enter where the first is ``LOSING``.
     """
     sheet, chosen = Sheet(parent, question, (_WIDTH, 0)), [""]
     sheet.setWindowTitle("Busk")
@@ -33,8 +36,12 @@ def ask(parent: QWidget | None, question: str, said: str, answers: Sequence[tupl
     (main, words), *others = answers
     for name, other in reversed(others):
         sheet.add_button(other, partial(choose, name))
-    sheet.add_button(tr("Cancel"), sheet.reject)
-    sheet.add_button(words, partial(choose, main), "primary").setFocus()
+    cancel = sheet.add_button(tr("Cancel"), sheet.reject)
+    usual = sheet.add_button(words, partial(choose, main), "primary")
+    if main in LOSING:
+        usual = cancel
+    usual.setDefault(True)
+    usual.setFocus()
     sheet.exec()
     return chosen[0]
 

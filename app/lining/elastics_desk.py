@@ -12,14 +12,16 @@ from app.dress.ask import ask
 from app.keeping.dialogs import ask_save, ask_table
 from app.panels.elastics_sheet import ElasticsSheet
 from app.presenting.elastics import elastic_views
-from app.wording.words import tr
+from app.wording.words import number, tr
 from core.elastics import (
+    ALLOWANCE,
     built_in,
     library,
     own_elastics,
     read_elastic,
     remove_elastic,
     save_elastic,
+    told_allowance,
     write_elastic,
     write_template,
 )
@@ -71,12 +73,14 @@ class ElasticsDesk(QObject):
             if taken and ask(sheet, question, "", [("replace", tr("Replace"))]) != "replace":
                 return
             save_elastic(elastic)
+            seams = "" if told_allowance(Path(path)) else _assumed()
         except UserError as problem:
             sheet.notices.clear()
             sheet.notices.show_notice("bad", problem.message, problem.hint, lasting=True)
             return
         sheet.notices.clear()
-        sheet.notices.show_notice("ok", tr("{name} is one of your elastics now.").format(name=elastic.name))
+        said = tr("{name} is one of your elastics now.").format(name=elastic.name)
+        sheet.notices.show_notice("ok", said, seams, lasting=bool(seams))
         self._fill(elastic.name)
 
     def hand_on(self, name: str) -> None:
@@ -133,3 +137,9 @@ class ElasticsDesk(QObject):
 
     def _forget(self) -> None:
         self.sheet = None
+
+
+def _assumed() -> str:
+    """Return what goes into every length to cut though no table told it."""
+    words = tr("Its table tells no allowance for seams: {mm} mm go into every length to cut.")
+    return words.format(mm=number(ALLOWANCE, 0))

@@ -14,6 +14,9 @@ from core.errors import LineError
 LARGEST = 1_000_000
 """Bytes of the largest table that is read."""
 
+ALLOWANCE = 20.0
+"""For seams, at both ends together, where a table tells none [mm]."""
+
 FEWEST = 2
 """Rows that a table must have beside that of the unstretched elastic."""
 
@@ -51,15 +54,22 @@ def elastic_from_csv(text: str, name: str, width_mm: float | None = None) -> Ela
 
     See ``HELP``. Force per cm of width is made that of the whole width. Raises LineError with what is wrong.
     """
-    told = {match[1].lower(): match[2] for match in map(_TOLD.match, text.splitlines()) if match}
+    told = _told(text)
     name = told.get("name") or name
     width = width_mm if "width" not in told else _number(told["width"].removesuffix("mm"), "width", name)
     if width is None:
         raise LineError(f"The table {name} does not say how wide the elastic is.", "Write '# width_mm: 12'.")
-    allowance = _number(told.get("allowance", "20").removesuffix("mm"), "allowance", name)
+    allowance = ALLOWANCE
+    if "allowance" in told:
+        allowance = _number(told["allowance"].removesuffix("mm"), "allowance", name)
     estimate = told.get("estimate", "no").strip().lower() in ("yes", "true", "1")
     curve = _curve(text, name, width)
     return Elastic(name, width, curve, allowance, told.get("source", ""), estimate)
+
+
+def tells_allowance(text: str) -> bool:
+    """Return whether a table tells the allowance, or ``ALLOWANCE`` is taken."""
+    return "allowance" in _told(text)
 
 
 def csv_of(elastic: Elastic) -> str:
@@ -77,6 +87,11 @@ def csv_of(elastic: Elastic) -> str:
     return "\n".join([*heading, *rows]) + "\n"
 
 
+def _told(text: str) -> dict[str, str]:
+    """Return what stands over a table, in words."""
+    return {match[1].lower(): match[2] for match in map(_TOLD.match, text.splitlines()) if match}
+
+
 def _percent(share: float) -> str:
     """Return a share in %, rounded where that comes back as the same share."""
     short = f"{100.0 * share:.12g}"
@@ -92,7 +107,12 @@ def _number(text: str, what: str, name: str) -> float:
 
 def _curve(text: str, name: str, width: float) -> Curve:
     """Return the points of a table with the unstretched elastic first."""
-    lines = [line for line in text.splitlines() if line.strip(" \t,;") and not line.lstrip().startswith("#")]
+    numbered = [
+        (count, line)
+        for count, line in enumerate(text.splitlines(), start=1)
+        if line.strip(" \t,;") and not line.lstrip().startswith("#")
+    ]
+    lines = [line for _, line in numbered]
     if not lines:
         raise LineError(f"The table {name} is empty.", f"It needs {HELP}.")
     comma = next((mark for mark in "\t;," if mark in lines[0]), "")
@@ -100,7 +120,8 @@ def _curve(text: str, name: str, width: float) -> Curve:
         raise LineError(f"The table {name} has one column only.", f"It needs {HELP}.")
     heading, *rows = csv.reader(io.StringIO("\n".join(lines)), delimiter=comma)
     columns = _columns(heading, name, width)
-    points = list(_points(rows, columns, name, "," if comma != "," else "."))
+    counted = list(zip((count for count, _ in numbered[1:]), rows, strict=True))
+    points = list(_points(counted, columns, name, "," if comma != "," else "."))
     if points and points[0] == (0.0, 0.0):
         points = points[1:]
     if len(points) < FEWEST:
@@ -147,17 +168,17 @@ def _unit(heading: str, what: str, width: float) -> float | None:
 
 
 def _points(
-    rows: Sequence[Sequence[str]],
+    rows: Sequence[tuple[int, Sequence[str]]],
     columns: tuple[tuple[int, float], tuple[int, float]],
     name: str,
     point: str,
 ) -> Iterator[tuple[float, float]]:
-    """Yield the points of a table whose figures have the decimal ``point``."""
-    for count, row in enumerate(rows, start=1):
+    """Yield the points of a table, rows with their lines in it, whose figures have the decimal ``point``."""
+    for count, row in rows:
         try:
             stretched, pulled = (float(row[at].strip().replace(point, ".")) for at, _ in columns)
         except (ValueError, IndexError):
             raise LineError(
-                f"Row {count} of the table {name} has no two numbers.", "Leave out what is no point."
+                f"Line {count} of the table {name} has no two numbers.", "Leave out what is no point."
             ) from None
         yield stretched / columns[0][1], pulled * columns[1][1]
