@@ -1,18 +1,23 @@
 """How short a line can be made: against a scan of the slider, and where there is nothing to find."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from shapes import fitted, torso
 
 from app.cli import main
+from app.lining.limits_desk import feasible_of
 from core.comparison import shape_of
+from core.elastics import find_elastic
+from core.errors import LineError
 from core.exact import solve_exact
 from core.lines import RATIO_LIMITS
 from core.mechanics import Mechanics
 from core.model import constrained_model
-from core.studies.limits import PRECISION, SIGNS, all_limits, shortest
+from core.pipeline import build
+from core.studies.limits import PRECISION, SIGNS, all_limits, limits_of, shortest
 
 WORN = ("mid-bust", "full-bust")
 CHOICES = {
@@ -153,3 +158,25 @@ def test_the_command_prints_a_table_and_the_same_as_json(person, capsys):
 def test_the_command_says_in_one_sentence_what_is_wrong(person, capsys, words):
     assert main(["limits", str(person), *words]) == 2
     assert capsys.readouterr().err.count("\n") == 1
+
+
+@pytest.mark.parametrize("contact", ["glued", "sliding"])
+def test_a_line_of_elastic_ends_where_a_shorter_one_is_refused(built, contact):
+    stages = built("mannequin")
+    strap = find_elastic("strap 15")
+    design = replace(stages.design, line_contact=contact).with_line("mid-bust", 0.7)
+    stages = build(design.with_elastic("mid-bust", strap), stages)
+    end = limits_of(stages, "mid-bust").stretched
+    rest = next(line.rest_length for line in stages.model.lines if line.name == "mid-bust")
+    assert end.reached / (end.ratio * rest) - 1.0 == pytest.approx(strap.reach, abs=PRECISION)
+    assert build(stages.design.with_line("mid-bust", end.ratio + PRECISION), stages)
+    with pytest.raises(LineError, match="its table ends at 70 %"):
+        build(stages.design.with_line("mid-bust", end.ratio - PRECISION), stages)
+    told = feasible_of(limits_of(stages, "mid-bust"))
+    assert (told.why, told.impossible) == ("stretched", end.ratio)
+    assert told.tone(0.52) == "bad"
+    assert "the table of its elastic ends at" in told.sentence().lower()
+
+
+def test_a_line_of_nothing_in_particular_ends_at_no_table(built):
+    assert limits_of(built("mannequin"), "mid-bust").stretched is None

@@ -38,6 +38,8 @@ def _table(limits: Limits, stages: Stages) -> Iterator[str]:
         yield f"  {sign:12}  {_beginning(limits, sign):39}  {meaning}"
     if limits.last is not None:
         yield f"  below {_inline(limits.last, rest)} no balance is found"
+    if limits.stretched is not None:
+        yield f"  below {_inline(limits.stretched, rest)} its elastic would go beyond its table"
 
 
 def _present(limits: Limits, stages: Stages) -> str:
@@ -77,6 +79,7 @@ def _figures_of(found: Sequence[Limits], stages: Stages) -> dict[str, Any]:
                 "begins": {sign: _figures(limits.begins[sign], limits) for sign in MEANING},
                 "found": limits.found,
                 "no_balance_below": _figures(limits.last, limits),
+                "elastic_ends": _figures(limits.stretched, limits),
             }
             for limits in found
         },

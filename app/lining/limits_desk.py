@@ -110,6 +110,8 @@ def feasible_of(found: Limits) -> Feasible | None:
     strained = ends.pop("strained", None)
     if found.last is not None:
         ends["unreachable"] = found.last.ratio
+    if found.stretched is not None:
+        ends["stretched"] = found.stretched.ratio
     why = max(ends, key=lambda sign: ends[sign], default="folded")
     return Feasible(strained, ends.get(why), why)
 

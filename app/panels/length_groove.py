@@ -32,7 +32,8 @@ class Feasible:
     """How short a line can be set, as shares of its rest length [1]; None for what does not begin at all.
 
     Below ``strained`` the skin strains more than it likes, below ``impossible`` there is no body to show, and
-    ``why`` says it: "overstrained", "folded", "inverted", or "unreachable" where no balance is found.
+    ``why`` says it: "overstrained", "folded", "inverted", "unreachable" where no balance is found, or
+    "stretched" where the table of the line's elastic ends.
     ``stale`` while new limits are worked out.
     """
 
@@ -74,6 +75,7 @@ class Feasible:
             "overstrained": tr("overstrained below {percent} %"),
             "inverted": tr("inside out below {percent} %"),
             "unreachable": tr("cannot be reached below {percent} %"),
+            "stretched": tr("the table of its elastic ends at {percent} %"),
         }
         percent = number(100.0 * (self.impossible or 0.0))
         return words.get(self.why, tr("folds below {percent} %")).format(percent=percent)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -21,7 +22,9 @@ from core.model import ConstrainedModel
 from core.pipeline import Stages, build, targets_of
 from core.progress import Progress, quiet
 from core.solving.condition import CALM_RANGE, FOLD_LIMIT, STRAIN_RANGE, Condition
+from core.solving.elastic_lines import ElasticLines, fit_elastics
 from core.solving.newton import Balance, energy_steps
+from core.solving.newtons import newtons_per_unit
 from core.solving.potential import Potential
 from core.solving.sliding import sliding_steps
 
@@ -35,6 +38,7 @@ PRECISION = 0.0005
 
 _STRIDE = 0.05
 _NEAR_ENOUGH = 1e-5  # largest unbalanced force over the mean stiffness [mm]: far less than PRECISION moves
+_ROUNDS = 12  # six are the rule, till the end of an elastic's curve is met
 _FEW_STEPS = 10  # three are the rule; where it takes more a shorter stride does better
 
 
@@ -54,7 +58,8 @@ class Limits:
     already shows. ``begins`` tells for each of SIGNS the longest length that shows it, None where none does
     down to RATIO_LIMITS; a beginning at the rest length is the other lines' doing. ``last`` is the shortest
     length with a balance, None if there is one down to where all SIGNS show. ``found`` is False if there is
-    none anywhere: the other lines ask for what cannot be.
+    none anywhere: the other lines ask for what cannot be. ``stretched`` is where the elastic it is made of is
+    stretched to the end of its curve, None for a line without one, or down to RATIO_LIMITS.
     """
 
     line: Line
@@ -63,6 +68,7 @@ class Limits:
     begins: Mapping[str, Length | None]
     last: Length | None
     found: bool = True
+    stretched: Length | None = None
 
 
 def shortest(
@@ -98,12 +104,40 @@ def limits_of(stages: Stages, name: str, progress: Progress = quiet) -> Limits:
     tried = build(_wearing(stages.design, both), stages)
     ratios, partners = targets_of(tried.design, tried).ratios, set(both) - {name}
     limits = shortest(tried.model, ratios, name, partners, progress)
+    if limits.line.constrains:
+        limits = replace(limits, stretched=_end_of_curve(tried, limits.line, both, progress))
     return limits if worn else replace(limits, present=None, beyond=())
 
 
 def all_limits(stages: Stages) -> Iterator[Limits]:
     """Yield the limits of each line that moves anything, worn or not; see ``limits_of``."""
     return (limits_of(stages, line.name) for line in stages.model.lines if line.constrains)
+
+
+def _end_of_curve(stages: Stages, line: Line, pair: tuple[str, ...], progress: Progress) -> Length | None:
+    """Return the length at which the elastic of ``line``, or its partner's, is stretched as far as is known.
+
+    That is looked for with lines whose force and length are on their curves, as what is shorter is refused.
+    """
+    design = stages.design
+    made = design.worn_elastics()
+    reach = {name: made[name].reach for name in pair if name in made}
+    if not reach or design.line_hold == "held":
+        return None
+    newtons = newtons_per_unit(stages.model, design.tissue_stiffness)
+    ratio = 1.0 / (1.0 + min(reach.values()))  # as if the line did not move the body
+    for _ in range(_ROUNDS):
+        progress("finding limits", 0.0)
+        set_ = {each.name: design.ratio(each.name) for each in stages.model.lines}
+        ratios = set_ | dict.fromkeys(pair, ratio)
+        wish = ElasticLines(stages.model, ratios, made, newtons, design.own_stiffness())
+        fitted = fit_elastics(wish, partial(solve_exact, ratios=tuple(ratios.values())))
+        beyond = max((1.0 + fitted.elongations[name]) / (1.0 + reach[name]) for name in reach)
+        if abs(beyond - 1.0) * ratio < 0.2 * PRECISION:
+            break
+        ratio *= beyond
+    reached = (1.0 + fitted.elongations.get(line.name, 0.0)) * ratio * line.rest_length
+    return Length(ratio, reached) if fitted.agreed and ratio > _LEAST else None
 
 
 def _wearing(design: Design, names: Collection[str]) -> Design:
