@@ -73,3 +73,13 @@ def test_long_names_end_in_dots(qapp: QApplication) -> None:
     assert text_width(short, "body") <= 30.0
     assert elided("Anna\nK.", "body", 30.0) == "Anna K.", "a name is one line"
     assert line_height("title") > line_height("small") > 2.0
+
+
+def test_the_last_line_of_a_text_is_never_a_letter_or_two(qapp: QApplication) -> None:
+    load_fonts()
+    text = "乳頭がはっきり見えません。バストポイントは乳房の形から推定しています。"
+    for width in range(30, 100):
+        lines = wrapped(text, "small", float(width))
+        assert "".join(lines) == text
+        assert len(lines) == 1 or len(lines[-1]) > 3
+        assert max(text_width(line, "small") for line in lines) <= width

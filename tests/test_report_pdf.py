@@ -18,7 +18,7 @@ from app.dress.theme import load_fonts
 from app.presenting.lines import line_colours
 from app.reporting.handout import SHOT_SIZES, SHOTS, Handout
 from app.reporting.pages import pages_of
-from app.reporting.paper import A4, MARGIN
+from app.reporting.paper import A4, MARGIN, TYPES
 from app.reporting.pdf import write_pdf
 from app.wording.words import language, number, use_language
 from core.design_lines import LineTraits
@@ -155,6 +155,37 @@ def test_what_is_missing_is_said(sheet: Sheet, built: Built, tmp_path: Path) -> 
     assert "The scan shows no bust." in text
     assert "Vibrating: these figures are no result to sew for." in text
     assert "No figure: the shape is no result." in text
+
+
+def test_a_shape_that_is_no_result_tells_no_figure_of_it(sheet: Sheet, tmp_path: Path) -> None:
+    folded = replace(sheet, state="folded", lift=None)
+    text = written(handout(folded), tmp_path / "folded.pdf").text()
+    assert text.count("No figure: the shape is no result.") == 3
+    assert "Bust points, mm up" not in text
+    for cut in sheet.cuts.rows:
+        assert cut.cut_mm is None or f" {cut.cut_mm:,.0f} " not in text
+    measured = [row for row in sheet.measures if row["before"] is not None and row["unit"] == "mm"]
+    assert len(measured) > 10
+    for row in measured:
+        assert " ".join((told(row["before"], 1), told(None, 0), told(None, 0))) in text, row["key"]
+
+
+def test_a_front_part_alone_is_no_great_figure(sheet: Sheet, tmp_path: Path) -> None:
+    parts = tuple(replace(row, front_only=True) for row in sheet.cuts.rows)
+    text = written(handout(replace(sheet, cuts=replace(sheet.cuts, rows=parts))), tmp_path / "p.pdf").text()
+    assert "No whole piece: front parts alone stand in the cut list." in text
+    for cut in sheet.cuts.rows:
+        assert cut.cut_mm is None or f"{cut.cut_mm:,.0f} mm" not in text
+
+
+def test_elastics_are_named_in_the_language_of_the_sheet(sheet: Sheet, tmp_path: Path) -> None:
+    text = written(handout(sheet), tmp_path / "ja.pdf", "ja").text()
+    assert "Picot" not in text
+    assert "plush" not in text
+
+
+def test_letters_are_large_enough_for_the_bench() -> None:
+    assert min(size for kind, (size, *_) in TYPES.items() if kind != "axis") >= 7.5
 
 
 def test_many_lines_are_all_printed(sheet: Sheet, tmp_path: Path) -> None:

@@ -51,8 +51,13 @@ def test_the_sheet_takes_the_place_of_the_work_and_gives_it_back() -> None:
         shown, title = leaf.grab().toImage(), leaf.width() * 18.0 / A4[0]
         dark = sum(shown.pixelColor(x, round(title)).lightness() < 128 for x in range(shown.width() // 2))
         assert dark > 10, "the title is painted where it stands on paper"
+        scroll = desk.page.paper.verticalScrollBar()
+        yield lambda: scroll.maximum() > 0
+        scroll.setValue(scroll.maximum())
         QTest.keyClick(window, Qt.Key.Key_Escape)
         assert window.pages.currentWidget() is work
+        desk.open()
+        assert scroll.value() == 0, "a sheet opens at its head, where a doubt stands"
 
     assert run_main(["resources/samples/mannequin.ply"], script) == 0
 

@@ -83,7 +83,7 @@ def _section(
     scale = float((room / (box[1] - box[0])).min())
     centre, step = box.mean(axis=0), next(each for each in _GRID if each * scale >= _NARROWEST)
     low, high = centre - zero + np.array([[-0.5], [0.5]]) * room / scale
-    said = elided(tr("grid {mm} mm, 0 at the bust point").format(mm=f"{step:g}"), "axis", width)
+    said = elided(tr("grid {mm} mm, 0 at the bust point").format(mm=f"{step:g}"), "caption", width)
 
     def paint(paper: Paper, x: float, y: float) -> None:
         paper.text(x, y + 2.6, title, "caption")
@@ -110,7 +110,7 @@ def _section(
         ):
             paper.disc(*place, 0.8, ink)
         paper.unclip()
-        paper.text(x + width, y + height - 0.6, said, "axis", align="right")
+        paper.text(x + width, y + height - 0.6, said, "caption", align="right")
 
     return Block(height, paint)
 
@@ -130,6 +130,8 @@ def _plots(
     if not _plotted(sheet):
         return [(left, top, _sentence(said, 2.0 * width + _GAP))]
     error, up = tr("Volume error, %"), tr("Bust points, mm up")
+    if not sheet.sound:
+        return [(left, top, _plot(turns, turns.error_percent, error, 2.0 * width + _GAP, height))]
     return [
         (left, top, _plot(turns, turns.error_percent, error, width, height)),
         (left + width + _GAP, top, _plot(turns, turns.up_mm, up, width, height)),
@@ -171,6 +173,6 @@ def _plot(turns: Turns, values: Sequence[float], title: str, width: float, heigh
         across = left + (width - _AXIS) * (x_of - x_of[0]) / (x_of[-1] - x_of[0])
         paper.curve(zip(across.tolist(), down(seen).tolist(), strict=True), LIGHT.accent, 0.35)
         paper.text(left, y + height - 0.6, number(turns.turn[0], 0), "axis")
-        paper.text(x + width, y + height - 0.6, last, "axis", align="right")
+        paper.text(x + width, y + height - 0.6, last, "caption", align="right")
 
     return Block(height, paint)

@@ -103,6 +103,8 @@ def _cuts(handout: Handout) -> Block:
     """Return the lengths to cut: one as large as the size, up to three below each other."""
     pieces, left = cut_pieces(handout.sheet, list(handout.colours)), _CELLS[2]
     room, caption = _CELLS[3] - left - 6.0, _cut_caption(handout.sheet)
+    if not handout.sheet.sound:
+        return _sentence(left, room, caption, tr("No figure: the shape is no result."))
     if len(pieces) == 1:
         line, title, length = pieces[0]
         one = _great(left, room, caption, length, "", "mm")
@@ -115,12 +117,7 @@ def _cuts(handout: Handout) -> Block:
 
         return Block(_HERO, paint_one)
     if not pieces:
-        missing = (
-            tr("No elastic is chosen yet: choose one for each line to get its length to cut.")
-            if handout.sheet.cuts.rows
-            else tr("No line is worn: there is nothing to cut.")
-        )
-        return _sentence(left, room, caption, missing)
+        return _sentence(left, room, caption, _no_cut(handout.sheet))
     rows = [
         (handout.colours.get(line, _USUAL), elided(title, "strong", room - 31.0), length)
         for line, title, length in pieces[:_LARGE]
@@ -139,6 +136,15 @@ def _cuts(handout: Handout) -> Block:
             paper.text(x + left + end + 13.6, base - 0.3, title, "strong")
 
     return Block(_HERO, paint)
+
+
+def _no_cut(sheet: Sheet) -> str:
+    """Return why there is no length to cut."""
+    if not sheet.cuts.rows:
+        return tr("No line is worn: there is nothing to cut.")
+    if any(row.front_only and row.cut_mm is not None for row in sheet.cuts.rows):
+        return tr("No whole piece: front parts alone stand in the cut list.")
+    return tr("No elastic is chosen yet: choose one for each line to get its length to cut.")
 
 
 def _cut_caption(sheet: Sheet) -> str:
@@ -165,10 +171,12 @@ def _lift(sheet: Sheet) -> Block:
 
 
 def _volume(sheet: Sheet) -> Block:
-    kept = sheet.volume
+    kept, left, caption = sheet.volume, _CELLS[4], tr("Change of volume")
+    if not sheet.sound:
+        return _sentence(left, WIDE - left, caption, tr("No figure: the shape is no result."))
     of = tr("of {ml} ml in the model").format(ml=number(kept.rest_ml, 0))
     figure = number(kept.error_ml, 1, signed=True)
-    return _great(_CELLS[4], WIDE - _CELLS[4], tr("Change of volume"), figure, of, "ml")
+    return _great(left, WIDE - left, caption, figure, of, "ml")
 
 
 def _pictures(handout: Handout) -> Block:

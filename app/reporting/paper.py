@@ -49,13 +49,16 @@ TYPES = {
     "figure": (7.8, 400, "text", True),
     "before": (7.8, 400, "text_caption", True),
     "figure strong": (7.8, _STRONG, "text", True),
-    "caption": (6.6, 400, "text_caption", False),
-    "axis": (6.0, 400, "text_caption", True),
-    "small": (6.5, 400, "text_quiet", False),
-    "small strong": (6.5, _STRONG, "text", False),
+    "caption": (7.5, 400, "text_caption", False),
+    "axis": (7.0, 400, "text_caption", True),
+    "small": (7.5, 400, "text_quiet", False),
+    "small strong": (7.5, _STRONG, "text", False),
     "warning": (7.8, _STRONG, "bad", False),
 }
 """Size [pt], weight, colour token of each kind of type, and whether its figures have one width."""
+
+_FEWEST = 4  # letters on the last line of a text
+_NARROWER = (0.96, 0.92, 0.88, 0.84)  # columns in which more of them go over to it
 
 _ALIGNED = {"left": 0.0, "middle": 0.5, "right": 1.0}
 
@@ -94,7 +97,17 @@ def fitting(text: str, width: float) -> str:
 
 
 def wrapped(text: str, kind: str, width: float) -> list[str]:
-    """Return the lines of a text in a column of a ``width`` [mm]."""
+    """Return the lines of a text in a column of a ``width`` [mm]; the last is never a letter or two."""
+    lines = _broken(text, kind, width)
+    for share in _NARROWER:
+        if len(lines) < 2 or len(lines[-1]) >= _FEWEST:
+            break
+        narrower = _broken(text, kind, share * width)
+        lines = narrower if len(narrower) == len(lines) else lines
+    return lines
+
+
+def _broken(text: str, kind: str, width: float) -> list[str]:
     lines = []
     for part in text.splitlines():
         layout = QTextLayout(part, _font(kind))
@@ -111,7 +124,7 @@ def wrapped(text: str, kind: str, width: float) -> list[str]:
 
 def line_height(kind: str) -> float:
     """Return how far lines of a text are apart [mm]: room for letters of every language."""
-    return 1.45 * TYPES[kind][0] * _POINT
+    return 1.4 * TYPES[kind][0] * _POINT
 
 
 class Paper:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QEvent, QObject, QRectF, Qt, Signal
-from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPixmap, QResizeEvent, QWheelEvent
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPixmap, QResizeEvent, QShowEvent, QWheelEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLineEdit, QScrollArea, QVBoxLayout, QWidget
 
 from app.dress.parts import Segment, button, hairline, sentence
@@ -79,6 +79,11 @@ class ReportPage(QWidget):
         self.state.setText(words)
         self.state.setVisible(bool(words))
         self.paper.show_pages(pages, words, stale=stale)
+
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        if not event.spontaneous():
+            self.paper.verticalScrollBar().setValue(0)  # a doubt stands at the head
 
     def show_choices(self, customer: str, language: str) -> None:
         """Show whose the sheet is, unless that is being typed, and which language it speaks."""

@@ -12,6 +12,7 @@ from app.reporting.paper import Paper, elided, fitting, line_height, text_width,
 from app.reporting.telling import (
     CutView,
     MeasureRow,
+    cut_notes,
     cut_views,
     definitions,
     light_legend,
@@ -25,9 +26,9 @@ from core.sheet import Sheet
 HALF = 88.0
 """The width of a column where two stand beside each other [mm]."""
 
-_ROW, _CUT_ROW = 4.75, 5.6
+_ROW, _CUT_ROW = 4.6, 5.6
 _FEW = 3  # footnotes that stand below each other
-_EDGES = (81.0, 97.0, 113.5, 127.0, 139.0, 149.5, 160.0)  # right ends of the figures of a cut
+_EDGES = (81.0, 96.5, 111.0, 126.0, 141.0, 150.0, 160.5)  # right ends of the figures of a cut
 _ELASTIC, _LIGHT, _WORD = 35.0, 164.5, 168.0
 _MEASURED = (HALF - 29.0, HALF - 14.5, HALF)  # right ends of before, after, change
 
@@ -47,7 +48,7 @@ def cut_blocks(handout: Handout) -> list[Block]:
     views, footnotes = cut_views(handout.sheet, list(handout.colours))
     blocks = [title, _cut_head(), *(_cut_row(view, handout.colours.get(view.line, "")) for view in views)]
     blocks.append(_legend())
-    return [*blocks, *_footnotes(footnotes)]
+    return [*blocks, *_footnotes(footnotes), _beside([_bullet(note) for note in cut_notes(handout.sheet)])]
 
 
 def measure_blocks(sheet: Sheet) -> Iterator[Block]:
@@ -110,6 +111,7 @@ def _cut_row(view: CutView, colour: str) -> Block:
     kind = fitting(view.elastic, room)
     elastic = elided(view.elastic, kind, room)
     word = elided(view.word, "body", WIDE - _WORD)
+    strong = None if view.front_only else 2
 
     def paint(paper: Paper, x: float, y: float) -> None:
         base, middle = y + 3.75, y + 2.8
@@ -118,7 +120,9 @@ def _cut_row(view: CutView, colour: str) -> Block:
         paper.text(x + 5.1 + text_width(title, "strong"), base - 0.9, marks, "axis")
         paper.text(x + _ELASTIC, base, elastic, kind, ink=LIGHT.text)
         for place, (edge, figure) in enumerate(zip(_EDGES, view.figures, strict=True)):
-            paper.text(x + edge, base, figure, "figure strong" if place == 2 else "figure", align="right")
+            paper.text(
+                x + edge, base, figure, "figure strong" if place == strong else "figure", align="right"
+            )
         if view.light:
             paint_light(paper, x + _LIGHT, middle, view.light)
             paper.text(x + _WORD, base, word, "body")
@@ -162,6 +166,26 @@ def _footnote_row(notes: list[tuple[str, list[str]]], width: float) -> Block:
     return Block(max(len(lines) for _, lines in notes) * line_height("small"), paint)
 
 
+def _beside(blocks: list[Block]) -> Block:
+    """Return blocks one below the other in two columns that are as even as can be."""
+
+    def high(part: list[Block]) -> float:
+        return sum(block.height + block.gap for block in part)
+
+    halves = min(
+        ((blocks[:k], blocks[k:]) for k in range(len(blocks) + 1)), key=lambda two: max(map(high, two))
+    )
+
+    def paint(paper: Paper, x: float, y: float) -> None:
+        for left, part in zip((0.0, WIDE - HALF), halves, strict=True):
+            down = y
+            for block in part:
+                block.paint(paper, x + left, down + block.gap)
+                down += block.height + block.gap
+
+    return Block(max(map(high, halves)), paint, gap=0.6)
+
+
 def _measure_head() -> Block:
     titles = tr("before"), tr("after"), tr("change")
     unit = tr("mm, if not told otherwise")
@@ -175,7 +199,7 @@ def _measure_head() -> Block:
 
 
 def _measure(row: MeasureRow) -> Block:
-    room = _MEASURED[0] - 13.0
+    room = _MEASURED[0] - 11.0
     unit = elided(row.unit, "caption", room)
     room -= text_width(unit, "caption") + 1.6 if unit else 0.0
     name = fitting(row.title, room)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby
 from typing import Any
 
@@ -13,11 +13,11 @@ from app.showing.verdict_chip import state_title
 from app.wording.words import language, number, say, tr
 from core.cutting import CutRow
 from core.design_lines import partner_of
-from core.measuring.definitions import definition_of
+from core.measuring.definitions import GIRTHS, TAPE, definition_of
 from core.measuring.own import OWN
 from core.press_list import PressRow
 from core.sewing.comfort import comfort
-from core.sheet import SOUND, Sheet
+from core.sheet import Sheet
 from core.sizes import built_in
 
 NOTHING = "\N{EN DASH}"
@@ -26,7 +26,10 @@ NOTHING = "\N{EN DASH}"
 
 @dataclass(frozen=True)
 class CutView:
-    """A row of the cut list, as it is printed; ``marks`` are the numbers of its footnotes."""
+    """A row of the cut list, as it is printed; ``marks`` are the numbers of its footnotes.
+
+    The lengths of one that is ``front_only`` are no whole piece.
+    """
 
     line: str
     title: str
@@ -35,6 +38,7 @@ class CutView:
     light: str
     word: str
     marks: tuple[int, ...]
+    front_only: bool = False
 
 
 @dataclass(frozen=True)
@@ -65,7 +69,7 @@ def project_words(sheet: Sheet) -> str:
 def state_words(sheet: Sheet) -> tuple[str, str]:
     """Return the word for the run, and why its figures are no result, if they are none."""
     word = state_title(sheet.state)
-    if sheet.state in SOUND and sheet.state != "settling":
+    if sheet.sound and sheet.state != "settling":
         return word, ""
     return word, tr("{state}: these figures are no result to sew for.").format(state=word)
 
@@ -99,23 +103,32 @@ def size_cautions(sheet: Sheet) -> str:
 
 
 def cut_views(sheet: Sheet, order: Sequence[str]) -> tuple[list[CutView], list[str]]:
-    """Return the rows of the cut list in the ``order`` of the lines, and their footnotes."""
+    """Return the rows of the cut list in the ``order`` of the lines, and their footnotes.
+
+    Of a shape that is no result no figure is told: nobody is to cut by it.
+    """
     footnotes: list[str] = []
     views = []
     rows = zip(sheet.cuts.rows, sheet.pressures, strict=True)
     for cut, press in sorted(rows, key=lambda row: _place(row[0].line, order)):
-        notes = list(dict.fromkeys(map(say, (*cut.notes, *press.notes))))
+        notes = list(dict.fromkeys(map(say, (*cut.notes, *press.notes)))) if sheet.sound else []
         footnotes += [note for note in notes if note not in footnotes]
-        views.append(_cut_view(cut, press, tuple(footnotes.index(note) + 1 for note in notes)))
+        view = _cut_view(cut, press, tuple(footnotes.index(note) + 1 for note in notes))
+        views.append(view if sheet.sound else _without_figures(view))
     return views, footnotes
 
 
+def cut_notes(sheet: Sheet) -> list[str]:
+    """Return what holds for all of the cut list, and how sure the limits of its lights are."""
+    return [*(_with_elastics(note, sheet) for note in sheet.cuts.notes), comfort().doubts[0].told(language())]
+
+
 def cut_pieces(sheet: Sheet, order: Sequence[str]) -> list[tuple[str, str, str]]:
-    """Return line, title and length [mm] of all that is to be cut, in the ``order`` of the lines."""
+    """Return line, title and length [mm] of whole pieces to be cut, in the ``order`` of the lines."""
     return [
         (row.line, piece_title(row.line, row.title), number(row.cut_mm, 0))
         for row in sorted(sheet.cuts.rows, key=lambda row: _place(row.line, order))
-        if row.cut_mm is not None
+        if row.cut_mm is not None and not row.front_only
     ]
 
 
@@ -126,7 +139,7 @@ def measure_rows(sheet: Sheet) -> list[tuple[str, list[MeasureRow]]]:
     found = []
     for group in order:
         those = [row for name, row in rows if name == group]
-        known = [_measure_row(row) for row in those if _known(row)]
+        known = [_measure_row(row, after=sheet.sound) for row in those if _known(row)]
         missing = [row for row in those if not _known(row)]
         for note, same in groupby(missing, key=lambda row: row["note"]):
             title = _listed([_measure_title(row) for row in same])
@@ -136,26 +149,30 @@ def measure_rows(sheet: Sheet) -> list[tuple[str, list[MeasureRow]]]:
 
 
 def definitions(sheet: Sheet) -> list[tuple[str, str]]:
-    """Return measures and how they are taken; those that are taken alike stand together."""
+    """Return measures and how they are taken; those that are taken alike stand together.
+
+    How a tape lies is said once, for all girths.
+    """
+    tape = say(TAPE)
     told: dict[tuple[str, str], list[str]] = {}
     for each in sheet.definitions:
         told.setdefault((each["text"], each["iso"]), []).append(say(each["title"]))
-    found = []
+    found = [(say(GIRTHS), tape)]
     for (text, iso), titles in told.items():
         standard = tr("ISO 8559-1: {name}.").format(name=iso) if iso else ""
-        found.append((_listed(titles), _joined([say(text), standard])))
+        own = " ".join(say(text).replace(tape, "").split())
+        found.append((_listed(titles), _joined([own, standard])))
     return found
 
 
 def note_groups(sheet: Sheet) -> Iterator[tuple[str, list[str]]]:
-    """Give what is to be known of the figures: what to look at, how sure they are, what is left out."""
+    """Give what is to be known of the figures beside the cut list: what to look at, what is left out."""
     if sheet.warnings:
         yield tr("To look at"), [say(each) for each in sheet.warnings]
     told = tr("Before: on the scan. After: on the body as the model reshapes it.")
     yield tr("Measured"), [each for each in (told, size_rule(sheet), size_cautions(sheet)) if each]
-    estimated = [*sheet.cuts.notes] if sheet.cuts.rows else []
-    limits = _limits() if sheet.cuts.rows else []
-    yield tr("Estimated"), [*map(say, estimated), *limits, *_unsure(sheet)]
+    if unsure := _unsure(sheet):
+        yield tr("Estimated"), unsure
     yield tr("Not modelled"), [say(each) for each in sheet.left_out]
 
 
@@ -191,7 +208,7 @@ def _cut_view(cut: CutRow, press: PressRow, marks: tuple[int, ...]) -> CutView:
     )
     word = light_word(press.light) if press.light else ""
     title = piece_title(cut.line, cut.title)
-    return CutView(cut.line, title, _elastic(cut), figures, press.light, word, marks)
+    return CutView(cut.line, title, _elastic(cut), figures, press.light, word, marks, cut.front_only)
 
 
 def _elastic(cut: CutRow) -> str:
@@ -199,13 +216,27 @@ def _elastic(cut: CutRow) -> str:
     return say(cut.elastic).removesuffix(f" {cut.width_mm or 0.0:g} mm") if cut.elastic else NOTHING
 
 
-def _measure_row(row: dict[str, Any]) -> MeasureRow:
+def _without_figures(view: CutView) -> CutView:
+    width, *others = view.figures
+    return replace(view, figures=(width, *(NOTHING for _ in others)), light="", word="")
+
+
+def _with_elastics(sentence: str, sheet: Sheet) -> str:
+    """Return what the core says of elastics, whose names are words of their own."""
+    names = {row.elastic for row in sheet.cuts.rows if row.elastic}
+    for name in sorted(names, key=len, reverse=True):
+        sentence = sentence.replace(f"{name}; ", _listed([say(name), ""])).replace(name, say(name))
+    return say(sentence)
+
+
+def _measure_row(row: dict[str, Any], *, after: bool) -> MeasureRow:
     digits = 0 if row["unit"] == "ml" else 1
     figures = (
         _figure(row["before"], digits),
         _figure(row["after"], digits),
         NOTHING if row["difference"] is None else number(row["difference"], digits, signed=True),
     )
+    figures = figures if after else (figures[0], NOTHING, NOTHING)
     unit = row["unit"].replace("2", "\N{SUPERSCRIPT TWO}")
     unit = "" if unit == "mm" else unit
     if row["estimate"]:
@@ -226,13 +257,6 @@ def _group(key: str) -> str:
 
 def _known(row: dict[str, Any]) -> bool:
     return row["before"] is not None or row["after"] is not None
-
-
-def _limits() -> list[str]:
-    """Return how sure the limits of the lights are, and between whose figures they stand."""
-    limits = comfort()
-    sources = "; ".join(each.name for each in limits.sources)
-    return [limits.doubts[0].told(language()), tr("Sources: {names}.").format(names=sources)]
 
 
 def _unsure(sheet: Sheet) -> list[str]:
