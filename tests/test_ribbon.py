@@ -16,8 +16,9 @@ from app.seeing.ribbon import CASING, Surface, build_casing, build_ribbon
 from app.seeing.sight import Sight
 from core.centre_line import NO_BACK, centre_line
 from core.mesh import Mesh, unit
-from core.pipeline import Stages
+from core.pipeline import Stages, build
 from core.sections import arc_length
+from core.solution import run
 
 RADIUS = 120.0
 
@@ -101,6 +102,43 @@ def test_a_band_covers_a_nipple() -> None:
     assert met[1] < -RADIUS - 6.0
 
 
+@pytest.mark.parametrize("name", ["mannequin", "person"])
+def test_no_skin_stands_through_a_band_however_wide_it_is(name: str, built: Callable[[str], Stages]) -> None:
+    stages, design = built(name), built(name).design
+    for line in ("full-bust", "mid-bust"):
+        design = design.with_line(line, 0.9)
+    solved = run(build(design, stages))
+    rest = stages.body.mesh
+    reshaped = rest.vertices.copy()
+    reshaped[solved.stages.moving.vertices] = solved.stages.shape(solved.control_points)[0]
+    assert np.abs(reshaped - rest.vertices).max() > 5.0
+    for band in bands(stages, ()):
+        for width in (10.0, 25.0, 40.0, 60.0):
+            ribbon = build_ribbon(band.path, Surface(rest), width, band.back)
+            for skin in (rest, rest.moved(reshaped)):
+                cloth = ribbon.mesh.vertices + ribbon.follow @ (skin.vertices - rest.vertices)
+                assert bare(skin, cloth.reshape(ribbon.rows, -1, 3)) == 0.0, (band.name, width)
+
+
+def bare(skin: Mesh, cloth: np.ndarray) -> float:
+    """The share of a band's fields between its rims, whose middle lies in the body: skin stands over them.
+
+    A sight outwards from there leaves the body; one that enters it first sees a breast hang over the band.
+    """
+    drawn = pv.PolyData.from_regular_faces(skin.vertices, skin.faces)
+    low, high = cloth[:, 1:-2], cloth[:, 2:-1]  # without the rims, which dip under the skin
+    further, across = (np.roll(low, -1, axis=0) - low).reshape(-1, 3), (high - low).reshape(-1, 3)
+    middles = (0.5 * (low + np.roll(high, -1, axis=0))).reshape(-1, 3)
+    out = unit(np.cross(further, across))
+    met = [
+        drawn.ray_trace(at, at + 8.0 * way, first_point=True)[1] for at, way in zip(middles, out, strict=True)
+    ]
+    over = [
+        len(face) > 0 and skin.face_normals[face[0]] @ way > 0.0 for face, way in zip(met, out, strict=True)
+    ]
+    return float(np.mean(over))
+
+
 @pytest.mark.parametrize(("name", "calm"), [("mannequin", 0.6), ("person", 0.95)])
 def test_bands_of_the_template_go_round_a_body(
     name: str, calm: float, built: Callable[[str], Stages]
@@ -140,9 +178,9 @@ def bending(curve: np.ndarray, surface: Surface) -> float:
 def test_an_open_ribbon_ends_round() -> None:
     surface = Surface(tube(lambda turn: np.full_like(turn, RADIUS)))
     path = arc(-40.0, 40.0, 20.0)
-    for build, radius in ((build_ribbon, 10.0), (build_casing, 0.5 * (20.0 + CASING))):
-        ribbon = build(path, surface, 20.0)
-        rows = ribbon.mesh.vertices.reshape(ribbon.rows, 8, 3)
+    for laid, radius in ((build_ribbon, 10.0), (build_casing, 0.5 * (20.0 + CASING))):
+        ribbon = laid(path, surface, 20.0)
+        rows = ribbon.mesh.vertices.reshape(ribbon.rows, -1, 3)
         along = RADIUS * np.arctan2(rows[..., 0], -rows[..., 1])
         end = along[:, 1:-1].max()
         width = np.linalg.norm(rows[:, 1] - rows[:, -2], axis=1)

@@ -9,7 +9,7 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from app.seeing.ribbon import ACROSS, Ribbon, Surface
+from app.seeing.ribbon import Ribbon, Surface, rimmed
 from app.seeing.sight import Sight
 from app.seeing.smooth import smooth_actor
 from app.seeing.stage import rgb
@@ -21,7 +21,7 @@ from core.moving import moving_faces
 Rise = Callable[[Floats], Points]
 """Returns how far a band is off the skin, (rows, 3) [mm], at places along its line, (rows,) 0 to 1."""
 
-_SHADE = np.array([0.62, 0.62, 0.86, 1.0, 1.0, 0.86, 0.62, 0.62])
+_SHADE = (0.62, 0.62, 0.86)  # how dark the rim of a band is, from outside
 _SEAM = 0.72  # how dark the seam is where front part and back part meet
 _FAINT, _FAINT_CASING = 0.3, 0.2  # how much is seen of a faded band and of the casing round it
 _QUIET, _CLOTH = 0.45, "#F2ECE6"  # the back part keeps its length: its colour steps back towards plain cloth
@@ -91,7 +91,7 @@ class RibbonActor:
 
     def paint_rows(self, rows: Floats) -> None:
         """Give each row a colour of its own, shape (rows, 3) 0..255."""
-        colours = _SHADE[None, :, None] * rows[:, None]
+        colours = rimmed(_SHADE, self.ribbon.columns)[:, None] * rows[:, None]
         self.data.point_data["Colour"][:] = np.round(colours.reshape(-1, 3))
         self.data.GetPointData().GetArray("Colour").Modified()
 
@@ -117,15 +117,16 @@ class RibbonActor:
         ``off`` gives that for places along the line, 0 to 1; None lets it lie as it was laid.
         """
         rows = np.zeros_like(self.ribbon.lifted) if off is None else off(self.ribbon.at) - self.ribbon.lifted
-        raised = np.repeat(rows, len(ACROSS), axis=0)
+        raised = np.repeat(rows, self.ribbon.columns, axis=0)
         changed = not np.array_equal(raised, self._raised)
         self._raised = raised
         return changed
 
     def spine(self) -> tuple[Points, Points]:
         """Return the middle of the top of the ribbon as shown and its normals, both (rows, 3)."""
+        middle = self.ribbon.columns // 2
         points, normals = (
-            part.reshape(-1, len(ACROSS), 3)[:, 3:5].mean(axis=1, dtype=np.float64)
+            part.reshape(self.ribbon.rows, -1, 3)[:, middle - 1 : middle + 1].mean(axis=1, dtype=np.float64)
             for part in (self._places, self._normals)
         )
         return points, unit(normals)

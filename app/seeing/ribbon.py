@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from math import ceil
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -18,10 +20,9 @@ from core.sections import arc_length
 CASING = 7.0
 """How much wider the white casing of the selected ribbon is [mm]."""
 
-ACROSS = np.array([-1.0, -1.0, -0.86, -0.4, 0.4, 0.86, 1.0, 1.0])
-"""Where the points of a cross-section lie, in half widths."""
-
-_PUFF = np.array([-1.2, 0.5, 1.0, 1.0, 1.0, 1.0, 0.5, -1.2])
+_FLAT = 0.86  # how far the flat top of a ribbon reaches, in half widths
+_APART = 5.0  # about how far apart points lie on it: the skin would stand through a longer chord [mm]
+_PUFF = (-1.2, 0.5)  # how the rim of a ribbon is puffed, whose top is 1, from outside
 _LEAST, _MORE = 0.7, 1.2  # how high a ribbon stands off the skin, and how much more where it is puffed [mm]
 _ROUND = np.radians([0.0, 18.0, 36.0, 54.0, 72.0, 90.0])  # where the rows of a round end lie
 _TIP = 0.1  # a ribbon narrower than this, in widths, dips under the skin
@@ -29,7 +30,7 @@ _TIP = 0.1  # a ribbon narrower than this, in widths, dips under the skin
 
 @dataclass(frozen=True, eq=False)
 class Ribbon:
-    """A ribbon at rest, rows of eight points across, and the matrix that moves it with the body.
+    """A ribbon at rest, rows of points across, and the matrix that moves it with the body.
 
     ``follow`` averages body displacements, shape (r, n), so that points = vertices + follow @ displacement.
     ``part`` (rows,) is the segment of the line's path that each row lies on, -1 on the back; ``at`` (rows,)
@@ -46,7 +47,12 @@ class Ribbon:
     @property
     def rows(self) -> int:
         """Number of cross-sections."""
-        return len(self.mesh.vertices) // len(ACROSS)
+        return len(self.part)
+
+    @property
+    def columns(self) -> int:
+        """Number of points of a cross-section, which is even."""
+        return len(self.mesh.vertices) // self.rows
 
 
 _LAID: WeakKeyDictionary[Skin, dict[object, Ribbon]] = WeakKeyDictionary()
@@ -78,6 +84,17 @@ class Surface(SkinSurface):
         return smooth(wide, 2, closed=False)
 
 
+def rimmed(rim: Sequence[float], columns: int) -> Floats:
+    """Return a value for each of ``columns`` points across, (columns,): ``rim`` from either edge, else 1."""
+    return np.concatenate([rim, np.ones(columns - 2 * len(rim)), rim[::-1]])
+
+
+def _across(width: float) -> Floats:
+    """Return where the points of a cross-section lie, in half widths, shape (c,)."""
+    top = np.linspace(-_FLAT, _FLAT, 2 * max(2, ceil(0.5 * _FLAT * width / _APART)))
+    return np.concatenate([[-1.0, -1.0], top, [1.0, 1.0]])
+
+
 def _key(path: Points, width: float, back: Points, cased: bool) -> object:
     return path.tobytes(), width, back.tobytes(), cased
 
@@ -107,18 +124,19 @@ def _puffed(line: CentreLine, surface: Surface, width: float, sink: float) -> Ri
     points, closed = line.points, line.closed
     ahead = np.roll(points, -1, 0) - np.roll(points, 1, 0) if closed else np.gradient(points, axis=0)
     side = unit(smooth(unit(np.cross(line.normals, ahead)), 6, closed))
-    reach = 0.5 * width * narrow[:, None, None] * ACROSS[:, None]
+    across = _across(width)
+    reach = 0.5 * width * narrow[:, None, None] * across[:, None]
     flat = points[:, None] + reach * side[:, None]
     laid, up = (each.reshape(flat.shape) for each in surface.lay(flat.reshape(-1, 3)))
-    puff = np.tile(_PUFF, (len(points), 1))
-    puff[narrow < _TIP] = _PUFF.min()
+    puff = np.tile(rimmed(_PUFF, len(across)), (len(points), 1))
+    puff[narrow < _TIP] = _PUFF[0]
     lift = _LEAST + _MORE * puff - sink
     if closed:
         laid, up = smooth(laid, 3, closed), smooth(up, 3, closed)
     raised = laid + (lift + surface.bumps(laid, up))[..., None] * unit(up)
     lifted = line.lift[:, None] * line.normals
     raised += lifted[:, None]
-    vertices, faces = raised.reshape(-1, 3), _grid_faces(len(points), closed)
+    vertices, faces = raised.reshape(-1, 3), _grid_faces(len(points), len(across), closed)
     return Ribbon(Mesh(vertices, faces), surface.follow(vertices), line.part, at, lifted)
 
 
@@ -141,8 +159,7 @@ def _rounded(line: CentreLine, radius: float) -> tuple[CentreLine, Floats, Float
     return rows, np.interp(at, s, np.linspace(0.0, 1.0, len(s))), narrow
 
 
-def _grid_faces(rows: int, closed: bool) -> Faces:
-    width = len(ACROSS)
-    a = (np.arange(rows if closed else rows - 1)[:, None] * width + np.arange(width - 1)).ravel()
-    b = (a + width) % (rows * width)
+def _grid_faces(rows: int, columns: int, closed: bool) -> Faces:
+    a = (np.arange(rows if closed else rows - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
+    b = (a + columns) % (rows * columns)
     return np.concatenate([np.stack([a, b, b + 1], axis=1), np.stack([a, b + 1, a + 1], axis=1)])
