@@ -18,6 +18,7 @@ from app.presenting.bust import bust_move, up_words
 from app.wording.words import number
 from core.design_elastics import Elastic
 from core.elastics import save_elastic
+from core.report import still_lines
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -174,6 +175,11 @@ def test_a_band_on_the_rib_cage_is_cut_as_far_stretched_as_the_designer_says() -
         yield made_of(window, "under-bust")
         row = window.garment.rows["under-bust"]
         assert row.set_stretch.isVisible()
+        told = window.lines.rows["under-bust"]._note.text()
+        assert told.startswith("Made of Bra band, plush back 18 mm. It moves nothing")
+        frame = window.session.frame
+        assert frame is not None
+        assert still_lines(frame.stages) == [], "an elastic is there to be cut, not measured by mistake"
         row.set_stretch.setFocus()
         row.set_stretch.selectAll()
         QTest.keyClicks(row.set_stretch, "30")

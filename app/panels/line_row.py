@@ -77,8 +77,7 @@ class LineRow(QFrame):
             self.slider.setFocus(Qt.FocusReason.OtherFocusReason)
         self._measure.setVisible(not view.constrained)
         self._measure.setText(f"{number(view.reached_mm or view.rest_mm)} mm")
-        still = tr("On points that do not move: measured only.")
-        self._note.setText(still if view.own else tr("On the rib cage: measured, it does not move."))
+        self._note.setText(_still_words(view))
         self._note.setVisible(not view.constrained)
         if self._open:  # while the row is closed nobody sees them
             self.details.show_view(view)
@@ -264,6 +263,16 @@ class LineRow(QFrame):
         self._eye.setVisible(in_hand or not self.view.visible)
         self._lock.setVisible((in_hand and self.view.constrained) or self.view.locked)
         self.details.setVisible(self._open)
+
+
+def _still_words(view: LineView) -> str:
+    """Return what a line on points that do not move is good for."""
+    if view.elastic:
+        words = tr("Made of {elastic}. It moves nothing, but presses and is cut: see the tab Garment.")
+        return words.format(elastic=view.elastic)
+    if view.own:
+        return tr("On points that do not move: measured only.")
+    return tr("On the rib cage: measured, it does not move.")
 
 
 def elastic_tip() -> str:
