@@ -22,7 +22,7 @@ from core.mesh import Points
 from core.pipeline import Stages
 from core.project import whole_file
 from core.solution import Solution
-from core.solver import Record
+from core.solver import Marks, Record
 from core.solving.condition import Condition
 from core.verdict import Verdict
 
@@ -55,17 +55,18 @@ def write_solution(solution: Solution, folder: Path) -> dict[str, Any]:
     write_mesh(folder / "body.ply", solution.body)
     write_mesh(folder / "control.ply", stages.control.mesh.moved(solution.control_points))
     write_control_points(folder / "control.csv", stages.control)
-    write_turns(folder / "turns.csv", solution.records, stages.model.lines)
+    write_turns(folder / "turns.csv", solution.records, stages)
     figures = report(solution)
     with whole_file((folder / "report.json").absolute()) as partial:
         partial.write_text(json.dumps(figures, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     return figures
 
 
-def write_turns(path: str | os.PathLike[str], records: Sequence[Record], lines: Sequence[Line]) -> None:
-    """Write one CSV row per turn; each heading names its unit."""
-    heading = ["turn", "volume_error_percent", "volume_error_ml", "nipple_left_z_mm", "nipple_right_z_mm"]
-    heading += ["apex_z_mm", "apex_protrusion_mm", *(f"length_{line.name}_mm" for line in lines), "step_mm"]
+def write_turns(path: str | os.PathLike[str], records: Sequence[Record], stages: Stages) -> None:
+    """Write one CSV row per turn; each heading names its unit, heights what they are counted from."""
+    heading = ["turn", "volume_error_percent", "volume_error_ml", *_marks(stages.rest_marks)]
+    heading += [*(f"length_{line.name}_mm" for line in stages.model.lines), "step_mm"]
+    low = _lowest(stages)
     with (
         whole_file(Path(path).absolute()) as partial,
         open(partial, "w", newline="", encoding="utf-8") as file,
@@ -73,12 +74,7 @@ def write_turns(path: str | os.PathLike[str], records: Sequence[Record], lines: 
         writer = csv.writer(file)
         writer.writerow(heading)
         for row in records:
-            marks = row.marks
-            seen = (
-                (marks.nipple_left_z, marks.nipple_right_z, marks.apex_z, marks.apex_protrusion)
-                if marks
-                else ()
-            )
+            seen = _marks(row.marks, low).values()
             figures = (100.0 * row.error, row.error_ml, *seen, *row.lengths, row.step)
             writer.writerow([row.turn, *(f"{value:.9g}" for value in figures)])
 
@@ -103,7 +99,10 @@ def report(solution: Solution) -> dict[str, Any]:
             line.name: _line_report(line, stages, reached)
             for line, reached in zip(stages.model.lines, last.lengths, strict=True)
         },
-        "marks": {"rest": _marks(solution.rest), "final": _marks(last)},
+        "marks": {
+            "rest": _marks(solution.rest.marks, _lowest(stages)),
+            "final": _marks(last.marks, _lowest(stages)),
+        },
         "fit": _fit_report(stages),
         "settings": _settings(stages),
         "notes": [*shape_warnings(solution), *notes(stages)],
@@ -217,7 +216,10 @@ def blamed_line(stages: Stages) -> WornLine | None:
 
 
 def still_lines(stages: Stages) -> list[str]:
-    """Return a sentence for each line that is worn where no length can move anything."""
+    """Return a sentence for each line that is worn where no length can move anything.
+
+    One that is made of an elastic is there to be cut: of it there is nothing to be told.
+    """
     own = {line.name for line in stages.design.own_lines}
     still = [line.name for line in stages.model.lines if not line.constrains]
     return [
@@ -225,7 +227,7 @@ def still_lines(stages: Stages) -> list[str]:
         if name in own
         else f"{name} lies on the rib cage: it is measured, and no length that is set moves it."
         for name in still
-        if name in stages.design.worn()
+        if name in stages.design.worn() and name not in stages.design.worn_elastics()
     ]
 
 
@@ -250,13 +252,17 @@ def _line_report(line: Line, stages: Stages, reached: float) -> dict[str, Any]:
     }
 
 
-def _marks(row: Record) -> dict[str, float]:
-    marks = row.marks
+def _lowest(stages: Stages) -> float:
+    return float(stages.body.mesh.vertices[:, 2].min())
+
+
+def _marks(marks: Marks | None, low: float = 0.0) -> dict[str, float]:
+    """Return what is watched on the body [mm], if it was; heights are over ``low``, the lowest point."""
     if marks is None:
         return {}
     return {
-        "nipple_left_z_mm": marks.nipple_left_z,
-        "nipple_right_z_mm": marks.nipple_right_z,
-        "apex_z_mm": marks.apex_z,
+        "bust_point_left_above_lowest_mm": marks.nipple_left_z - low,
+        "bust_point_right_above_lowest_mm": marks.nipple_right_z - low,
+        "apex_above_lowest_mm": marks.apex_z - low,
         "apex_protrusion_mm": marks.apex_protrusion,
     }

@@ -23,9 +23,9 @@ TURN_COLUMNS = [
     "turn",
     "volume_error_percent",
     "volume_error_ml",
-    "nipple_left_z_mm",
-    "nipple_right_z_mm",
-    "apex_z_mm",
+    "bust_point_left_above_lowest_mm",
+    "bust_point_right_above_lowest_mm",
+    "apex_above_lowest_mm",
     "apex_protrusion_mm",
     "length_under-bust_mm",
     "length_mid-bust_mm",
@@ -43,6 +43,12 @@ def test_solve_writes_everything(person: Path, tmp_path: Path) -> None:
     assert figures["state"] == "settled"
     assert figures["turns"] == len(rows) - 1 == int(rows[-1][0])
     assert abs(float(rows[-1][1])) < 0.001
+    shown = trimesh.load(tmp_path / "out" / "body.ply", process=False).vertices
+    left = shown[shown[:, 0] > 0.0]
+    nipple = left[left[:, 1].argmin(), 2] - shown[:, 2].min()
+    assert float(rows[-1][3]) == pytest.approx(nipple, abs=2.0), "heights are above the lowest point"
+    final = figures["marks"]["final"]["bust_point_left_above_lowest_mm"]
+    assert final == pytest.approx(float(rows[-1][3]))
     line = figures["lines"]["mid-bust"]
     assert line["set_mm"] == pytest.approx(line["rest_mm"] - 20.0)
     assert line["set_mm"] < line["reached_mm"] < line["rest_mm"]
@@ -262,7 +268,8 @@ def test_an_own_line_is_worn_and_reported(mannequin: Path, tmp_path: Path) -> No
     assert line["worn"]
     assert line["set_percent"] == pytest.approx(96.0)
     assert line["whole_band_rest_mm"] == line["rest_mm"]
-    assert figures["marks"]["final"]["nipple_left_z_mm"] > figures["marks"]["rest"]["nipple_left_z_mm"] + 1.0
+    left = "bust_point_left_above_lowest_mm"
+    assert figures["marks"]["final"][left] > figures["marks"]["rest"][left] + 1.0
     assert figures["design"]["own_lines"][0]["points"] == [35, 48, 61, 74, 87]
     with open(tmp_path / "control.csv", encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))

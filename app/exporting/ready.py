@@ -131,7 +131,7 @@ def _flat(path: str, outcome: Outcome, manner: Manner) -> Ready:
     drawn = strips(outcome.stages, outcome.control_points, *outcome.looks)
     told = ", ".join(f"{each.title} {number(each.length)} mm" for each in drawn)
     heading = f"Busk {__version__}, {outcome.design.scan.name}"
-    return Ready(told, "1:1", lambda at, _, hear: write_strips(at, drawn, heading))
+    return Ready(told, "1:1", lambda at, _, hear: write_strips(at, drawn, heading, say))
 
 
 def _measures(path: str, outcome: Outcome, manner: Manner) -> Ready:
@@ -154,9 +154,9 @@ def _measure_title(row: dict[str, Any]) -> str:
 
 
 def _turns(path: str, outcome: Outcome, manner: Manner) -> Ready:
-    records, lines = outcome.records, outcome.stages.model.lines
+    records = outcome.records
     told = tr("{count} turns").format(count=number(len(records), 0))
-    return Ready(told, "", lambda at, _, hear: write_turns(at, records, lines))
+    return Ready(told, "", lambda at, _, hear: write_turns(at, records, outcome.stages))
 
 
 def _picture(path: str, outcome: Outcome, manner: Manner) -> Ready:

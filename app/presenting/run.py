@@ -51,8 +51,8 @@ def table_of(frame: Frame) -> tuple[list[str], list[Sequence[object]]]:
         tr("turn"),
         tr("volume error [%]"),
         tr("volume error [ml]"),
-        tr("bust point height [mm]"),
-        tr("foremost place height [mm]"),
+        tr("bust points up [mm]"),
+        tr("foremost place up [mm]"),
         tr("largest move [mm]"),
         *(tr("{line} [mm]").format(line=name) for name in names),
     ]
