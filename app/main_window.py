@@ -89,6 +89,10 @@ class MainWindow(QMainWindow):
         self._fill_inspector()
         self.layout_ = Layout(self)
         self.pages = self.layout_.pages
+        self._make_desks()
+        connect(self)
+
+    def _make_desks(self) -> None:
         self.job_desk, self.limits_desk = JobDesk(self), LimitsDesk(self)
         self.landmark_desk, self.scan_desk = LandmarkDesk(self), ScanDesk(self)
         self.desk, self.verdict_desk = Desk(self), VerdictDesk(self)
@@ -112,7 +116,6 @@ class MainWindow(QMainWindow):
         self.rescuer = Rescue(self)
         self.view_desk = ViewDesk(self)
         self.housekeeping = Housekeeping(self)
-        connect(self)
 
     def _fill_inspector(self) -> None:
         lines = QWidget()

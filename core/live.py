@@ -29,7 +29,9 @@ while the last frame has not been fetched.
 """
 
 _HAND_RESTS = 0.2
-"""Seconds after the last request until the next frame waits no longer until the last one is shown."""
+"""Seconds after the last request for which it waits until the last frame is fetched and shown; turns always do
+while who shows one holds them.
+"""
 
 _NEXT_MOVE = 0.016
 """Seconds after a picture for which turns wait while lengths move: the hand is about to ask for others."""

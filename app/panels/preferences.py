@@ -77,6 +77,7 @@ def _groups() -> tuple[tuple[str, tuple[Setting, ...]], ...]:
     hands = (("busk", "Busk"), ("cad", "CAD"), ("blender", "Blender"), ("trackpad", tr("Trackpad")))
     materials = (("clay", tr("Clay")), ("plaster", tr("Plaster")), ("graphite", tr("Graphite")))
     motions = (("full", tr("Full")), ("reduced", tr("Reduced")))
+    turns = tr("How buttons and wheel turn, move and scale the body.")
     again = tr("In force when Busk is started again.")
     every = tr("What is not saved yet is kept aside this often, from {least} to {most} s.")
     return (
@@ -91,9 +92,7 @@ def _groups() -> tuple[tuple[str, tuple[Setting, ...]], ...]:
         (
             tr("3D view"),
             (
-                Choice(
-                    "mouse", tr("Mouse"), tr("How buttons and wheel turn, move and scale the body."), hands
-                ),
+                Choice("mouse", tr("Mouse"), turns, hands),
                 Choice("material", tr("Material"), tr("What the body looks made of."), materials),
                 Choice("motion", tr("Motion"), tr("Reduced: the view jumps where it would glide."), motions),
             ),

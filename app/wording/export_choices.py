@@ -24,13 +24,16 @@ class Export:
 
 def exports() -> tuple[Export, ...]:
     """Return all that can be exported, in the order of the list."""
+    return *_meshes(), *_drawings(), _measures(), *_pictures(), _turns()
+
+
+def _meshes() -> tuple[Export, ...]:
     meshes = {
         "glb": tr("glTF, always in metres with y up: Blender, viewers, web pages."),
         "obj": tr("Opened by nearly every 3D program, CLO among them. Tell it the unit."),
         "ply": tr("The format of scanners: MeshLab, CloudCompare, Blender. Tell it the unit."),
         "stl": tr("For 3D printing and CAD. Tell it the unit."),
     }
-    table = tr("A table for spreadsheets.")
     return (
         Export("body", tr("Body"), "person", tr("The whole body, as it was scanned or reshaped."), meshes),
         Export(
@@ -40,11 +43,16 @@ def exports() -> tuple[Export, ...]:
             tr("The coarse mesh that lies on the body and carries the lines."),
             meshes | {"csv": tr("A table of the control points in mm, with row and column.")},
         ),
+    )
+
+
+def _drawings() -> tuple[Export, ...]:
+    return (
         Export(
             "lines",
             tr("Lines as curves"),
             "lines",
-            tr("The worn lines as smooth curves in space. What to cut is told by the strips."),
+            tr("The worn lines, smooth on the skin: some mm off the lengths in the cut list. Cut by the strips."),
             {
                 "dxf": tr("For CAD and pattern programs: a layer for each part of a line."),
                 "obj": tr("For 3D programs, to lie on the body that is exported likewise."),
@@ -60,7 +68,17 @@ def exports() -> tuple[Export, ...]:
                 "dxf": tr("For CAD, pattern programs and plotters, in millimetres."),
             },
         ),
-        Export("measures", tr("Measures"), "ruler", tr("What the body measures."), _measure_formats(table)),
+    )
+
+
+def _measures() -> Export:
+    return Export(
+        "measures", tr("Measures"), "ruler", tr("What the body measures."), _measure_formats(_table())
+    )
+
+
+def _pictures() -> tuple[Export, ...]:
+    return (
         Export(
             "picture",
             tr("Picture"),
@@ -79,14 +97,16 @@ def exports() -> tuple[Export, ...]:
                 "png": tr("A series of pictures, for programs that cut films."),
             },
         ),
-        Export(
-            "turns",
-            tr("Turns of the run"),
-            "chart-line",
-            tr("Volume error, heights and lengths, turn by turn."),
-            {"csv": table},
-        ),
     )
+
+
+def _turns() -> Export:
+    told = tr("Volume error, heights and lengths, turn by turn.")
+    return Export("turns", tr("Turns of the run"), "chart-line", told, {"csv": _table()})
+
+
+def _table() -> str:
+    return tr("A table for spreadsheets.")
 
 
 def _measure_formats(table: str) -> dict[str, str]:
