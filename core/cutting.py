@@ -168,8 +168,8 @@ def _notes(rows: tuple[CutRow, ...], tissue: float) -> tuple[str, ...]:
     allowances = {row.allowance_mm for row in rows if row.cut_mm}
     if len(allowances) == 1:
         notes.append(
-            f"Lengths to cut hold the allowance for seams, {allowances.pop():g} mm each; hooks and eyes, rings "
-            "and slides are not taken off."
+            f"Lengths to cut hold the allowance for seams, {allowances.pop():g} mm each; hooks and eyes, "
+            "rings and slides are not taken off."
         )
     elif allowances:
         notes.append(

@@ -6,6 +6,7 @@ millimetres is measured there.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 from xml.etree import ElementTree
@@ -19,6 +20,7 @@ from app.exporting.choices import Choices
 from app.exporting.outcome import Manner, Outcome
 from app.exporting.ready import CONTROL_FORMATS, make_ready
 from app.wording.export_choices import exports
+from app.wording.words import speaking
 from core.cutting import cut_list
 from core.design import Design, ScanSource
 from core.elastics import find_elastic
@@ -131,6 +133,17 @@ def test_a_dxf_of_lines_holds_closed_curves_of_the_length_that_is_told(
         reached = line.length(outcome.control_points) + line.back_length
         # Both ways round: the curve is smooth on the skin, the length goes straight between control points.
         assert length == pytest.approx(reached, rel=0.06 if name.startswith("ring") else 0.02)
+
+
+def test_what_stands_on_a_strip_is_in_the_language_of_the_window(tmp_path: Path, outcome: Outcome) -> None:
+    with speaking("ja"):
+        again = Outcome(outcome.stages, outcome.control_points, outcome.records)
+        root = ElementTree.parse(write("flat", tmp_path / "ja.svg", again, Manner())).getroot()
+    words = [each.text or "" for each in root.iter(f"{SVG}text")][2:]  # heading and scale bar say mm
+    assert {"前中心", "右脇", "左脇", "縫い代"} <= set(words)
+    assert re.findall(r"[A-Za-z]{3,}", " ".join(words)) == []
+    wide = float(root.get("width", "").removesuffix("mm"))
+    assert wide > 20.0 + max(4.0 * sum(ord(letter) > 255 for letter in text) for text in words)
 
 
 @pytest.mark.parametrize("kind", STRIP_FORMATS)

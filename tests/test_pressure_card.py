@@ -143,6 +143,8 @@ def test_all_of_it_is_said_in_japanese() -> None:
     assert not set(limits.words) & set(english[0].words)
     assert all("。" in each for each in (*limits.sources, *limits.left_out))
     assert len(limits.sources) == len(comfort().sources) + len(comfort().doubts)
+    assert "繊維学会誌" in " ".join(limits.sources)
+    assert not any(word in " ".join(limits.sources) for word in ("Gakkaishi", "Senshoshi", "abstract"))
     view = pressure_views(LISTED, DESIGN, stale=False)["mid-bust"]
     assert view.word == "きつめ"
     assert "左後ろ" in view.tip

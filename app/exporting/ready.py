@@ -19,7 +19,7 @@ from core.report import write_turns
 from core.space import Space, space_of
 from core.writing_out.drawing import CURVE_FORMATS, STRIP_FORMATS, drawing_kind, write_curves, write_strips
 from core.writing_out.measures_file import MeasuresSheet, measures_kind, write_measures
-from core.writing_out.worn import strips, worn_curves
+from core.writing_out.worn import CENTRE, LEFT, RIGHT, SEAM, strips, worn_curves
 
 if TYPE_CHECKING:
     from app.printing.studio import Studio
@@ -131,7 +131,13 @@ def _flat(path: str, outcome: Outcome, manner: Manner) -> Ready:
     drawn = strips(outcome.stages, outcome.control_points, *outcome.looks)
     told = ", ".join(f"{each.title} {number(each.length)} mm" for each in drawn)
     heading = f"Busk {__version__}, {outcome.design.scan.name}"
-    return Ready(told, "1:1", lambda at, _, hear: write_strips(at, drawn, heading, say))
+    return Ready(told, "1:1", lambda at, _, hear: write_strips(at, drawn, heading, _strip_words))
+
+
+def _strip_words(text: str) -> str:
+    """Return what stands on a strip in the language in use."""
+    marks = {RIGHT: tr("right side"), LEFT: tr("left side"), CENTRE: tr("centre front"), SEAM: tr("seam")}
+    return marks.get(text) or say(text)
 
 
 def _measures(path: str, outcome: Outcome, manner: Manner) -> Ready:

@@ -22,14 +22,14 @@ def light_word(light: str) -> str:
 
 def light_limits() -> LightLimits:
     """Return the limits of the light in words."""
-    limits = comfort()
-    told = [f"{each.name}: {each.words.told(language())}" for each in limits.sources]
+    limits, colon = comfort(), "：" if language() == "ja" else ": "
+    told = [f"{each.named(language())}{colon}{each.words.told(language())}" for each in limits.sources]
     doubts = [words.told(language()) for words in limits.doubts]
     return LightLimits(
         limits.amber_kpa,
         limits.red_kpa,
         (light_word(GREEN), light_word(AMBER), light_word(RED)),
-        limits.sources[0].name,
+        limits.sources[0].named(language()),
         (*doubts, *told),
         tuple(say(each) for each in LEFT_OUT),
     )

@@ -119,8 +119,10 @@ def cut_views(sheet: Sheet, order: Sequence[str]) -> tuple[list[CutView], list[s
 
 
 def cut_notes(sheet: Sheet) -> list[str]:
-    """Return what holds for all of the cut list, and how sure the limits of its lights are."""
-    return [*(_with_elastics(note, sheet) for note in sheet.cuts.notes), comfort().doubts[0].told(language())]
+    """Return what holds for all of the cut list, and between whose figures the limits of its lights stand."""
+    limits, notes = comfort(), [_with_elastics(note, sheet) for note in sheet.cuts.notes]
+    sources = ("、" if language() == "ja" else "; ").join(each.named(language()) for each in limits.sources)
+    return [*notes, limits.doubts[0].told(language()), tr("Sources: {names}.").format(names=sources)]
 
 
 def cut_pieces(sheet: Sheet, order: Sequence[str]) -> list[tuple[str, str, str]]:

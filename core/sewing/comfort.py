@@ -46,7 +46,7 @@ def comfort() -> Comfort:
     values = json.loads((resources.files("resources") / "pressure.json").read_text(encoding="utf-8"))
     lights = {name: _words(values["lights"][name]) for name in (GREEN, AMBER, RED)}
     beyond = tuple((each["from_kpa"], _words(each)) for each in values["beyond"])
-    sources = tuple(Source(each["name"], _words(each)) for each in values["sources"])
+    sources = tuple(Source(each["name"], _words(each), each.get("name_ja", "")) for each in values["sources"])
     doubts = tuple(_words(each) for each in values["doubts"])
     amber, red = values["amber_kpa"], values["red_kpa"]
     return Comfort(amber, red, MappingProxyType(lights), beyond, sources, doubts)

@@ -28,10 +28,18 @@ class Words:
 
 @dataclass(frozen=True)
 class Source:
-    """Where numbers of a table come from: a ``name``, and what it says in words of our own."""
+    """Where numbers of a table come from: a ``name``, and what it says in words of our own.
+
+    ``name_ja`` is the name as it is written in Japanese, if it is another one.
+    """
 
     name: str
     words: Words
+    name_ja: str = ""
+
+    def named(self, language: str) -> str:
+        """Return the name in a language."""
+        return Words(self.name, self.name_ja).told(language)
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Sequence
+import unicodedata
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as Xml
@@ -15,6 +16,9 @@ from core.project import whole_file
 from core.space import Space
 from core.writing_out.dxf import new_dxf
 from core.writing_out.worn import Strip, WornCurve
+
+Say = Callable[[str], str]
+"""Puts a sentence of the core into another language."""
 
 CURVE_FORMATS = ("dxf", "obj")
 STRIP_FORMATS = ("svg", "dxf")
@@ -46,19 +50,22 @@ def write_curves(path: str | os.PathLike[str], curves: Sequence[WornCurve], spac
             drawing.saveas(partial)
 
 
-def write_strips(path: str | os.PathLike[str], strips: Sequence[Strip], heading: str = "") -> None:
+def write_strips(
+    path: str | os.PathLike[str], strips: Sequence[Strip], heading: str = "", say: Say = str
+) -> None:
     """Write strips at their size, 1:1 in millimetres, with a scale bar: SVG, or DXF with a layer a strip.
 
-    Raises UserError for another ending, or a place that cannot be written to.
+    ``say`` puts what stands beside them into another language. Raises UserError for another ending, or a
+    place that cannot be written to.
     """
     target, kind = Path(path).absolute(), drawing_kind(path, STRIP_FORMATS)
     with whole_file(target) as partial:
         if kind == "svg":
-            drawing = Xml.ElementTree(_svg(strips, heading))
+            drawing = Xml.ElementTree(_svg(strips, heading, say))
             Xml.indent(drawing)
             drawing.write(partial, encoding="utf-8", xml_declaration=True)
         else:
-            _strips_dxf(strips, heading).saveas(partial)
+            _strips_dxf(strips, heading, say).saveas(partial)
 
 
 def drawing_kind(path: str | os.PathLike[str], formats: Sequence[str]) -> str:
@@ -85,8 +92,8 @@ def _obj_lines(parts: Iterable[tuple[str, str, Points]], space: Space) -> Iterab
         count += len(places)
 
 
-def _svg(strips: Sequence[Strip], heading: str) -> Xml.Element:
-    words = [0.6 * _LETTER * len(text) for text in (heading, *map(told, strips))]
+def _svg(strips: Sequence[Strip], heading: str, say: Say) -> Xml.Element:
+    words = [_wide(text) for text in (heading, *(say(told(strip)) for strip in strips))]
     width = 2 * _MARGIN + max([1.3 * SCALE_BAR, *words, *(strip.length for strip in strips)])
     tops = _tops(strips)
     size = {
@@ -104,16 +111,21 @@ def _svg(strips: Sequence[Strip], heading: str) -> Xml.Element:
     _svg_text(page, _MARGIN + SCALE_BAR + 3.0, _MARGIN + 7.0, f"{SCALE_BAR:g} mm")
     for strip, name, top in zip(strips, _layers([s.name for s in strips]), tops, strict=False):
         group = Xml.SubElement(page, "g", {"id": f"strip {name}".replace(" ", "-")})
-        Xml.SubElement(group, "title").text = told(strip)
-        _svg_text(group, _MARGIN, top - 2.5, told(strip))
+        Xml.SubElement(group, "title").text = say(told(strip))
+        _svg_text(group, _MARGIN, top - 2.5, say(told(strip)))
         box = {"x": _MARGIN, "y": top, "width": strip.length, "height": strip.width}
         Xml.SubElement(group, "rect", {key: f"{value:.4f}" for key, value in box.items()})
         for at, what in strip.marks:
             _svg_line(
                 group, (_MARGIN + at, top), (_MARGIN + at, top + strip.width + 2.0), {"stroke-dasharray": "1"}
             )
-            _svg_text(group, _MARGIN + at + 0.8, top + strip.width + 3.5, what, 3.0)
+            _svg_text(group, _MARGIN + at + 0.8, top + strip.width + 3.5, say(what), 3.0)
     return root
+
+
+def _wide(text: str) -> float:
+    """Return about how wide a text is [mm]: letters of the East are as wide as they are high."""
+    return _LETTER * sum(1.0 if unicodedata.east_asian_width(each) in "WF" else 0.6 for each in text)
 
 
 def _svg_line(
@@ -131,7 +143,7 @@ def _svg_text(parent: Xml.Element, x: float, y: float, text: str, size: float = 
     Xml.SubElement(parent, "text", place).text = text
 
 
-def _strips_dxf(strips: Sequence[Strip], heading: str) -> Any:
+def _strips_dxf(strips: Sequence[Strip], heading: str, say: Say) -> Any:
     drawing = new_dxf("mm")
     space, tops = drawing.modelspace(), _tops(strips)
     drawing.layers.add("scale bar", color=8)
@@ -144,10 +156,12 @@ def _strips_dxf(strips: Sequence[Strip], heading: str) -> Any:
         drawing.layers.add(layer, color=1 + k % 6)
         corners = [(0.0, y), (strip.length, y), (strip.length, y + strip.width), (0.0, y + strip.width)]
         space.add_lwpolyline(corners, close=True, dxfattribs=on)
-        space.add_text(told(strip), height=_LETTER, dxfattribs=on | {"insert": (0.0, y + strip.width + 2.0)})
+        space.add_text(
+            say(told(strip)), height=_LETTER, dxfattribs=on | {"insert": (0.0, y + strip.width + 2.0)}
+        )
         for at, what in strip.marks:
             space.add_line((at, y - 2.0), (at, y + strip.width), dxfattribs=on)
-            space.add_text(what, height=3.0, dxfattribs=on | {"insert": (at + 0.8, y - 4.0)})
+            space.add_text(say(what), height=3.0, dxfattribs=on | {"insert": (at + 0.8, y - 4.0)})
     return drawing
 
 
