@@ -15,6 +15,9 @@ import app.keeping.tables
 import app.keeping.variant_desk
 from app.main_window import MainWindow
 from app.viewing import flip_key
+from core.cutting import cut_list
+from core.design import Design
+from core.elastics import find_elastic
 from core.errors import LineError
 from core.live import Frame
 
@@ -90,6 +93,44 @@ def test_the_figures_of_all_variants_stand_beside_each_other(
         yield from what_cannot_be_solved_is_told_once(window, monkeypatch)
         window.session.remove_variant("B")
         yield lambda: panel.view is None
+
+    run_main([], script)
+
+
+def test_variants_that_differ_in_elastics_alone_are_told_apart() -> None:
+    def script(window: MainWindow) -> Script:
+        panel = window.variants
+        undrawn(window)
+        yield settled(window)
+        window.inspector.open("variants")
+        window.variant_desk.choose("B")
+        band = find_elastic("plush back 18")
+
+        def made(design: Design) -> Design:
+            design = design.with_line("mid-bust", 0.6).with_elastic("mid-bust", find_elastic("strap 15"))
+            return design.with_line("under-bust", 1.0 / 1.2).with_elastic("under-bust", band)
+
+        window.session.edit(made, "Elastics")
+        yield settled(window)
+
+        def known() -> bool:
+            rows = {row.label: row for row in panel.view.rows} if panel.view is not None else {}
+            piece = rows.get("Mid-bust, length to cut, elastic, largest pressure")
+            return piece is not None and piece.figures[2].values[1] is not None
+
+        yield known
+        rows = {row.label: row.figures for row in panel.view.rows}
+        frame = window.session.frame
+        cuts = {row.line: row for row in cut_list(frame.stages, frame.control_points).rows}
+        assert "Mid-bust" not in rows, "the length of an elastic unstretched is compared with nothing"
+        assert rows["Mid-bust, on the body"][1].values[1] == pytest.approx(cuts["mid-bust"].reached_front_mm)
+        cut, made_of, kpa = rows["Under-bust, length to cut, elastic, largest pressure"]
+        assert cut.values == (None, pytest.approx(cuts["under-bust"].cut_mm))
+        assert made_of.values == ("", band.name)
+        assert kpa.values[1] == pytest.approx(window.pressure_desk.of(frame).rows[0].max_kpa)
+        window.variant_figures.copy()
+        told = QGuiApplication.clipboard().text().splitlines()
+        assert any(line.split("\t")[1:] == ["", "", band.name, ""] for line in told)
 
     run_main([], script)
 

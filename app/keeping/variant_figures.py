@@ -48,7 +48,7 @@ class VariantFigures(QObject):
         if self._are_beside and len(self._window.view.panes.titles) == len(variants):
             self._window.view.panes.set_titles(variant_titles(variants))
         if self._panel.isVisible():
-            self._panel.set_view(variants_view(variants, document.shown))
+            self._panel.set_view(variants_view(variants, document.shown, self._window.pressure_desk.of))
             desk.solve_others()
 
     @property

@@ -36,13 +36,38 @@ class Figure:
         value, first = self.values[place], self.values[0]
         return None if value is None or first is None else value - first
 
+    def cells(self) -> list[str]:
+        """Return the figures and what the others differ by from the first, for a table."""
+        told = [*self.values, *(self.apart(place) for place in range(1, len(self.values)))]
+        return ["" if each is None else f"{each:.{self.digits}f}" for each in told]
+
+
+@dataclass(frozen=True)
+class Told:
+    """Words for each variant, empty where there are none: they have no unit and differ by nothing."""
+
+    values: tuple[str, ...]
+    unit: str = ""
+    digits: int = 0
+
+    def written(self, place: int) -> str:
+        """Return the words of a variant."""
+        return self.values[place] or "–"
+
+    def apart(self, place: int) -> None:
+        """Words differ by nothing."""
+
+    def cells(self) -> list[str]:
+        """Return the words, for a table."""
+        return [*self.values, *[""] * (len(self.values) - 1)]
+
 
 @dataclass(frozen=True)
 class FigureRow:
     """What the figures are of: the first of them counts, a second says it in another unit."""
 
     label: str
-    figures: tuple[Figure, ...]
+    figures: tuple[Figure | Told, ...]
 
 
 @dataclass(frozen=True)
@@ -174,11 +199,14 @@ class _Table(QWidget):
                 cell = self._cell(place, top + self.LABEL + line * self.LINE, self.LINE)
                 self._paint_figure(painter, cell, figure, place, first=line == 0)
 
-    def _paint_figure(self, painter: QPainter, cell: QRectF, figure: Figure, place: int, first: bool) -> None:
+    def _paint_figure(
+        self, painter: QPainter, cell: QRectF, figure: Figure | Told, place: int, first: bool
+    ) -> None:
         tokens, type_ = tokens_of(self), font("name" if first else "caption", tabular=True)
         painter.setFont(type_)
         painter.setPen(QColor(tokens.text if first else tokens.text_quiet))
-        text = figure.written(place)
+        room = round(cell.width()) - 6
+        text = painter.fontMetrics().elidedText(figure.written(place), Qt.TextElideMode.ElideRight, room)
         painter.drawText(cell, _LEFT, text)
         apart = figure.apart(place)
         if place and apart is not None and round(apart, figure.digits):

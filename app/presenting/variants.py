@@ -4,26 +4,32 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from app.panels.variants import Figure, FigureRow, VariantsView
+from app.panels.variants import Figure, FigureRow, Told, VariantsView
 from app.presenting.bust import bust_move, bust_sentence
 from app.presenting.lines import line_colours, line_title, row_title
 from app.presenting.verdict import is_result, kept_volume, state_of
 from app.showing.verdict_chip import state_title
-from app.wording.words import tr
+from app.wording.words import say, tr
+from core.cutting import CutRow, cut_list
 from core.design import Design
 from core.live import Frame
+from core.press_list import PressList
 
 Variants = Sequence[tuple[str, Design, Frame | None]]
 """Variants by name, with the frame of those that are solved."""
 
+Pressed = Callable[[Frame], PressList | None]
+"""What the lines of a frame press with, if that is known."""
+
 _TOLD = 2  # lengths that differ which have room over a body
 
 
-def variants_view(variants: Variants, shown: str) -> VariantsView:
+def variants_view(variants: Variants, shown: str, pressed: Pressed) -> VariantsView:
     """Return the table of variants, of which one is ``shown``."""
     states = tuple(state_of(frame) if frame else "" for _, _, frame in variants)
     names = tuple(name for name, _, _ in variants)
-    return VariantsView(names, names.index(shown), states, (*_lengths(variants), *_results(variants)))
+    rows = *_lengths(variants), *_pieces(variants, pressed), *_results(variants)
+    return VariantsView(names, names.index(shown), states, rows)
 
 
 def as_table(view: VariantsView) -> list[list[str]]:
@@ -37,9 +43,7 @@ def as_table(view: VariantsView) -> list[list[str]]:
     ]
     for row in view.rows:
         for figure in row.figures:
-            cells = [*figure.values, *(figure.apart(place) for place in range(1, len(view.names)))]
-            written = ["" if each is None else f"{each:.{figure.digits}f}" for each in cells]
-            rows.append([row.label, figure.unit, *written])
+            rows.append([row.label, figure.unit, *figure.cells()])
     return rows
 
 
@@ -64,7 +68,11 @@ def _head(name: str, frame: Frame | None) -> str:
 
 
 def _lengths(variants: Variants) -> list[FigureRow]:
-    """Return a row for each line, or linked pair, whose length is set."""
+    """Return a row for each line, or linked pair, whose length is set.
+
+    Of one that is made of an elastic in any variant it is what is reached on the body: what is set for an
+    elastic is its length unstretched, and nothing that a line of another kind can be compared with.
+    """
     rests = [_rests(frame) for _, _, frame in variants]
     heads: dict[str, str] = {}
     for (_, design, _), rest in zip(variants, rests, strict=True):
@@ -74,7 +82,11 @@ def _lengths(variants: Variants) -> list[FigureRow]:
             elif name in heads or len(design.linked(name)) == 1:
                 heads[name] = line_title(name, design)
     rows = []
+    elastic = {name for _, design, _ in variants for name in design.worn_elastics()}
     for name, title in heads.items():
+        if name in elastic:
+            rows.append(_reached(name, tr("{line}, on the body").format(line=title), variants))
+            continue
         ratios = [_ratio(design, name, rest) for (_, design, _), rest in zip(variants, rests, strict=True)]
         lengths = [
             None if ratio is None or name not in rest else ratio * rest[name]
@@ -85,6 +97,60 @@ def _lengths(variants: Variants) -> list[FigureRow]:
             FigureRow(title, (Figure("%", 1, False, percent), Figure("mm", 1, False, tuple(lengths))))
         )
     return rows
+
+
+def _reached(name: str, title: str, variants: Variants) -> FigureRow:
+    """Return how long a line is on the body, if its variant is solved."""
+    lengths = tuple(None if frame is None else frame.lengths.get(name) for _, _, frame in variants)
+    rests = (_rests(frame).get(name) for _, _, frame in variants)
+    percent = tuple(
+        100.0 * length / rest if length and rest else None
+        for length, rest in zip(lengths, rests, strict=True)
+    )
+    return FigureRow(title, (Figure("%", 1, False, percent), Figure("mm", 1, False, lengths)))
+
+
+def _pieces(variants: Variants, pressed: Pressed) -> list[FigureRow]:
+    """Return a row for each line that is made of an elastic: to cut, of what, and what it presses with."""
+    frames = [frame if frame is not None and is_result(frame) else None for _, _, frame in variants]
+    cuts = [
+        {} if frame is None else {row.line: row for row in cut_list(frame.stages, frame.control_points).rows}
+        for frame in frames
+    ]
+    lists = [
+        pressed(frame) if frame is not None and frame.stages.design.worn_elastics() else None
+        for frame in frames
+    ]
+    press = [{} if each is None else {row.line: row.max_kpa for row in each.rows} for each in lists]
+    made = {name for _, design, _ in variants for name in design.worn_elastics()}
+    return [
+        FigureRow(
+            _piece_title(name, design, [each[name] for each in cuts if name in each]),
+            (
+                Figure("mm", 0, False, tuple(each[name].cut_mm if name in each else None for each in cuts)),
+                Told(tuple(say(design.traits_of(name).elastic) for _, design, _ in variants)),
+                Figure("kPa", 1, False, tuple(each.get(name) for each in press)),
+            ),
+        )
+        for name, design in _named(variants).items()
+        if name in made
+    ]
+
+
+def _named(variants: Variants) -> dict[str, Design]:
+    """Return all lines in the order of the list, each with a design that has it."""
+    found: dict[str, Design] = {}
+    for _, design, frame in variants:
+        lines = frame.stages.model.lines if frame is not None else ()
+        found = dict.fromkeys(line_colours(line.name for line in lines), design) | found
+    return {name: found[name] for name in line_colours(found)}
+
+
+def _piece_title(name: str, design: Design, rows: Sequence[CutRow]) -> str:
+    title = line_title(name, design)
+    if any(row.front_only for row in rows):
+        return tr("{line}, front part of the elastic, its largest pressure").format(line=title)
+    return tr("{line}, length to cut, elastic, largest pressure").format(line=title)
 
 
 def _rests(frame: Frame | None) -> dict[str, float]:
