@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from app.keeping.recent import fill_recent_menu
+from app.panels.typed_field import forget_refused
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -77,6 +78,7 @@ def _connect_safe(window: MainWindow) -> None:
         window.history_desk,
     )
     stack = session.undo_stack
+    stack.indexChanged.connect(lambda _: forget_refused())
     session.saving.connect(window.desk.show_saving)
     session.opened.connect(safe.show_opened)
     session.opened.connect(recovery.show_opened)

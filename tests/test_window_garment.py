@@ -189,6 +189,13 @@ def test_a_band_on_the_rib_cage_is_cut_as_far_stretched_as_the_designer_says() -
         assert cut.elongation == pytest.approx(0.3)
         assert cut.cut_mm == pytest.approx(cut.reached_whole_mm / 1.3 + 25.0)
         assert row.cut.text() == number(cut.cut_mm or 0.0, 0)
+        window.activateWindow()
+        yield window.isActiveWindow
+        row.set_stretch.setFocus()
+        QTest.keyClick(row.set_stretch, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+        yield at_rest(window)
+        assert cut_rows(window)["under-bust"].elongation == pytest.approx(FIRST_STRETCH), "the edit is undone"
+        assert row.set_stretch.text() == "20"
         window.session.reset_lines()
         yield at_rest(window)
         assert row.cut.text() == "–"
@@ -231,10 +238,18 @@ def test_newtons_go_with_the_stiffness_of_tissue_and_the_list_leaves_as_a_table(
         yield at_rest(window)
         before = cut_rows(window)["mid-bust"].tension_n or 0.0
         field = window.garment.tissue.field
+        window.lines_desk.decide("mid-bust", "title", "Middle")
+        yield at_rest(window)
+        window.activateWindow()
+        yield window.isActiveWindow
+        field.setFocus()
         field.setText("9999")
         field.setModified(True)
         QTest.keyClick(field, Qt.Key.Key_Return)
         assert "50 to 2000" in field.accessibleDescription()
+        window.actions_.undo.trigger()
+        assert (field.text(), field.accessibleDescription()) == ("530", ""), "it tells the design's again"
+        yield at_rest(window)
         field.setText("1060")
         field.setModified(True)
         QTest.keyClick(field, Qt.Key.Key_Return)

@@ -7,9 +7,18 @@ import re
 import unicodedata
 from typing import Any
 
-from PySide6.QtCore import QPoint, QRectF, Qt, Signal
-from PySide6.QtGui import QColor, QFocusEvent, QHideEvent, QKeyEvent, QPainter, QPaintEvent, QPen
-from PySide6.QtWidgets import QLabel, QLineEdit, QWidget
+from PySide6.QtCore import QEvent, QPoint, QRectF, Qt, Signal
+from PySide6.QtGui import (
+    QColor,
+    QFocusEvent,
+    QHideEvent,
+    QKeyEvent,
+    QKeySequence,
+    QPainter,
+    QPaintEvent,
+    QPen,
+)
+from PySide6.QtWidgets import QApplication, QLabel, QLineEdit, QWidget
 
 from app.dress.spoken import announce
 from app.dress.theme import font, set_tag, tokens_of
@@ -32,6 +41,13 @@ def read_figure(text: str) -> float | None:
     return float(match.group(1).replace(",", ".").replace(" ", "")) if match else None
 
 
+def forget_refused() -> None:
+    """Show the present value in the field that has the keyboard, if what it holds was refused."""
+    field = QApplication.focusWidget()
+    if isinstance(field, TypedField) and field.refused:
+        field._show()
+
+
 class TypedField(QLineEdit):
     """The part of a field that is alike for every kind of value; ``left`` at Enter, once taken, or Esc.
 
@@ -43,9 +59,19 @@ class TypedField(QLineEdit):
     def __init__(self, unit: str = "") -> None:
         super().__init__()
         self._unit = unit
+        self.refused = False
         self._refusal: Refusal | None = None
         self._room = self.textMargins()
         self.textEdited.connect(self._widen)
+
+    def event(self, event: QEvent) -> bool:
+        # Once what was typed is taken, undo means the edit and not its letters.
+        if event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent):
+            keys = QKeySequence.StandardKey.Undo, QKeySequence.StandardKey.Redo
+            if not self.isModified() and any(event.matches(key) for key in keys):
+                event.ignore()
+                return False
+        return super().event(event)
 
     def focusOutEvent(self, event: QFocusEvent) -> None:
         super().focusOutEvent(event)
@@ -110,6 +136,7 @@ class TypedField(QLineEdit):
 
     def _refuse(self, why: str) -> None:
         """Say why what is typed cannot be; no words take the refusal back."""
+        self.refused = bool(why)
         set_tag(self, "wrong", bool(why))
         self.setAccessibleDescription(why)
         if self._refusal is None and why:
