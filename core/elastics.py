@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from contextlib import suppress
 from importlib import resources
+from itertools import chain, count
 from pathlib import Path
 from typing import Any
 
@@ -69,7 +70,7 @@ def own_folder() -> Path:
 def own_elastics() -> tuple[list[Elastic], list[LineError]]:
     """Return the designer's own elastics, and why some tables cannot be read."""
     elastics, problems = [], []
-    for path in sorted(own_folder().glob("*.csv")):
+    for path in _own_tables():
         try:
             elastics.append(read_elastic(path))
         except LineError as problem:
@@ -144,25 +145,45 @@ def write_template(path: Path) -> None:
 
 def remove_elastic(name: str) -> None:
     """Take one of the designer's own elastics away, with its table. Raises UserError."""
-    for path in own_folder().glob("*.csv"):
-        with suppress(LineError):
-            if read_elastic(path).name == name:
-                try:
-                    path.unlink()
-                except OSError as problem:
-                    raise UserError(
-                        f"The table {path.name} cannot be removed: {problem.strerror}.",
-                        "Remove it from the folder by hand.",
-                    ) from problem
+    for path in _own_tables():
+        if _holds(path, name):
+            try:
+                path.unlink()
+            except OSError as problem:
+                raise UserError(
+                    f"The table {path.name} cannot be removed: {problem.strerror}.",
+                    "Remove it from the folder by hand.",
+                ) from problem
 
 
 def save_elastic(elastic: Elastic) -> Path:
-    """Keep an elastic in the designer's own folder, over one of the same name. Raises ProjectError."""
+    """Keep an elastic in the designer's own folder, over one of the same name and no other.
+
+    Raises ProjectError.
+    """
     folder = own_folder()
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as problem:
         raise UserError(f"The folder {folder} cannot be made.", "Make room, or make it by hand.") from problem
-    path = folder / f"{safe_name(elastic.name)}.csv"
+    held = [path for path in _own_tables() if _holds(path, elastic.name)]
+    # Of several the library has the last; names that differ may be one name for files.
+    path = held[-1] if held else _free(folder, safe_name(elastic.name))
     write_elastic(path, elastic)
     return path
+
+
+def _own_tables() -> list[Path]:
+    return sorted(own_folder().glob("*.csv"))
+
+
+def _holds(path: Path, name: str) -> bool:
+    with suppress(LineError):
+        return read_elastic(path).name == name
+    return False
+
+
+def _free(folder: Path, stem: str) -> Path:
+    """Return a place for a table where no file lies."""
+    names = chain([stem], (f"{stem} {number}" for number in count(2)))
+    return next(path for path in (folder / f"{name}.csv" for name in names) if not path.exists())

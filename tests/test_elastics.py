@@ -164,6 +164,39 @@ def test_a_table_without_an_allowance_is_known_by_it(tmp_path):
     assert told_allowance(path)
 
 
+@pytest.mark.parametrize("name", ["Roll 7,", "Roll; ", ' "Roll" ', '"Roll"', '"', "a: 1, b"])
+def test_names_with_marks_of_cells_at_their_ends_are_read_back(name, tmp_path):
+    told = replace(ROLL, name=name, source=f"of {name.strip()}")
+    write_elastic(tmp_path / "x.csv", told)
+    assert read_elastic(tmp_path / "x.csv") == told
+
+
+@pytest.mark.parametrize("letters", [5, 200_000])
+def test_a_quotation_mark_that_stays_open_spoils_no_more_than_its_line(letters):
+    own_folder().mkdir(parents=True)
+    heap = "x" * letters
+    (own_folder() / "torn.csv").write_text(f'# width: 12\n{HEAD}10,1\n20,"2{heap}\n30,3\n')
+    save_elastic(ROLL)
+    elastics, problems = own_elastics()
+    assert elastics == [ROLL]
+    assert [str(each).split(".")[0] for each in problems] == ["Line 4 of the table torn has no two numbers"]
+
+
+def test_an_elastic_takes_the_place_of_its_name_and_of_no_other():
+    one, other = (replace(ROLL, name=name) for name in ("Roll 1/2", "Roll 1:2"))
+    save_elastic(one)
+    save_elastic(other)
+    assert own_elastics()[0] == [other, one]
+    wider = replace(one, width_mm=15.0)
+    save_elastic(wider)
+    assert own_elastics()[0] == [other, wider]
+    write_elastic(own_folder() / "zz.csv", replace(ROLL, name="Foo"))
+    foo = replace(ROLL, name="Foo", width_mm=33.0)
+    save_elastic(foo)
+    assert library()["Foo"] == foo
+    assert len(own_elastics()[0]) == 3
+
+
 def test_spreadsheets_of_japan_are_read(tmp_path):
     (tmp_path / "sjis.csv").write_bytes("# width: 12\n伸び %,荷重 N\n10,1\n20,2\n".encode("cp932"))
     assert read_elastic(tmp_path / "sjis.csv").strength == 2.0

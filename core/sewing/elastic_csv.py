@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import io
 import re
 import unicodedata
 from collections.abc import Iterator, Sequence
@@ -27,6 +26,7 @@ _FORCE = re.compile(r"force|load|(?<!ex)tension|pull|kraft|荷重|張力|力", r
 _TOLD = re.compile(
     r"#\s*(name|width|allowance|source|estimate)(?:_mm)?\s*[:=]\s*(.*?)[\s,;]*$", re.IGNORECASE
 )
+_QUOTED = re.compile(r'^"(.*)"$')
 
 HELP = (
     "one row of headings with units, like 'elongation %' and 'force N' (also N/cm, cN, gf, kgf), then one "
@@ -73,13 +73,13 @@ def tells_allowance(text: str) -> bool:
 
 
 def csv_of(elastic: Elastic) -> str:
-    """Return an elastic as a table that ``elastic_from_csv`` reads back as it was."""
+    """Return an elastic as a table that ``elastic_from_csv`` reads back as it was, its source on one line."""
     source = " ".join(elastic.source.split())
     told = {
-        "name": elastic.name,
+        "name": _kept(elastic.name),
         "width_mm": f"{elastic.width_mm:.12g}",
         "allowance_mm": f"{elastic.allowance_mm:.12g}",
-        "source": source,
+        "source": _kept(source),
         "estimate": "yes" if elastic.estimate else "no",
     }
     heading = [*(f"# {key}: {value}" for key, value in told.items()), "elongation %,force N"]
@@ -89,7 +89,14 @@ def csv_of(elastic: Elastic) -> str:
 
 def _told(text: str) -> dict[str, str]:
     """Return what stands over a table, in words."""
-    return {match[1].lower(): match[2] for match in map(_TOLD.match, text.splitlines()) if match}
+    found = (match for match in map(_TOLD.match, text.splitlines()) if match)
+    return {match[1].lower(): _QUOTED.sub(r"\1", match[2]) for match in found}
+
+
+def _kept(words: str) -> str:
+    """Return words so that they are read back: quoted if their ends would be taken for those of cells."""
+    plain = _TOLD.match(f"# name: {words}")
+    return words if plain and plain[2] == words and not _QUOTED.match(words) else f'"{words}"'
 
 
 def _percent(share: float) -> str:
@@ -112,16 +119,14 @@ def _curve(text: str, name: str, width: float) -> Curve:
         for count, line in enumerate(text.splitlines(), start=1)
         if line.strip(" \t,;") and not line.lstrip().startswith("#")
     ]
-    lines = [line for _, line in numbered]
-    if not lines:
+    if not numbered:
         raise LineError(f"The table {name} is empty.", f"It needs {HELP}.")
-    comma = next((mark for mark in "\t;," if mark in lines[0]), "")
+    comma = next((mark for mark in "\t;," if mark in numbered[0][1]), "")
     if not comma:
         raise LineError(f"The table {name} has one column only.", f"It needs {HELP}.")
-    heading, *rows = csv.reader(io.StringIO("\n".join(lines)), delimiter=comma)
-    columns = _columns(heading, name, width)
-    counted = list(zip((count for count, _ in numbered[1:]), rows, strict=True))
-    points = list(_points(counted, columns, name, "," if comma != "," else "."))
+    heading, *rows = ((count, _cells(line, comma)) for count, line in numbered)
+    columns = _columns(heading[1], name, width)
+    points = list(_points(rows, columns, name, "," if comma != "," else "."))
     if points and points[0] == (0.0, 0.0):
         points = points[1:]
     if len(points) < FEWEST:
@@ -135,6 +140,14 @@ def _curve(text: str, name: str, width: float) -> Curve:
             "Measure from where it begins to pull, or leave that row out.",
         )
     return ((0.0, 0.0), *points)
+
+
+def _cells(line: str, comma: str) -> Sequence[str]:
+    """Return the cells of a line, none if they cannot be read; a quotation mark holds no other line in it."""
+    try:
+        return next(csv.reader([line], delimiter=comma))
+    except csv.Error:
+        return ()
 
 
 def _columns(heading: Sequence[str], name: str, width: float) -> tuple[tuple[int, float], tuple[int, float]]:
