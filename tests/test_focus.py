@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import pytest
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtGui import QPaintEvent, QRegion
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QApplication, QHBoxLayout, QPushButton, QScrollArea, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
+from app.dress.divider import Divider
 from app.dress.focus import next_stop, stops
 from app.dress.wishes import UNTIL_THEN
 from app.menus import Menus
 from app.panels.preferences import PreferencesSheet
+from app.panels.setting_field import field_of
+from app.wording.model_choices import Choice
 from app.wording.words import use_language
 
 
@@ -68,6 +72,70 @@ def test_the_keyboard_stays_near_what_has_gone(window: QWidget) -> None:
         assert next_stop(order, True)
         assert QApplication.focusWidget() is button(window, near)
     assert not next_stop([], True)
+
+
+def test_what_is_scrolled_is_read_where_it_stands_and_scrolled_to(window: QWidget) -> None:
+    area, inside = QScrollArea(), QWidget()
+    column = QVBoxLayout(inside)
+    rows = [QPushButton(f"row {place}") for place in range(40)]
+    for each in rows:
+        column.addWidget(each)
+    area.setWidget(inside)
+    area.setWidgetResizable(True)
+    left = window.layout().itemAt(0).widget().layout()
+    left.insertWidget(0, area)
+    area.setFixedHeight(120)
+    area.show()
+    QApplication.processEvents()
+    order = stops(left.parentWidget())
+    assert order == [area, *rows, *(button(window, f"left {place}") for place in range(3))]
+    button(window, "left 0").setFocus()
+    assert next_stop(order, False)
+    assert QApplication.focusWidget() is rows[-1]
+    assert rows[-1].visibleRegion().boundingRect().height() == rows[-1].height()
+
+
+class _Canvas(QPushButton):
+    """Paints all of itself, as the view does, and keeps what it was asked to paint."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
+        self.painted = QRegion()
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
+        self.painted |= event.region()
+
+
+def test_a_divider_leaves_no_colour_on_what_lies_beside_it(qtbot: QtBot) -> None:
+    divider, canvas = Divider(Qt.Orientation.Horizontal, "Width"), _Canvas()
+    qtbot.addWidget(divider)
+    other = QPushButton("other")
+    for each in (canvas, other):
+        divider.addWidget(each)
+    divider.resize(300, 100)
+    divider.show()
+    divider.activateWindow()
+    qtbot.waitUntil(divider.isActiveWindow)
+    line = divider.handle(1)
+    line.setFocus()
+    QApplication.processEvents()
+    canvas.painted = QRegion()
+    other.setFocus()
+    qtbot.waitUntil(lambda: canvas.painted.contains(QPoint(canvas.width() - 1, canvas.height() // 2)))
+
+
+def test_down_opens_what_a_pull_down_holds_and_goes_nowhere(window: QWidget, qtbot: QtBot) -> None:
+    field = field_of(Choice("key", "Key", "Tip.", (("a", "A"), ("b", "B"), ("c", "C"))))
+    window.layout().addWidget(field)
+    field.show()
+    field.setFocus()
+    pull = QApplication.focusWidget()
+    QTest.keyClick(pull, Qt.Key.Key_Down)
+    menu = QApplication.activePopupWidget()
+    assert menu is not None
+    assert QApplication.focusWidget() is pull
+    menu.close()
 
 
 @pytest.mark.parametrize(("language", "title"), [("en", "&File"), ("ja", "ファイル(&F)")])

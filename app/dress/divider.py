@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QFocusEvent, QKeyEvent, QPainter, QPaintEvent
-from PySide6.QtWidgets import QSplitter, QSplitterHandle
+from PySide6.QtWidgets import QSplitter, QSplitterHandle, QWidget
 
 from app.dress.theme import tokens_of
 from app.wording.words import tr
@@ -71,6 +71,14 @@ class _Line(QSplitterHandle):
     def focusOutEvent(self, event: QFocusEvent) -> None:
         super().focusOutEvent(event)
         self.setMask(self.contentsRect())
+        self._give_back()
+
+    def _give_back(self) -> None:
+        """Let what lies beside the hairline paint anew: what paints all of itself is not told by Qt."""
+        for each in self.splitter().findChildren(QWidget):
+            place = self.geometry()
+            place.moveTopLeft(each.mapFrom(self.splitter(), place.topLeft()))
+            each.update(place)
 
     def paintEvent(self, event: QPaintEvent) -> None:
         if self.hasFocus():

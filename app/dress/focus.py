@@ -17,16 +17,21 @@ _LINE = 12
 def stops(pane: QWidget) -> list[QWidget]:
     """Return what of a pane takes the keyboard, line by line from left to right.
 
-    Of buttons of which one is on there is one stop: arrow keys go among them.
+    Of buttons of which one is on there is one stop: arrow keys go among them. What is scrolled is read as a
+    whole, where it stands, however far its rows reach beyond.
     """
+    blocks: dict[QWidget, list[QWidget]] = {}
+    for each in pane.findChildren(QWidget):
+        if _is_stop(each):
+            blocks.setdefault(_block(each, pane), []).append(each)
     lines: list[tuple[int, list[tuple[int, QWidget]]]] = []
-    found = [each for each in pane.findChildren(QWidget) if _is_stop(each)]
-    places = [(each.mapTo(pane, each.rect().center()), each) for each in found]
+    places = [(each.mapTo(pane, each.rect().center()), each) for each in blocks]
     for place, each in sorted(places, key=lambda at: at[0].y()):
         if not lines or place.y() - lines[-1][0] > _LINE:
             lines.append((place.y(), []))
         lines[-1][1].append((place.x(), each))
-    return [each for _, line in lines for _, each in sorted(line, key=lambda at: at[0])]
+    order = [each for _, line in lines for _, each in sorted(line, key=lambda at: at[0])]
+    return [stop for each in order for stop in _within(each, blocks[each])]
 
 
 def next_stop(order: Sequence[QWidget], forward: bool) -> bool:
@@ -46,7 +51,33 @@ def next_stop(order: Sequence[QWidget], forward: bool) -> bool:
         if not inside:
             target = _nearest(has, order) or target
     target.setFocus(reason if forward else Qt.FocusReason.BacktabFocusReason)
+    _bring_in(target)
     return True
+
+
+def _block(widget: QWidget, pane: QWidget) -> QWidget:
+    """Return the outermost scrolled area of a pane that a widget stands in, or itself."""
+    block, parent = widget, widget.parentWidget()
+    while parent is not None and parent is not pane:
+        if isinstance(parent, QScrollArea):
+            block = parent
+        parent = parent.parentWidget()
+    return block
+
+
+def _within(block: QWidget, found: Sequence[QWidget]) -> list[QWidget]:
+    """Return what takes the keyboard of a block: a scrolled area itself, if it does, then what is in it."""
+    inside = block.widget() if isinstance(block, QScrollArea) else None
+    return [each for each in found if each is block] + (stops(inside) if inside is not None else [])
+
+
+def _bring_in(widget: QWidget) -> None:
+    """Scroll what has got the keyboard to where it is seen; what is higher than the room stays as it is."""
+    parent = widget.parentWidget()
+    while parent is not None and not parent.isWindow():
+        if isinstance(parent, QScrollArea) and widget.height() <= parent.viewport().height():
+            parent.ensureWidgetVisible(widget, 0, _LINE)
+        parent = parent.parentWidget()
 
 
 def _nearest(lost: QWidget | None, order: Sequence[QWidget]) -> QWidget | None:

@@ -20,11 +20,21 @@ from app.wording.words import tr
 TOP, HEAD = 24, 30
 """Heights of the titles of the columns and of the heading of a group [px]."""
 
+_FARTHEST = 10**5
+_STEPS = {
+    Qt.Key.Key_Down: 1,
+    Qt.Key.Key_Up: -1,
+    Qt.Key.Key_Home: -_FARTHEST,
+    Qt.Key.Key_End: _FARTHEST,
+}
+_OWN_KEYS = (Qt.Key.Key_Home, Qt.Key.Key_End, Qt.Key.Key_F2)
+
 
 def keys_in_words() -> list[tuple[str, str]]:
     """Return what the keys do in the table, ready to read."""
     return [
         ("↑ ↓", tr("Show the measure above or below on the body")),
+        ("Home, End", tr("Show the first or the last measure")),
         ("Enter", tr("Bring it near")),
         ("F2", tr("Change it, if it is your own")),
         ("Del", tr("Delete it, if it is your own")),
@@ -107,7 +117,7 @@ class MeasureTable(QWidget):
             self.changing.emit(self.mark)
         elif own and key in (Qt.Key.Key_Delete, Qt.Key.Key_Backspace):
             self.removing.emit(self.mark)
-        elif not self._step({Qt.Key.Key_Down: 1, Qt.Key.Key_Up: -1}.get(key, 0)):
+        elif not self._step(_STEPS.get(key, 0)) and key not in _OWN_KEYS:
             super().keyPressEvent(event)
 
     def _step(self, turn: int) -> bool:
@@ -116,7 +126,7 @@ class MeasureTable(QWidget):
         if not turn or not views:
             return False
         keys = [view.key for view in views]
-        at = keys.index(self.mark) + turn if self.mark in keys else 0
+        at = keys.index(self.mark) + turn if self.mark in keys else max(turn - 1, 0)
         view = views[min(max(at, 0), len(keys) - 1)]
         self.select(view.key)
         announce(self, "; ".join((view.spoken(), *view.details)))
@@ -127,7 +137,10 @@ class MeasureTable(QWidget):
         self._lay_out()
 
     def event(self, event: QEvent) -> bool:
-        """Tell over a row how it is taken."""
+        """Tell over a row how it is taken, and keep the keys that the menus have too."""
+        if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.ShortcutOverride:
+            event.setAccepted(event.key() in _OWN_KEYS)
+            return True
         if not isinstance(event, QHelpEvent) or event.type() != QEvent.Type.ToolTip:
             return super().event(event)
         view = self._view_at(event.pos())

@@ -104,7 +104,7 @@ def _groups() -> tuple[tuple[str, tuple[Setting, ...]], ...]:
                     "autosave",
                     tr("Autosave"),
                     every.format(least=AUTOSAVE[0], most=AUTOSAVE[1]),
-                    "s",
+                    tr("{seconds} s").format(seconds="").strip(),
                     1.0,
                     0,
                     (float(AUTOSAVE[0]), float(AUTOSAVE[1])),
