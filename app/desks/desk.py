@@ -190,7 +190,7 @@ class Desk(QObject):
 
     def save(self) -> bool:
         """Save the project, asking for a place the first time; returns whether it is being saved."""
-        self._window.landmark_desk.put_down()
+        self._take_in()
         path = self._session.path
         if path is None:
             return self.save_as()
@@ -202,7 +202,7 @@ class Desk(QObject):
 
     def save_as(self) -> bool:
         """Ask for a place and save the project there; returns whether it is being saved."""
-        self._window.landmark_desk.put_down()
+        self._take_in()
         kinds = f"{tr('Projects')} (*.busk)"
         name = str(self._session.path or f"{self._session.name}.busk")
         path = ask_save(self._window, tr("Save as"), name, kinds, ".busk")
@@ -210,8 +210,7 @@ class Desk(QObject):
 
     def may_leave(self) -> bool:
         """Ask about unsaved changes; returns whether the document may be left. A save is waited for."""
-        # A pin that was moved by keys a moment ago is an edit too.
-        self._window.landmark_desk.put_down()
+        self._take_in()
         if self._session.finish_saving():
             return True
         answer = ask_about_changes(self._window, self._session.name)
@@ -220,6 +219,11 @@ class Desk(QObject):
     def close(self) -> None:
         """Stop the clock of the plot."""
         self._plot_clock.stop()
+
+    def _take_in(self) -> None:
+        """Make edits of what was decided a moment ago: of a pin moved by keys, of a name being typed."""
+        self._window.landmark_desk.put_down()
+        self._window.report_desk.page.tell_name()
 
     def _preview(self) -> bytes:
         """Return a small picture of the view, for the project file."""

@@ -88,6 +88,17 @@ class ReportDesk(QObject):
             self._window.layout_.show_work()
             self._window.layout_.enter()
 
+    def forget(self) -> None:
+        """Let go of the sheet of a document that has gone: nobody is to see it under the next one."""
+        document = self._window.session.document
+        # Before the page hides: a name that was being typed is not that of the next customer.
+        self.page.customer.setText(document.customer if document is not None else "")
+        self._window.jobs.cancel(self._job)
+        self._frame = self._asked = self._job = self.handout = self.pages = self._occlusion = None
+        self._laid = None, ""
+        self.page.show_pages(None)
+        self.leave()
+
     def _name(self, customer: str) -> None:
         design = self._window.session.design
         if design is None or design.customer == customer:

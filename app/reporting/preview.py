@@ -40,7 +40,7 @@ class ReportPage(QWidget):
         self.customer.setFont(font("body"))
         self.customer.setFixedHeight(30)
         self.customer.setPlaceholderText(tr("Name or number"))
-        self.customer.editingFinished.connect(self._tell_name)
+        self.customer.editingFinished.connect(self.tell_name)
         self.languages = Segment(list(LANGUAGES.items()), wide=True)
         self.languages.chosen.connect(self.language_chosen)
         self.zoom = Segment([("page", tr("Whole page")), ("width", tr("Full width"))], wide=True)
@@ -92,13 +92,15 @@ class ReportPage(QWidget):
             self.customer.setText(customer)
         self.languages.set_choice(language)
 
-    def _want(self, what: str) -> None:
-        self._tell_name()  # a press of a button leaves the keyboard in the field: its name is not told yet
-        self.wanted.emit(what)
+    def tell_name(self) -> None:
+        """Tell whose it is, if that has been typed since it was told last."""
+        if self.customer.isModified():
+            self.customer.setModified(False)
+            self.named.emit(self.customer.text().strip())
 
-    def _tell_name(self) -> None:
-        self.customer.setModified(False)
-        self.named.emit(self.customer.text().strip())
+    def _want(self, what: str) -> None:
+        self.tell_name()  # a press of a button leaves the keyboard in the field: its name is not told yet
+        self.wanted.emit(what)
 
     def _column(self) -> QWidget:
         column = QWidget()

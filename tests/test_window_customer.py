@@ -1,0 +1,82 @@
+"""A customer's name that is still being typed: it is neither lost nor does it go to somebody else."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from PySide6.QtTest import QTest
+from window_tools import Script, run_main, settled, undrawn
+
+from app.main_window import MainWindow
+from core.project import open_project
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+def typed(window: MainWindow, name: str) -> None:
+    """Type a name on the sheet, without Enter."""
+    window.report_desk.open()
+    window.report_desk.page.customer.setFocus()
+    QTest.keyClicks(window.report_desk.page.customer, name)
+
+
+def test_a_typed_name_does_not_go_to_the_next_document() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        desk = window.report_desk
+        typed(window, "Clara")
+        opened = []
+        window.session.opened.connect(opened.append)
+        window.session.open(str(Path("resources/samples/mannequin.ply").absolute()))
+        yield lambda: bool(opened)
+        assert window.session.document.customer == ""
+        assert not window.session.unsaved
+        assert desk.page.customer.text() == ""
+        assert not desk.is_open
+
+    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+
+
+def test_nothing_of_a_former_document_is_kept_or_shown() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        desk = window.report_desk
+        desk.open()
+        yield desk.page.does["pdf"].isEnabled
+        assert desk.page.paper.leaves
+        desk.leave()
+        opened = []
+        window.session.opened.connect(opened.append)
+        window.session.open(str(Path("resources/samples/mannequin.ply").absolute()))
+        yield lambda: bool(opened)
+        assert (desk.handout, desk.pages, desk._occlusion, desk._frame) == (None, None, None, None)
+        desk.open()
+        assert not desk.page.paper.leaves, "no sheet of a former customer stands there, however faint"
+        yield desk.page.does["pdf"].isEnabled
+
+    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+
+
+def test_a_typed_name_is_saved_and_asked_about(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "dora.busk"
+    asked = []
+    monkeypatch.setattr("app.desks.desk.ask_save", lambda *_: str(path))
+    monkeypatch.setattr("app.desks.desk.ask_about_changes", lambda *_: asked.append(1) or "discard")
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        typed(window, "Dora")
+        window.actions_.save.trigger()
+        assert window.session.finish_saving()
+        assert open_project(path).customer == "Dora"
+        assert window.desk.may_leave()
+        assert not asked
+        typed(window, "E")
+        assert window.desk.may_leave()
+        assert asked == [1], "what is typed is a change that would be lost"
+
+    assert run_main(["resources/samples/mannequin.ply"], script) == 0
