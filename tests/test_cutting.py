@@ -12,10 +12,11 @@ import pytest
 
 from app.cli import main
 from app.presenting.garment import as_table
-from core.cutting import FRONT_ONLY, cut_list
+from core.cutting import FAR, FRONT_ONLY, cut_list
 from core.design_elastics import Elastic
 from core.design_lines import LineTraits, OwnLine, WornLine
 from core.elastics import find_elastic, write_elastic
+from core.errors import LineError
 from core.exact import solve_exact
 from core.own_lines import ready_made
 from core.pipeline import build, targets_of
@@ -66,6 +67,24 @@ def test_a_straight_elastic_is_cut_as_the_formula_says(built):
     assert row.cut_mm == pytest.approx(natural + 20.0, rel=1e-12)
     assert row.closed
     assert not row.estimate
+
+
+@pytest.mark.parametrize(("ratio", "far"), [(0.8, False), (0.6, True)])
+def test_an_elastic_near_the_end_of_its_table_is_told(built, ratio, far):
+    stages = stages_of(built("mannequin"), [("mid-bust", ratio)], [("mid-bust", find_elastic("strap 15"))])
+    _, rows, _, _ = listed(stages)
+    row = rows["mid-bust"]
+    assert (row.elongation > FAR * 0.7, row.far) == (far, far)
+    assert any("its table ends at 70 %: 30 to 50 % are usual" in note for note in row.notes) == far
+
+
+@pytest.mark.parametrize("list_of", [cut_list, press_list])
+@pytest.mark.parametrize("hold", ["spring", "held"])
+@pytest.mark.parametrize("place", [np.nan, np.inf, 0.0])
+def test_points_that_are_no_shape_are_refused(built, list_of, hold, place):
+    stages = stages_of(built("mannequin"), [("mid-bust", 0.7)], [("mid-bust", HOOKE)], line_hold=hold)
+    with pytest.raises(LineError, match="ran away"):
+        list_of(stages, np.full_like(stages.control.mesh.vertices, place))
 
 
 @pytest.mark.parametrize("contact", ["glued", "sliding"])
@@ -253,3 +272,8 @@ def test_the_list_leaves_in_the_order_of_the_window_with_what_presses(built):
     at = heading.index("Largest pressure kPa")
     assert [row[at] for row in rows] == [most[name] for name in ("full-bust", "mid-bust", "under-bust")]
     assert {row[at] for row in as_table(SimpleNamespace(stages=stages), cuts, None)[1:]} == {""}
+    told = dict(zip([row.line for row in cuts.rows], [row.estimate for row in cuts.rows], strict=True))
+    at = heading.index("Estimate")
+    assert [row[at] == "yes" for row in rows] == [
+        told[name] for name in ("full-bust", "mid-bust", "under-bust")
+    ]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from core.errors import LineError
 from core.mesh import Floats, Points
 from core.pipeline import Stages, targets_of
 from core.solving.newtons import newtons_per_unit
@@ -32,8 +33,12 @@ def line_tensions(stages: Stages, control_points: Points) -> Mapping[str, LineTe
     """Return what each worn line pulls with at ``control_points``, shape (n, 3) [mm], by line.
 
     A line on points that do not move pulls as its elastic says, and has no answer without one, or when its
-    length is held. The tension of held lines is read from the balance of the points around them.
+    length is held. The tension of held lines is read from the balance of the points around them. Raises
+    LineError for points that are no shape: not finite, or with a line of no length.
     """
+    worn = [line for line in stages.model.lines if line.name in stages.design.worn()]
+    if not np.isfinite(control_points).all() or not all(line.length(control_points) for line in worn):
+        raise LineError("The calculation ran away: there is no shape to sew for.", "Set the lines longer.")
     held = stages.design.line_hold == "held"
     pulling = _held(stages, control_points) if held else _springs(stages, control_points)
     return pulling if held else {**pulling, **_on_ribs(stages)}
