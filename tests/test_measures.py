@@ -17,7 +17,7 @@ from core.finding.bust_point import ACROSS
 from core.finding.under_breast import MIRRORED
 from core.landmark import Landmarks
 from core.landmarks import find_landmarks
-from core.measure import girth_at, girths
+from core.measure import UNDER, girth_at, girths
 from core.measures import before_after, calm_moves, measure_rows, measures
 from core.measuring.definitions import DEFINITIONS, KEYS, definition_of
 from core.measuring.riding import carried, riders
@@ -148,6 +148,19 @@ def test_no_volume_is_made_of_a_fold_that_a_hole_hides(person: tuple[Mesh, Landm
     unsure = {"fold_left": replace(landmarks.points["fold_left"], confidence=0.3)}
     found = measures(mesh, replace(landmarks, points=MappingProxyType({**landmarks.points, **unsure})))
     assert "uncertain" in found["breast_volume_left"].note
+    assert "uncertain" in found["asymmetry_volume"].note
+    sure = measures(mesh, landmarks)
+    for key in ("root_length_left", "bust_point_to_fold_left", "bust_height"):
+        assert found[key].estimate, key
+        assert "uncertain" in found[key].note
+        assert not sure[key].estimate, key
+    assert not found["root_length_right"].estimate
+    unsure |= {
+        name: replace(landmarks.points[name], confidence=0.3) for name in UNDER if name in landmarks.points
+    }
+    found = measures(mesh, replace(landmarks, points=MappingProxyType({**landmarks.points, **unsure})))
+    assert found["underbust_girth"].estimate
+    assert not sure["underbust_girth"].estimate
 
 
 def test_a_hole_at_a_level_makes_an_estimate(person: tuple[Mesh, Landmarks]) -> None:

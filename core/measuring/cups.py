@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import hypot
 
@@ -14,6 +14,7 @@ from core.geodesic import shortest_way
 from core.landmark import SIDES, Landmark
 from core.measuring.breast import foremost
 from core.measuring.definitions import Measure, definition_of, missing
+from core.measuring.girths import UNSURE_LEVEL
 from core.measuring.subject import Subject, shows_breast
 from core.mesh import Mesh, Points
 from core.sections import arc_length
@@ -107,7 +108,8 @@ def _heights(subject: Subject) -> Iterator[Measure]:
         np.array([mark.position, [*mark.position[:2], landmarks.underbust_level]]) for mark in marks
     )
     sure = min((mark.confidence for mark in marks), default=0.0)
-    yield Measure("bust_height", height, "mm", lines, sure)
+    shown = [side for side in SIDES if shows_breast(landmarks, side)]
+    yield _by_fold(Measure("bust_height", height, "mm", lines, sure), subject, shown)
     apex, chest = foremost_places(subject), subject.mark("front_centre_underbust")
     if apex is None or chest is None:
         yield missing("bust_protrusion", NO_ROOT if chest else NO_MARK)
@@ -121,7 +123,7 @@ def _to_fold(subject: Subject, side: str) -> Measure:
     bust, fold = (subject.mark(f"{name}_{side}") for name in ("bust_point", "fold"))
     measure = over_skin(f"bust_point_to_fold_{side}", subject, [bust, fold])
     if fold is None or measure.value is None or subject.fold_seen(side):
-        return measure
+        return _by_fold(measure, subject, [side])
     return replace(measure, estimate=True, note=fold.rule)
 
 
@@ -146,7 +148,16 @@ def _cup(subject: Subject, side: str) -> Iterator[Measure]:
     if root is None or not subject.fold_seen(side):
         yield missing(f"root_length_{side}", NO_FOLD if root else NO_ROOT)
     else:
-        yield Measure(f"root_length_{side}", _length(root.under), "mm", (root.under,), root.confidence)
+        length = _length(root.under)
+        found = Measure(f"root_length_{side}", length, "mm", (root.under,), root.confidence)
+        yield _by_fold(found, subject, [side])
+
+
+def _by_fold(measure: Measure, subject: Subject, sides: Sequence[str]) -> Measure:
+    """Return a measure that hangs on the folds of ``sides``: an estimate where one needs a second look."""
+    if measure.value is None or measure.estimate or all(map(subject.fold_sure, sides)):
+        return measure
+    return replace(measure, estimate=True, note=UNSURE_LEVEL)
 
 
 def _volume(subject: Subject, side: str) -> Measure:
@@ -189,4 +200,5 @@ def _sides(subject: Subject) -> Iterator[Measure]:
     sure, unit = min(each.confidence for each in volumes), definition_of("asymmetry_volume")[0].unit
     # Nothing says that two roots are taken wrong alike: each side may be off by itself.
     off = hypot(*(each.plus_minus for each in volumes))
-    yield Measure("asymmetry_volume", values[0] - values[1], unit, curves, sure, True, off, UNSEEN_CHEST)
+    note = next((each.note for each in volumes if each.note != UNSEEN_CHEST), UNSEEN_CHEST)
+    yield Measure("asymmetry_volume", values[0] - values[1], unit, curves, sure, True, off, note)

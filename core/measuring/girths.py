@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from core.landmark import CERTAIN
 from core.measure import MUCH, confidences
 from core.measuring.definitions import Measure, missing
 from core.measuring.rings import enclosed, skin_ring, tape_ring
@@ -20,6 +21,8 @@ WHY = {
     "hip": "The scan shows no hip: it ends above it, or the trunk does not widen.",
 }
 """Why a girth may be missing."""
+
+UNSURE_LEVEL = "The fold under the breast is uncertain: an estimate."
 
 OVER_GAPS = "It goes over a hole of the scan or over a joined arm: an estimate."
 
@@ -39,8 +42,10 @@ def girth_measures(subject: Subject) -> Iterator[Measure]:
         if name in NAMES[:2]:
             values[f"section_area_{name}"] = (enclosed(skin) / 100.0, skin, "cm2")
         bridged, note = over_gaps(level)
+        unsure = name == "underbust" and sure.get(name, 1.0) < CERTAIN
+        note = note or UNSURE_LEVEL * unsure
         for key, (value, ring, unit) in values.items():
-            yield Measure(key, value, unit, (ring,), sure.get(name, 1.0), bridged, note=note)
+            yield Measure(key, value, unit, (ring,), sure.get(name, 1.0), bridged or unsure, note=note)
 
 
 def over_gaps(level: Level) -> tuple[bool, str]:
