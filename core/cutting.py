@@ -13,6 +13,9 @@ from core.pipeline import Stages
 from core.sewing.tensions import LineTension, line_tensions
 from core.solving.newtons import newtons_per_unit
 
+FAR = 0.8
+"""The part of its table beyond which an elastic is stretched further than usual [1]: an estimate."""
+
 UNEVEN = 0.1
 """A tension that differs by more than this along a line is told [1]."""
 
@@ -30,7 +33,8 @@ class CutRow:
     same for an open line. ``cut_mm`` = whole / (1 + ``elongation``) + ``allowance_mm``. None stands for what
     is not known, an empty ``elastic`` for a line that is made of nothing in particular. ``notes`` are
     sentences. ``front_only`` tells of an open line that ends where the control mesh does, as straps do: its
-    lengths are those of the part that is modelled, and no whole piece can be cut to them.
+    lengths are those of the part that is modelled, and no whole piece can be cut to them. ``far`` tells of an
+    elastic that is stretched nearly to the end of its table.
     """
 
     line: str
@@ -47,6 +51,7 @@ class CutRow:
     estimate: bool = True
     notes: tuple[str, ...] = ()
     front_only: bool = False
+    far: bool = False
 
 
 @dataclass(frozen=True)
@@ -67,7 +72,10 @@ class CutList:
 
 
 def cut_list(stages: Stages, control_points: Points) -> CutList:
-    """Return what to cut for the worn lines at ``control_points``, shape (n, 3) [mm]."""
+    """Return what to cut for the worn lines at ``control_points``, shape (n, 3) [mm].
+
+    Raises LineError for points that are no shape; see ``line_tensions``.
+    """
     design = stages.design
     tensions = line_tensions(stages, control_points)
     rows = tuple(
@@ -140,7 +148,11 @@ def _stretched(row: CutRow, elastic: Elastic, elongation: float, tension: float)
     )
     if elongation < 0.0:
         return _noted(row, "It lies slack: as long as this it does not pull.")
-    return row
+    if elongation <= FAR * elastic.reach:
+        return row
+    end = 100.0 * elastic.reach
+    note = f"Stretched far, its table ends at {end:g} %: 30 to 50 % are usual, an estimate."
+    return _noted(replace(row, far=True), note)
 
 
 def _noted(row: CutRow, note: str) -> CutRow:

@@ -195,7 +195,7 @@ def test_a_band_on_the_rib_cage_is_cut_as_far_stretched_as_the_designer_says() -
         QTest.keyClick(row.set_stretch, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
         yield at_rest(window)
         assert cut_rows(window)["under-bust"].elongation == pytest.approx(FIRST_STRETCH), "the edit is undone"
-        assert row.set_stretch.text() == "20"
+        assert row.set_stretch.text() == "+20"
         window.session.reset_lines()
         yield at_rest(window)
         assert row.cut.text() == "–"

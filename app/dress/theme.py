@@ -154,7 +154,7 @@ def style_sheet(t: Tokens) -> str:
         f'QLabel[role="{role}"] {{ color: {getattr(t, token)}; }}' for role, (*_, token) in ROLES.items()
     )
     tones = (
-        f'QLabel[tone="{tone}"] {{ color: {getattr(t, tone)}; }}'
+        f'QLabel[tone="{tone}"], QLineEdit[tone="{tone}"] {{ color: {getattr(t, tone)}; }}'
         f'QWidget[fill="{tone}"] {{ background: {getattr(t, tone + "_fill")}; }}'
         for tone in ("ok", "info", "warn", "bad")
     )

@@ -99,7 +99,9 @@ class GarmentRow(QFrame):
         self.set_stretch.show_value(view.stretch_percent or 0.0)
         self.set_stretch.setAccessibleName(tr("{line}: stretched by, in percent").format(line=view.title))
         for each in (self.cut, self.tension, self.stretch):
-            set_tag(each, "tone", "faint" if stale else "")
+            far = "warn" if view.far and each is self.stretch else ""
+            set_tag(each, "tone", "faint" if stale else far)
+        set_tag(self.set_stretch, "tone", "warn" if view.far and not stale else "")
         self.elastic.show_elastic(view.title, view.elastic)
         self.notes.setText("\n".join(view.notes))
         self.notes.setVisible(bool(view.notes))
@@ -156,8 +158,10 @@ class _StretchField(FigureField):
     MOST = 100.0
 
     def __init__(self) -> None:
-        super().__init__("%", tr("How far it is stretched on the body"), digits=0, widest="100")
+        said = tr("How far it is stretched on the body")
+        super().__init__("%", said, digits=0, signed=True, widest="+100")
         self.setFont(font("caption", tabular=True))
+        self.setProperty("ring", "true")  # beside figures that cannot be set
         self.setFixedSize(NEWTONS, 20)
 
     def _read(self, text: str) -> float:

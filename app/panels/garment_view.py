@@ -26,7 +26,8 @@ class CutView:
 
     ``elastic`` is what it is called here, empty for none. What is not known is an empty text; ``notes`` are
     sentences that say why, or what to look at. ``stretch_percent`` is a number where the designer sets it.
-    The lengths of one that is ``front_only`` are no whole piece.
+    The lengths of one that is ``front_only`` are no whole piece; one that is ``far`` is stretched further
+    than usual.
     """
 
     line: str
@@ -40,6 +41,7 @@ class CutView:
     notes: tuple[str, ...] = ()
     stretch_percent: float | None = None
     front_only: bool = False
+    far: bool = False
 
 
 @dataclass(frozen=True)

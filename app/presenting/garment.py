@@ -55,6 +55,7 @@ def as_table(frame: Frame, cuts: CutList, pressed: PressList | None) -> list[lis
         tr("Front on the body mm"),
         tr("Whole on the body mm"),
         tr("Allowance mm"),
+        tr("Estimate"),
         tr("Note"),
     ]
     design = frame.stages.design
@@ -85,6 +86,7 @@ def _view(row: CutRow, design: Design, color: str, still: bool) -> CutView:
         tuple(told(note, design) for note in row.notes if row.elastic),
         100.0 * row.elongation if set_here and row.elongation is not None else None,
         row.front_only,
+        row.far,
     )
 
 
@@ -102,4 +104,5 @@ def _cells(row: CutRow, kpa: float | None, design: Design) -> list[str]:
     )
     written = ["" if each is None else f"{each:.1f}" for each in figures]
     notes = " ".join(told(note, design) for note in row.notes)
-    return [line_title(row.line, design), say(row.elastic), *written, notes]
+    estimate = tr("yes") if row.estimate else tr("no")
+    return [line_title(row.line, design), say(row.elastic), *written, estimate, notes]
