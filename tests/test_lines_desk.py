@@ -70,6 +70,14 @@ def linked(window: MainWindow) -> Script:
     assert [row.view.apart for row in (left, right)] == ["left", "right"]
     assert list(window.lines.rows)[-2:] == ["strap left", "strap right"], "one under the other, in a bracket"
     assert [row._side.accessibleName() for row in (left, right)] == ["left", "right"]
+    window.lines.select("strap right")
+    right.slider.setFocus()
+    QTest.keyClick(right.slider, Qt.Key.Key_Delete)
+    assert last(window) == "Strap right removed"
+    assert [each.name for each in session.design.own_lines] == ["strap left"], "of a side set apart only it"
+    window.actions_.undo.trigger()
+    yield lambda: "strap right" in window.lines.rows and window.is_settled()
+    left = window.lines.rows["strap left"]
     window.lines.select("mid-bust")
     assert left._link.isVisible()
     assert not window.lines.rows["mid-bust"]._link.isVisible()
@@ -85,6 +93,7 @@ def linked(window: MainWindow) -> Script:
     rows["strap left"].slider.setFocus()
     QTest.keyClick(rows["strap left"].slider, Qt.Key.Key_Delete)
     assert last(window) == "Straps removed"
+    assert session.design.own_lines == (), "both sides of a pair, as one step"
     window.actions_.undo.trigger()
     window.desk.select_line("strap left")
     yield settled(window)
