@@ -206,7 +206,7 @@ class _Table(QWidget):
         painter.setFont(type_)
         painter.setPen(QColor(tokens.text if first else tokens.text_quiet))
         room = round(cell.width()) - 6
-        text = painter.fontMetrics().elidedText(figure.written(place), Qt.TextElideMode.ElideRight, room)
+        text = painter.fontMetrics().elidedText(figure.written(place), _ELIDED, room)
         painter.drawText(cell, _LEFT, text)
         apart = figure.apart(place)
         if place and apart is not None and round(apart, figure.digits):
@@ -224,6 +224,7 @@ class _Table(QWidget):
         return QRectF(4 + place * room, top, room, height)
 
 
+_ELIDED = Qt.TextElideMode.ElideMiddle  # the width of an elastic stands at its end
 _LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
 
 

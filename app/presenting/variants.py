@@ -149,8 +149,8 @@ def _named(variants: Variants) -> dict[str, Design]:
 def _piece_title(name: str, design: Design, rows: Sequence[CutRow]) -> str:
     title = line_title(name, design)
     if any(row.front_only for row in rows):
-        return tr("{line}, front part of the elastic, its largest pressure").format(line=title)
-    return tr("{line}, length to cut, elastic, largest pressure").format(line=title)
+        return tr("{line}: front part, elastic, pressure").format(line=title)
+    return tr("{line}: to cut, elastic, pressure").format(line=title)
 
 
 def _rests(frame: Frame | None) -> dict[str, float]:
