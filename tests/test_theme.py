@@ -9,11 +9,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QFontInfo
 from PySide6.QtWidgets import QApplication, QWidget
 
 from app.dress.icons import SCALES, icon, pixmap
-from app.dress.parts import ToolButton
+from app.dress.parts import ToolButton, sentence
 from app.dress.theme import ROLES, apply_theme, font, label, load_fonts, tokens_of
 from app.wording.tokens import DARK, LIGHT, LINE_COLORS, Tokens
 
@@ -141,6 +142,11 @@ def test_shipped_type_is_used(themed: QApplication) -> None:
     for role, (size, _, _) in ROLES.items():
         found = QFontInfo(font(role))
         assert (found.family(), found.pixelSize()) == ("Inter", size)
+
+
+def test_words_are_shown_letter_by_letter(themed: QApplication) -> None:
+    assert label("<b>Roll</b> 7").sizeHint().width() > 1.5 * label("Roll 7").sizeHint().width()
+    assert sentence("<b>Roll</b> 7").textFormat() == Qt.TextFormat.PlainText
 
 
 def test_a_changed_type_changes_no_other(themed: QApplication) -> None:

@@ -6,6 +6,7 @@ from functools import cache
 from importlib import resources
 from string import Template
 
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QFont, QFontDatabase, QPalette
 from PySide6.QtWidgets import QApplication, QLabel, QWidget
 
@@ -61,8 +62,12 @@ def _type(role: str, tabular: bool) -> QFont:
 
 
 def label(text: str = "", role: str = "body", tabular: bool = False) -> QLabel:
-    """Return a line of text in one role of ``ROLES``; its colour follows the theme."""
+    """Return a line of text in one role of ``ROLES``; its colour follows the theme.
+
+    It is shown letter by letter: names of files and elastics are others' and may look like marks of a page.
+    """
     result = QLabel(text)
+    result.setTextFormat(Qt.TextFormat.PlainText)
     result.setFont(font(role, tabular))
     result.setProperty("role", role)
     return result

@@ -38,8 +38,6 @@ class RecoveryCard(OverCard):
         self._picture = _Picture()
         self._heading, self._words = label("", "heading"), sentence()
         self._more = label("", "caption")
-        for each in (self._heading, self._words):
-            each.setTextFormat(Qt.TextFormat.PlainText)
         # Two lines in any language: a label that wraps does not ask for the second one.
         self._words.setMinimumHeight(2 * self._words.fontMetrics().lineSpacing() + 6)
         close = ToolButton("x", tr("Decide at the next start"), size=14, room=26)

@@ -91,7 +91,8 @@ class ScanPanel(QWidget):
         self._notes.setVisible(bool(view.notes))
         done = [each for each in view.repairs if not _stays(each)]
         self._repairs.setText(_listed(done) or tr("Nothing had to be repaired."))
-        self._holes.setText(_listed([each for each in view.repairs if _stays(each)]) or tr("None."))
+        none = tr("None; where neck, arms or hips were cut is no hole.")
+        self._holes.setText(_listed([each for each in view.repairs if _stays(each)]) or none)
 
     def _facts(self) -> QScrollArea:
         inside = QWidget()
@@ -100,9 +101,10 @@ class ScanPanel(QWidget):
         column.setContentsMargins(18, 0, 18, 14)
         column.setSpacing(3)
         self._file, self._triangles = sentence("", "name"), label("", "secondary")
-        self._file.setTextFormat(Qt.TextFormat.PlainText)
         self._notes, self._reason = sentence(), sentence()
         self._repairs, self._holes = sentence(), sentence()
+        for each in (self._repairs, self._holes):
+            each.setTextFormat(Qt.TextFormat.RichText)
         self.units = self._choices("unit", [(unit, tr(unit)) for unit in UNITS])
         axes = [(axis, axis.replace("-", "\N{MINUS SIGN}")) for axis in AXES]
         self.ups, self.fronts = self._choices("up", axes), self._choices("front", axes)

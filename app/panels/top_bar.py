@@ -71,7 +71,6 @@ class TopBar(QWidget):
         middle = QHBoxLayout()
         middle.setSpacing(8)
         self._title = label("", "name")
-        self._title.setTextFormat(Qt.TextFormat.PlainText)
         self._dot = _Dot()
         self._dot.setToolTip(tr("Not saved"))
         self._dot.setAccessibleName(tr("Not saved"))
