@@ -18,7 +18,7 @@ from app.wording.words import number, tr
 from core.mesh import Floats
 from core.sheet import SectionCurves, Sheet, Turns
 
-LOWEST, HIGHEST = 64.0, 116.0
+LOWEST, HIGHEST = 52.0, 116.0
 """How high the curves are at least, and at most [mm]."""
 
 _SIDE, _GAP, _AXIS, _FOOT = 62.0, 8.0, 9.0, 3.6

@@ -5,20 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from app.reporting.flow import Block, Paint
+from app.reporting.grounds import cut_notes, definitions, note_groups
 from app.reporting.handout import Handout
 from app.reporting.head import WIDE
 from app.reporting.marks import paint_chip, paint_light
 from app.reporting.paper import Paper, elided, fitting, line_height, text_width, wrapped
-from app.reporting.telling import (
-    CutView,
-    MeasureRow,
-    cut_notes,
-    cut_views,
-    definitions,
-    light_legend,
-    measure_rows,
-    note_groups,
-)
+from app.reporting.telling import CutView, MeasureRow, cut_views, light_legend, measure_rows
 from app.wording.tokens import LIGHT
 from app.wording.words import tr
 from core.sheet import Sheet

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 from typing import Any
@@ -13,12 +13,11 @@ from app.showing.verdict_chip import state_title
 from app.wording.words import language, number, say, tr
 from core.cutting import CutRow
 from core.design_lines import partner_of
-from core.measuring.definitions import GIRTHS, TAPE, definition_of
+from core.measuring.definitions import definition_of
 from core.measuring.own import OWN
 from core.press_list import PressRow
 from core.sewing.comfort import comfort
 from core.sheet import Sheet
-from core.sizes import built_in
 
 NOTHING = "\N{EN DASH}"
 """What stands in a table where nothing is known."""
@@ -76,30 +75,11 @@ def state_words(sheet: Sheet) -> tuple[str, str]:
 
 def other_sizes(sheet: Sheet) -> str:
     """Return the size as each system writes it, the chosen one first; a star where others find another."""
-    said = (f"{_system(each)} {each['size'] or NOTHING}{'*' * bool(each['caution'])}" for each in sheet.sizes)
+    said = (
+        f"{system_word(each)} {each['size'] or NOTHING}{'*' * bool(each['caution'])}" for each in sheet.sizes
+    )
     # What belongs together is not parted at the end of a line, nor does a line begin with a dot.
     return "\N{NO-BREAK SPACE}· ".join(each.replace(" ", "\N{NO-BREAK SPACE}") for each in said)
-
-
-def size_rule(sheet: Sheet) -> str:
-    """Return how the size in the chosen system was found, and its sister sizes."""
-    if not sheet.sizes:
-        return say(sheet.no_size)
-    chosen = sheet.sizes[0]
-    rule = _joined([say(sentence) for sentence in chosen["rule"]])
-    sisters = ", ".join(each["size"] for each in chosen["sisters"])
-    more = tr("Sister sizes: {sizes}").format(sizes=sisters) if sisters else ""
-    return _joined([f"{_system(chosen)}{_colon()}{rule}", more])
-
-
-def size_cautions(sheet: Sheet) -> str:
-    """Return where others find another size, in the words of the tables, or nothing."""
-    told: dict[str, list[str]] = {}
-    for each in sheet.sizes:
-        if each["caution"]:
-            told.setdefault(_caution(each), []).append(_system(each))
-    words = "; ".join(f"{_listed(systems)}{_colon()}{caution}" for caution, systems in told.items())
-    return tr("* Others find another size. {words}").format(words=words) if words else ""
 
 
 def cut_views(sheet: Sheet, order: Sequence[str]) -> tuple[list[CutView], list[str]]:
@@ -118,13 +98,6 @@ def cut_views(sheet: Sheet, order: Sequence[str]) -> tuple[list[CutView], list[s
     return views, footnotes
 
 
-def cut_notes(sheet: Sheet) -> list[str]:
-    """Return what holds for all of the cut list, and between whose figures the limits of its lights stand."""
-    limits, notes = comfort(), [_with_elastics(note, sheet) for note in sheet.cuts.notes]
-    sources = ("、" if language() == "ja" else "; ").join(each.named(language()) for each in limits.sources)
-    return [*notes, limits.doubts[0].told(language()), tr("Sources: {names}.").format(names=sources)]
-
-
 def cut_pieces(sheet: Sheet, order: Sequence[str]) -> list[tuple[str, str, str]]:
     """Return line, title and length [mm] of whole pieces to be cut, in the ``order`` of the lines."""
     return [
@@ -141,41 +114,13 @@ def measure_rows(sheet: Sheet) -> list[tuple[str, list[MeasureRow]]]:
     found = []
     for group in order:
         those = [row for name, row in rows if name == group]
-        known = [_measure_row(row, after=sheet.sound) for row in those if _known(row)]
-        missing = [row for row in those if not _known(row)]
+        shown = [_measure_row(row, after=sheet.sound) for row in those if known(row)]
+        missing = [row for row in those if not known(row)]
         for note, same in groupby(missing, key=lambda row: row["note"]):
-            title = _listed([_measure_title(row) for row in same])
-            known.append(MeasureRow(title, "", (), f"{title}{_colon()}{say(note)}"))
-        found.append((group, known))
+            title = listed([_measure_title(row) for row in same])
+            shown.append(MeasureRow(title, "", (), f"{title}{colon()}{say(note)}"))
+        found.append((group, shown))
     return found
-
-
-def definitions(sheet: Sheet) -> list[tuple[str, str]]:
-    """Return measures and how they are taken; those that are taken alike stand together.
-
-    How a tape lies is said once, for all girths.
-    """
-    tape = say(TAPE)
-    told: dict[tuple[str, str], list[str]] = {}
-    for each in sheet.definitions:
-        told.setdefault((each["text"], each["iso"]), []).append(say(each["title"]))
-    found = [(say(GIRTHS), tape)]
-    for (text, iso), titles in told.items():
-        standard = tr("ISO 8559-1: {name}.").format(name=iso) if iso else ""
-        own = " ".join(say(text).replace(tape, "").split())
-        found.append((_listed(titles), _joined([own, standard])))
-    return found
-
-
-def note_groups(sheet: Sheet) -> Iterator[tuple[str, list[str]]]:
-    """Give what is to be known of the figures beside the cut list: what to look at, what is left out."""
-    if sheet.warnings:
-        yield tr("To look at"), [say(each) for each in sheet.warnings]
-    told = tr("Before: on the scan. After: on the body as the model reshapes it.")
-    yield tr("Measured"), [each for each in (told, size_rule(sheet), size_cautions(sheet)) if each]
-    if unsure := _unsure(sheet):
-        yield tr("Estimated"), unsure
-    yield tr("Not modelled"), [say(each) for each in sheet.left_out]
 
 
 def light_legend() -> list[tuple[str, str]]:
@@ -187,7 +132,7 @@ def light_legend() -> list[tuple[str, str]]:
         "amber": tr("from {kpa} kPa").format(kpa=amber),
         "red": tr("from {kpa} kPa").format(kpa=red),
     }
-    return [(light, f"{light_word(light)}{_colon()}{words}") for light, words in told.items()]
+    return [(light, f"{light_word(light)}{colon()}{words}") for light, words in told.items()]
 
 
 def foot_words(sheet: Sheet) -> str:
@@ -223,14 +168,6 @@ def _without_figures(view: CutView) -> CutView:
     return replace(view, figures=(width, *(NOTHING for _ in others)), light="", word="")
 
 
-def _with_elastics(sentence: str, sheet: Sheet) -> str:
-    """Return what the core says of elastics, whose names are words of their own."""
-    names = {row.elastic for row in sheet.cuts.rows if row.elastic}
-    for name in sorted(names, key=len, reverse=True):
-        sentence = sentence.replace(f"{name}; ", _listed([say(name), ""])).replace(name, say(name))
-    return say(sentence)
-
-
 def _measure_row(row: dict[str, Any], *, after: bool) -> MeasureRow:
     digits = 0 if row["unit"] == "ml" else 1
     figures = (
@@ -257,24 +194,15 @@ def _group(key: str) -> str:
     return tr("Your own") if key.startswith(OWN) else say(definition_of(key)[0].group)
 
 
-def _known(row: dict[str, Any]) -> bool:
+def known(row: dict[str, Any]) -> bool:
+    """Return whether a measure was found, before or after."""
     return row["before"] is not None or row["after"] is not None
 
 
-def _unsure(sheet: Sheet) -> list[str]:
-    notes = (row["note"] for row in sheet.measures if row["estimate"] and _known(row) and row["note"])
-    return [say(note) for note in dict.fromkeys(notes)]
-
-
-def _system(size: dict[str, Any]) -> str:
+def system_word(size: dict[str, Any]) -> str:
+    """Return what a system of sizes is called beside a size."""
     key = str(size["key"])
     return key.upper() if len(key) == 2 else str(size["system"])
-
-
-def _caution(size: dict[str, Any]) -> str:
-    """Return the caution of a size in the language of the sheet; its data speak English."""
-    known = next((table.caution for table in built_in() if table.key == size["key"]), None)
-    return known.told(language()) if known else str(size["caution"])
 
 
 def _place(line: str, order: Sequence[str]) -> int:
@@ -285,13 +213,16 @@ def _figure(value: float | None, digits: int) -> str:
     return NOTHING if value is None else number(value, digits)
 
 
-def _colon() -> str:
+def colon() -> str:
+    """Return a colon as the language in use writes it."""
     return "：" if language() == "ja" else ": "
 
 
-def _listed(names: list[str]) -> str:
+def listed(names: list[str]) -> str:
+    """Return names as a list in the language in use."""
     return ("、" if language() == "ja" else ", ").join(names)
 
 
-def _joined(sentences: list[str]) -> str:
+def joined(sentences: list[str]) -> str:
+    """Return sentences after one another."""
     return ("" if language() == "ja" else " ").join(filter(None, sentences))

@@ -52,9 +52,7 @@ def _drawings() -> tuple[Export, ...]:
             "lines",
             tr("Lines as curves"),
             "lines",
-            tr(
-                "The worn lines, smooth on the skin: some mm off the lengths in the cut list. Cut by the strips."
-            ),
+            tr("The worn lines, smooth on the skin: some mm off the lengths in the cut list. Cut by strips."),
             {
                 "dxf": tr("For CAD and pattern programs: a layer for each part of a line."),
                 "obj": tr("For 3D programs, to lie on the body that is exported likewise."),

@@ -1,0 +1,98 @@
+"""What the figures of a sheet rest on, in words of the language in use."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from app.reporting.telling import colon, joined, known, listed, system_word
+from app.wording.words import language, say, tr
+from core.measuring.definitions import GIRTHS, TAPE, definition_of
+from core.measuring.own import OWN
+from core.sewing.comfort import comfort
+from core.sheet import Sheet
+from core.sizes import built_in
+
+
+def cut_notes(sheet: Sheet) -> list[str]:
+    """Return what holds for all of the cut list."""
+    return [_with_elastics(note, sheet) for note in sheet.cuts.notes]
+
+
+def definitions(sheet: Sheet) -> list[tuple[str, str]]:
+    """Return the measures that were found and how they are taken; those taken alike stand together.
+
+    How a tape lies is said once, for all girths.
+    """
+    tape, rows = say(TAPE), (row for row in sheet.measures if known(row) and not row["key"].startswith(OWN))
+    found_ones = {definition_of(row["key"])[0].key for row in rows}
+    told: dict[tuple[str, str], list[str]] = {}
+    for each in sheet.definitions:
+        if each["key"] in found_ones:
+            told.setdefault((each["text"], each["iso"]), []).append(say(each["title"]))
+    found = [(say(GIRTHS), tape)]
+    for (text, iso), titles in told.items():
+        standard = tr("ISO 8559-1: {name}.").format(name=iso) if iso else ""
+        own = " ".join(say(text).replace(tape, "").split())
+        found.append((listed(titles), joined([own, standard])))
+    return found
+
+
+def note_groups(sheet: Sheet) -> Iterator[tuple[str, list[str]]]:
+    """Give what is to be known of the figures beside the cut list: what to look at, what is left out."""
+    if sheet.warnings:
+        yield tr("To look at"), [say(each) for each in sheet.warnings]
+    told = tr("Before: on the scan. After: on the body as the model reshapes it.")
+    yield tr("Measured"), [each for each in (told, size_rule(sheet), size_cautions(sheet)) if each]
+    limits = _limits() if sheet.cuts.rows else []
+    if estimated := [*limits, *_unsure(sheet)]:
+        yield tr("Estimated"), estimated
+    yield tr("Not modelled"), [say(each) for each in sheet.left_out]
+
+
+def size_rule(sheet: Sheet) -> str:
+    """Return how the size in the chosen system was found, and its sister sizes."""
+    if not sheet.sizes:
+        return say(sheet.no_size)
+    chosen = sheet.sizes[0]
+    rule = joined([say(sentence) for sentence in chosen["rule"]])
+    sisters = listed([each["size"] for each in chosen["sisters"]])
+    more = tr("Sister sizes: {sizes}").format(sizes=sisters) if sisters else ""
+    return joined([f"{system_word(chosen)}{colon()}{rule}", more])
+
+
+def size_cautions(sheet: Sheet) -> str:
+    """Return where others find another size, in the words of the tables, or nothing."""
+    told: dict[str, list[str]] = {}
+    for each in sheet.sizes:
+        if each["caution"]:
+            told.setdefault(_caution(each), []).append(system_word(each))
+    between = "；" if language() == "ja" else "; "
+    words = between.join(f"{listed(systems)}{colon()}{caution}" for caution, systems in told.items())
+    return tr("* Others find another size. {words}").format(words=words) if words else ""
+
+
+def _limits() -> list[str]:
+    """Return how sure the limits of the lights are, and between whose figures they stand."""
+    limits = comfort()
+    sources = ("、" if language() == "ja" else "; ").join(each.named(language()) for each in limits.sources)
+    return [limits.doubts[0].told(language()), tr("Sources: {names}.").format(names=sources)]
+
+
+def _unsure(sheet: Sheet) -> list[str]:
+    notes = (row["note"] for row in sheet.measures if row["estimate"] and known(row) and row["note"])
+    return [say(note) for note in dict.fromkeys(notes)]
+
+
+def _with_elastics(sentence: str, sheet: Sheet) -> str:
+    """Return what the core says of elastics, whose names are words of their own."""
+    names = {row.elastic for row in sheet.cuts.rows if row.elastic}
+    for name in sorted(names, key=len, reverse=True):
+        sentence = sentence.replace(f"{name}; ", listed([say(name), ""])).replace(name, say(name))
+    return say(sentence)
+
+
+def _caution(size: dict[str, Any]) -> str:
+    """Return the caution of a size in the language of the sheet; its data speak English."""
+    known = next((table.caution for table in built_in() if table.key == size["key"]), None)
+    return known.told(language()) if known else str(size["caution"])
