@@ -115,7 +115,8 @@ class Sheet:
     ``state`` is the word of the verdict ("strained" where skin strains though all has settled); ``lift`` is
     None in any state that is not ``SOUND``. ``measures`` are rows of ``core.measures.measure_rows``,
     ``sizes`` those of ``core.sizes.sizes_text``, the chosen system first, or none and ``no_size`` says why;
-    ``pressures`` follow the cut list row by row, ``limits`` are those of their lights.
+    ``pressures`` follow the cut list row by row, ``limits`` are those of their lights; ``doubts`` say what
+    should be looked at before landmarks are trusted.
     """
 
     heading: Heading
@@ -132,6 +133,7 @@ class Sheet:
     limits: Mapping[str, Any]
     sections: tuple[SectionCurves, ...]
     turns: Turns
+    doubts: tuple[str, ...]
     warnings: tuple[str, ...]
     left_out: tuple[str, ...]
     model: Mapping[str, Any]
@@ -174,6 +176,7 @@ def sheet_of(shown: Shown, records: Sequence[Record], heading: Heading, progress
         limits=pressed.as_data()["limits"],
         sections=_sections(stages, points),
         turns=_turns(stages, records),
+        doubts=tuple(doubts(stages.body, stages.landmarks)),
         warnings=_warnings(shown),
         left_out=(*NOT_MODELLED, *LEFT_OUT),
         model=_model(stages),
@@ -258,8 +261,7 @@ def _turns(stages: Stages, records: Sequence[Record]) -> Turns:
 
 def _warnings(shown: Shown) -> tuple[str, ...]:
     stages = shown.stages
-    unclear = doubts(stages.body, stages.landmarks)
-    return *shape_warnings(shown), *unclear, *still_lines(stages), *warnings(stages)
+    return *shape_warnings(shown), *still_lines(stages), *warnings(stages)
 
 
 def _model(stages: Stages) -> dict[str, Any]:

@@ -157,6 +157,16 @@ def test_what_is_missing_is_said(sheet: Sheet, built: Built, tmp_path: Path) -> 
     assert "No figure: the shape is no result." in text
 
 
+@pytest.mark.parametrize(
+    ("words", "said"), [("en", "could not be seen clearly"), ("ja", "バージスがはっきり見えません")]
+)
+def test_doubts_stand_on_the_first_page(sheet: Sheet, tmp_path: Path, words: str, said: str) -> None:
+    unclear = "The fold under the left breast could not be seen clearly: please check it."
+    page = written(handout(replace(sheet, doubts=(unclear,))), tmp_path / "sheet.pdf", words)
+    assert said in "".join(piece.text for piece in page.pieces(0))
+    assert said not in "".join(piece.text for piece in page.pieces(1))
+
+
 def test_a_shape_that_is_no_result_tells_no_figure_of_it(sheet: Sheet, tmp_path: Path) -> None:
     folded = replace(sheet, state="folded", lift=None)
     text = written(handout(folded), tmp_path / "folded.pdf").text()
@@ -186,6 +196,16 @@ def test_elastics_are_named_in_the_language_of_the_sheet(sheet: Sheet, tmp_path:
 
 def test_letters_are_large_enough_for_the_bench() -> None:
     assert min(size for kind, (size, *_) in TYPES.items() if kind != "axis") >= 7.5
+
+
+def test_a_garment_of_six_lines_is_two_pages_too(sheet: Sheet, tmp_path: Path) -> None:
+    cuts, presses = sheet.cuts.rows * 2, sheet.pressures * 2
+    rows = tuple(replace(row, line=f"own {k}", title=f"Own line {k}") for k, row in enumerate(cuts))
+    notes = [(f"It goes straight over hollows for {k} mm: it does not press there.",) for k in range(6)]
+    pressed = tuple(replace(row, notes=note) for row, note in zip(presses, notes, strict=True))
+    six = replace(sheet, cuts=replace(sheet.cuts, rows=rows), pressures=pressed)
+    for words in ("en", "ja"):
+        assert len(written(handout(six), tmp_path / f"{words}.pdf", words).sizes) == 2
 
 
 def test_many_lines_are_all_printed(sheet: Sheet, tmp_path: Path) -> None:
@@ -223,6 +243,20 @@ def test_a_sheet_is_whole_or_not_there(sheet: Sheet, tmp_path: Path) -> None:
     with pytest.raises(UserError):
         write_pdf(tmp_path / "no folder" / "sheet.pdf", pages_of(handout(sheet), "en"), "sheet")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_disk_that_gets_full_leaves_the_former_sheet(sheet: Sheet, tmp_path: Path) -> None:
+    resource = pytest.importorskip("resource")
+    path = tmp_path / "sheet.pdf"
+    path.write_bytes(b"the former one")
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, hard))
+    try:
+        with pytest.raises(UserError, match="cannot be written"):
+            write_pdf(path, pages_of(handout(sheet), "en"), "sheet")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert [each.read_bytes() for each in tmp_path.iterdir()] == [b"the former one"]
 
 
 def test_the_language_of_the_window_stays(sheet: Sheet) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from core.cutting import cut_list
+from core.doubts import doubts
 from core.elastics import find_elastic
 from core.measures import before_after, measure_rows
 from core.pipeline import Stages, build
@@ -119,6 +120,14 @@ def test_a_body_at_rest_has_an_empty_cut_list(built: Built) -> None:
     assert sheet.pressures == ()
     assert sheet.lift is not None
     assert sheet.lift.up == pytest.approx(0.0, abs=1e-9)
+
+
+def test_doubts_are_told_apart_from_what_else_is_warned_of(built: Built, sheet: Sheet) -> None:
+    stages = built("mannequin")
+    assert sheet.doubts == tuple(doubts(stages.body, stages.landmarks)) != ()
+    assert not set(sheet.doubts) & set(sheet.warnings)
+    rows = csv.DictReader(io.StringIO(sheet_csv(sheet)))
+    assert sheet.doubts[0] in [row["note"] for row in rows if row["section"] == "warning"]
 
 
 def test_json_is_the_whole_sheet(sheet: Sheet) -> None:

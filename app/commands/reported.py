@@ -72,7 +72,7 @@ def run_report(
                 partial.write_text(text(sheet), encoding="utf-8")
     said = _write(solution, sheet, wishes)
     files = [name for name in (wishes.out, wishes.json, wishes.csv) if name]
-    return Reported(worn.settled, files, [*dict.fromkeys((*worn.warnings, *sheet.warnings)), *said])
+    return Reported(worn.settled, files, [*dict.fromkeys((*worn.warnings, *sheet.doubts, *sheet.warnings)), *said])
 
 
 def _check(wishes: SheetWishes) -> None:

@@ -20,13 +20,19 @@ _HERO, _LARGE = 25.5, 3
 _USUAL = LIGHT.control  # of a line that has no colour
 
 
-def head_blocks(handout: Handout) -> list[Block]:
-    """Return the head: title, a doubt if there is one, the great figures, the pictures."""
-    word, doubt = state_words(handout.sheet)
-    blocks = [_title(handout.sheet, word, sound=not doubt)]
-    if doubt:
-        blocks.append(_doubt(doubt))
-    return [*blocks, _hero(handout), _pictures(handout)]
+def head_blocks(handout: Handout, share: float = 1.0) -> list[Block]:
+    """Return the head: title, what to beware of if there is anything, the great figures, the pictures.
+
+    Those have a ``share`` of their usual height.
+    """
+    sheet = handout.sheet
+    word, no_result = state_words(sheet)
+    blocks = [_title(sheet, word, sound=not no_result)]
+    if no_result:
+        blocks.append(_beware(no_result, "warning", LIGHT.bad_fill))
+    if sheet.doubts:
+        blocks.append(_beware(say(" ".join(sheet.doubts)), "caution", LIGHT.warn_fill))
+    return [*blocks, _hero(handout), _pictures(handout, share)]
 
 
 def _title(sheet: Sheet, word: str, *, sound: bool) -> Block:
@@ -46,13 +52,13 @@ def _title(sheet: Sheet, word: str, *, sound: bool) -> Block:
     return Block(15.5, paint)
 
 
-def _doubt(doubt: str) -> Block:
-    lines = wrapped(doubt, "warning", WIDE - 6.0)
-    height = len(lines) * line_height("warning") + 3.0
+def _beware(said: str, kind: str, fill: str) -> Block:
+    lines = wrapped(said, kind, WIDE - 6.0)
+    height = len(lines) * line_height(kind) + 3.0
 
     def paint(paper: Paper, x: float, y: float) -> None:
-        paper.box(x, y, WIDE, height, LIGHT.bad_fill, 1.2)
-        paper.lines(x + 3.0, y + 1.5, lines, "warning")
+        paper.box(x, y, WIDE, height, fill, 1.2)
+        paper.lines(x + 3.0, y + 1.5, lines, kind)
 
     return Block(height + 2.0, paint)
 
@@ -179,7 +185,7 @@ def _volume(sheet: Sheet) -> Block:
     return _great(left, WIDE - left, caption, figure, of, "ml")
 
 
-def _pictures(handout: Handout) -> Block:
+def _pictures(handout: Handout, share: float) -> Block:
     """Return front and side, before and after, or a sentence where they could not be drawn."""
     if not all(name in handout.pictures for name in SHOTS):
         lines = wrapped(
@@ -191,11 +197,11 @@ def _pictures(handout: Handout) -> Block:
         return Block(height, lambda paper, x, y: paper.lines(x, y, lines, "small"), gap=3.0)
     titles = dict(zip(SHOTS, _shot_titles(), strict=True))
     sizes = {name: SHOT_SIZES[name.partition(" ")[0]] for name in SHOTS}
-    tall = max(height for _, height in sizes.values())
+    tall = share * max(height for _, height in sizes.values())
 
     def paint(paper: Paper, x: float, y: float) -> None:
         for name, (wide, high) in sizes.items():
-            paper.picture(x, y, wide, high, handout.pictures[name])
+            paper.picture(x, y, wide, share * high, handout.pictures[name])
             paper.text(x + 0.5 * wide, y + tall + 3.6, titles[name], "caption", align="middle")
             x += wide
 

@@ -54,6 +54,7 @@ TYPES = {
     "small": (7.5, 400, "text_quiet", False),
     "small strong": (7.5, _STRONG, "text", False),
     "warning": (7.8, _STRONG, "bad", False),
+    "caution": (7.8, _STRONG, "warn", False),
 }
 """Size [pt], weight, colour token of each kind of type, and whether its figures have one width."""
 

@@ -49,7 +49,7 @@ def sheet_rows(sheet: Sheet) -> Iterator[Row]:
         yield {"section": "measure", "title": title, **known, "plus_minus": row["plus_minus"] or None}
     yield from _cut_rows(sheet)
     yield from _pressure_rows(sheet)
-    for section, sentences in (("warning", sheet.warnings), ("left out", sheet.left_out)):
+    for section, sentences in (("warning", (*sheet.doubts, *sheet.warnings)), ("left out", sheet.left_out)):
         for number, sentence in enumerate(sentences, start=1):
             yield {"section": section, "key": str(number), "note": sentence}
 
