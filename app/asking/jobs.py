@@ -105,7 +105,8 @@ class Jobs(QObject):
     ) -> Job:
         """Begin work that belongs to the window's thread: a small piece of it whenever events are done.
 
-        All else is as in ``run``. What it holds is given back as soon as it ends or is cancelled.
+        Several such jobs take turns. All else is as in ``run``. What it holds is given back as soon as it
+        ends or is cancelled.
         """
         job = Job(words, waited, done, failed, left)
         self._pieces[job] = pieces
@@ -168,6 +169,7 @@ class Jobs(QObject):
         result, fault = None, None
         try:
             job.share = next(pieces)
+            self._pieces[job] = self._pieces.pop(job)  # the others come first now
             return
         except StopIteration as ended:
             result = ended.value
