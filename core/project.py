@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import re
+import threading
 import time
 import zipfile
 import zlib
@@ -27,6 +28,10 @@ _LARGEST_DESIGN = 1_000_000
 
 _ABANDONED = 600.0
 """Seconds after which nobody writes any more to a file that is not whole."""
+
+_LOCK = threading.Lock()
+_AT_WORK: set[str] = set()
+"""What this program is writing: two at once under one name would take each other's place unsaid."""
 
 _UNSAFE = re.compile(r'[<>:"/\\|?*\x00-\x1f\ud800-\udfff]')
 _FULL = (errno.ENOSPC, errno.EDQUOT)
@@ -116,8 +121,26 @@ def safe_name(name: str) -> str:
 def whole_file(target: Path) -> Iterator[Path]:
     """Give a name beside ``target`` to write to; it takes the target's place only when all went well.
 
-    Raises ProjectError if the place cannot be written to.
+    Raises ProjectError if the place cannot be written to, or is being written to already.
     """
+    place = os.path.normcase(os.path.realpath(target))
+    with _LOCK:
+        if place in _AT_WORK:
+            raise still_written(target)
+        _AT_WORK.add(place)
+    try:
+        yield from _whole_file(target)
+    finally:
+        with _LOCK:
+            _AT_WORK.discard(place)
+
+
+def still_written(target: Path) -> ProjectError:
+    """Return what to say when a file is to be written that is on its way already."""
+    return ProjectError(f"{target.name} is still being written.", "Wait a moment, or choose another name.")
+
+
+def _whole_file(target: Path) -> Iterator[Path]:
     partial = target.with_name(f".{target.name}.{os.getpid()}.part")
     _sweep(target)
     try:

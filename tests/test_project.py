@@ -168,6 +168,18 @@ def test_nobody_sees_a_half_written_file(tmp_path):
     assert left_over(tmp_path) == ["table.csv"]
 
 
+def test_one_file_is_not_written_by_two_at_once(tmp_path):
+    target = tmp_path / "table.csv"
+    with whole_file(target) as partial:
+        partial.write_text("the first")
+        with pytest.raises(ProjectError, match=r"table\.csv is still being written"), whole_file(target):
+            pass
+    assert target.read_text() == "the first"
+    with whole_file(target) as partial:
+        partial.write_text("the second")
+    assert target.read_text() == "the second"
+
+
 @pytest.mark.parametrize("place", ["missing/anna.busk", "file/anna.busk", "folder", "x" * 300 + ".busk"])
 def test_a_place_that_cannot_be_written_to_is_named(tmp_path, place):
     (tmp_path / "file").write_text("a file, no folder")

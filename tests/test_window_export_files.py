@@ -16,6 +16,7 @@ from window_tools import Script, run_main, settled, undrawn
 import app.desks.export_desk
 import app.printing.studio
 from app.main_window import MainWindow
+from core.tffd import deform
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -159,3 +160,58 @@ def test_a_series_does_not_take_the_place_of_another_unasked(
 
     run_main([], script)
     assert [each.read_text() for each in tmp_path.iterdir()] == ["another series"]
+
+
+def test_a_body_is_written_as_it_is_when_the_dialog_closes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "anna.ply"
+    said: list[str] = []
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+
+        def place(*_: Any) -> str:
+            """Answer once the run that was under way has come to rest behind the dialog."""
+            while not window.is_settled():
+                QApplication.processEvents()
+            return str(path)
+
+        monkeypatch.setattr(app.desks.export_desk, "ask_save", place)
+        show = window.notices.show_notice
+        monkeypatch.setattr(
+            window.notices,
+            "show_notice",
+            lambda tone, *how, **more: said.append(how[0]) or show(tone, *how, **more),
+        )
+        window.session.commit_line("mid-bust", "Mid-bust", 0.93)
+        assert not window.is_settled()
+        window.actions_.export.trigger()
+        yield written(window)
+        stages, points = window.session.frame.stages, window.session.frame.control_points
+        away = pv.read(path).points - deform(stages.binding, points)
+        assert abs(away).max() < 0.01
+        assert said == ["anna.ply written, in mm, z-up."], "nothing is under way any more"
+
+    run_main(["resources/samples/mannequin.ply"], script)
+
+
+def test_two_exports_do_not_share_a_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "anna.obj"
+    saved_as(monkeypatch, path)
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        desk = window.export_desk
+        assert desk._ask_and_write("body", "body")
+        assert desk._ask_and_write("control", "control") is None
+        assert window.notices.notice().sentence == "anna.obj is still being written."
+        yield lambda: not window.jobs.at_work()
+        assert len(pv.read(path).points) == len(window.session.frame.stages.body.mesh.vertices)
+        assert desk._ask_and_write("control", "control")
+        yield lambda: not window.jobs.at_work()
+        assert len(pv.read(path).points) == len(window.session.frame.stages.control.mesh.vertices)
+
+    run_main(["resources/samples/mannequin.ply"], script)

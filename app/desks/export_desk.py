@@ -26,6 +26,7 @@ from app.wording.export_choices import exports, format_title
 from app.wording.words import say, tr
 from core.errors import UserError
 from core.live import Frame
+from core.project import still_written
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -44,6 +45,7 @@ class ExportDesk(QObject):
         self.sheet: ExportSheet | None = None
         self._outcome: Outcome | None = None
         self._job: Job | None = None
+        self._works: list[ExportWork] = []
 
     def show(self) -> None:
         """Show all that can be exported."""
@@ -58,11 +60,10 @@ class ExportDesk(QObject):
 
     def export_body(self) -> None:
         """Ask for a place and write the reshaped body, else as it was chosen last."""
-        frame = self._window.session.frame
-        if self._ask_and_write("body", tr("Export body"), reshaped=True) and frame is not None:
-            doubt = _doubt(frame)
-            if doubt:
-                self._window.notices.show_notice("warn", doubt, lasting=True)
+        frame = self._ask_and_write("body", tr("Export body"), reshaped=True)
+        doubt = _doubt(frame) if frame is not None else ""
+        if doubt:
+            self._window.notices.show_notice("warn", doubt, lasting=True)
 
     def show_frame(self, frame: Frame) -> None:
         """Tell of the body as it is now, if somebody looks and it rests."""
@@ -119,24 +120,32 @@ class ExportDesk(QObject):
 
     def _save(self) -> None:
         export, sheet = self._choices.export, self.sheet
-        if self._ask_and_write(export.what, tr("Export: {what}").format(what=export.title)) and sheet:
+        written = self._ask_and_write(export.what, tr("Export: {what}").format(what=export.title))
+        if written is not None and sheet is not None:
             sheet.accept()
 
-    def _ask_and_write(self, what: str, title: str, reshaped: bool = False) -> bool:
-        """Ask for a place and begin to write; returns whether it begins."""
-        frame, usual = self._window.session.frame, self._choices.kind(what)
+    def _ask_and_write(self, what: str, title: str, reshaped: bool = False) -> Frame | None:
+        """Ask for a place and begin to write; returns what is written, or None if nothing is."""
+        usual = self._choices.kind(what)
         kinds = sorted(self._choices.find(what).formats, key=lambda kind: kind != usual)
         filters = ";;".join(f"{format_title(kind)} (*.{kind})" for kind in kinds)
         path = ask_save(self._parent, title, f"{self._stem(what)}.{usual}", filters, f".{usual}")
+        # A run may go on behind the dialog: what is written is what is shown when it closes.
+        frame = self._window.session.frame
         if not path or frame is None:
-            return False
+            return None
         manner = self._manner(what, Path(path).suffix.lower().lstrip("."))
         if reshaped:
             manner = replace(manner, before=False)
         if what == "turntable" and not self._may_number(Path(path), manner):
-            return False
-        ExportWork(self._window, what, Path(path), self._outcome_of(frame), manner).begin()
-        return True
+            return None
+        if any(work.path == Path(path) and work.at_work for work in self._works):
+            self._window.desk.show_failure(still_written(Path(path)), f"export {what}")
+            return None
+        work = ExportWork(self._window, what, Path(path), self._outcome_of(frame), manner)
+        self._works = [*(each for each in self._works if each.at_work), work]
+        work.begin()
+        return frame
 
     def _may_number(self, path: Path, manner: Manner) -> bool:
         """Ask before a series of pictures takes the place of another, which the dialog has not seen."""

@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
+from app.asking.jobs import Job
 from app.exporting.outcome import Manner, Outcome
 from app.exporting.ready import Ready, make_ready
 from app.wording.words import tr
@@ -23,8 +24,14 @@ class ExportWork:
     """
 
     def __init__(self, window: MainWindow, what: str, path: Path, outcome: Outcome, manner: Manner) -> None:
-        self._window, self._path, self._about = window, path, f"export {what}"
+        self._window, self.path, self._about = window, path, f"export {what}"
         self._make = partial(make_ready, what, path, outcome, manner)
+        self._job: Job | None = None
+
+    @property
+    def at_work(self) -> bool:
+        """Whether the file is still on its way."""
+        return self._job in self._window.jobs.at_work()
 
     def begin(self) -> None:
         """Begin with the first of the jobs."""
@@ -40,18 +47,21 @@ class ExportWork:
         if ready.draw is None:
             self._done(ready, files)
             return
-        words, jobs = tr("Drawing {name}").format(name=self._path.name), self._window.jobs
-        jobs.run_pieces(words, ready.draw(), partial(self._drawn, ready), self._failed, waited=True)
+        words, jobs = tr("Drawing {name}").format(name=self.path.name), self._window.jobs
+        self._job = jobs.run_pieces(
+            words, ready.draw(), partial(self._drawn, ready), self._failed, waited=True
+        )
 
     def _drawn(self, ready: Ready, pictures: Any) -> None:
         write = partial(self._write, ready, pictures)
         self._run(tr("Writing {name}"), write, lambda files: self._done(ready, cast(list[Path], files)))
 
     def _write(self, ready: Ready, pictures: Any, progress: Progress) -> list[Path]:
-        return ready.write(self._path, pictures, progress) or [self._path]
+        return ready.write(self.path, pictures, progress) or [self.path]
 
     def _run(self, words: str, work: Any, done: Any) -> None:
-        self._window.jobs.run(words.format(name=self._path.name), work, done, self._failed, waited=True)
+        said = words.format(name=self.path.name)
+        self._job = self._window.jobs.run(said, work, done, self._failed, waited=True)
 
     def _failed(self, error: Exception) -> None:
         self._window.desk.show_failure(error, self._about)
