@@ -7,7 +7,7 @@ from app.reporting.flow import Block
 from app.reporting.handout import SHOT_SIZES, SHOTS, Handout
 from app.reporting.marks import paint_chip, paint_state
 from app.reporting.paper import A4, MARGIN, Paper, elided, line_height, text_width, wrapped
-from app.reporting.telling import cut_pieces, other_sizes, project_words, state_words
+from app.reporting.telling import cut_pieces, other_sizes, project_words, state_words, system_word
 from app.wording.tokens import LIGHT
 from app.wording.words import number, say, tr
 from core.sheet import Sheet
@@ -95,7 +95,8 @@ def _size(sheet: Sheet) -> Block:
     chosen = sheet.sizes[0] if sheet.sizes else {"band": None, "cup": None}
     below = other_sizes(sheet) if sheet.sizes else say(sheet.no_size)
     nothing = "\N{EN DASH}"
-    band = _great(_CELLS[0], _CELLS[2] - 6.0, tr("Band"), chosen["band"] or nothing, below)
+    system = f" {system_word(chosen)}" if sheet.sizes else ""
+    band = _great(_CELLS[0], _CELLS[2] - 6.0, tr("Band") + system, chosen["band"] or nothing, below)
     cup = _great(_CELLS[1], 20.0, tr("Cup"), chosen["cup"] or nothing, "")
 
     def paint(paper: Paper, x: float, y: float) -> None:
@@ -130,7 +131,7 @@ def _cuts(handout: Handout) -> Block:
     ]
     more, end = len(pieces) - len(rows), max(text_width(length, "large") for *_, length in rows)
     if more:
-        caption = tr("{what}; {count} more below").format(what=caption, count=more)
+        caption = elided(tr("{what}; {count} more below").format(what=caption, count=more), "caption", room)
 
     def paint(paper: Paper, x: float, y: float) -> None:
         paper.text(x + left, y + 4.6, caption, "caption")
@@ -155,7 +156,7 @@ def _no_cut(sheet: Sheet) -> str:
 
 def _cut_caption(sheet: Sheet) -> str:
     guessed = any(row.cut_mm is not None and row.estimate for row in sheet.cuts.rows)
-    return tr("Cut length of the elastic, an estimate") if guessed else tr("Cut length of the elastic")
+    return tr("Length to cut, an estimate") if guessed else tr("Length to cut")
 
 
 def _sentence(left: float, room: float, caption: str, said: str) -> Block:

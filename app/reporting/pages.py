@@ -21,6 +21,10 @@ BOTTOM = A4[1] - MARGIN - 6.0
 """Down to where blocks stand; below it is the foot of the page [mm]."""
 
 
+_GAP = 4.0  # over the curves [mm]
+_SMALLER = (1.0, 0.85, 0.7, 0.55)  # of the height of the pictures, until the curves have room
+
+
 @dataclass(frozen=True, eq=False)
 class Pages:
     """Blocks in their places on ``count`` pages; ``foot`` stands at the foot of each."""
@@ -45,7 +49,7 @@ class Pages:
 def pages_of(handout: Handout, language: str) -> Pages:
     """Return the pages of a sheet in a language of ``app.wording.words.LANGUAGES``."""
     with speaking(language):
-        placed, left = flow([*head_blocks(handout), *cut_blocks(handout)], _whole(0))
+        placed, left = _first(handout)
         placed += _curves(handout, left)
         last = placed[-1]
         below = last.y + last.block.height if last.page > left.page else BOTTOM
@@ -55,12 +59,24 @@ def pages_of(handout: Handout, language: str) -> Pages:
         return Pages(tuple(placed), max(each.page for each in placed) + 1, foot_words(sheet))
 
 
+def _first(handout: Handout) -> tuple[list[Placed], Column]:
+    """Return the head and the cut list; where that is long, pictures leave room for the curves below it."""
+    cuts = cut_blocks(handout)
+    for share in _SMALLER:
+        placed, left = flow([*head_blocks(handout, share), *cuts], _whole(0))
+        if left.page == 0 and _room(left) >= LOWEST:
+            return placed, left
+    return flow([*head_blocks(handout), *cuts], _whole(0))
+
+
+def _room(left: Column) -> float:
+    return left.bottom - left.top - _GAP
+
+
 def _curves(handout: Handout, left: Column) -> list[Placed]:
     """Return the curves below the cut list, where they have room, else at the head of the next page."""
-    gap = 4.0
-    room = left.bottom - left.top - gap
-    if room >= LOWEST:
-        return [Placed(left.page, MARGIN, left.top + gap, curve_block(handout, min(room, HIGHEST)))]
+    if (room := _room(left)) >= LOWEST:
+        return [Placed(left.page, MARGIN, left.top + _GAP, curve_block(handout, min(room, HIGHEST)))]
     return [Placed(left.page + 1, MARGIN, MARGIN, curve_block(handout, LOWEST + 14.0))]
 
 

@@ -143,7 +143,7 @@ def _footnotes(notes: list[str]) -> Iterator[Block]:
     """Give footnotes, two beside each other where there are many."""
     count = 2 if len(notes) > _FEW else 1
     width = (WIDE - 5.0 * (count - 1)) / count
-    numbered = [(str(k), wrapped(note, "small", width - 3.4)) for k, note in enumerate(notes, start=1)]
+    numbered = [(str(k), wrapped(note, "small", width - 4.0)) for k, note in enumerate(notes, start=1)]
     for first in range(0, len(numbered), count):
         yield _footnote_row(numbered[first : first + count], width)
 
@@ -152,8 +152,8 @@ def _footnote_row(notes: list[tuple[str, list[str]]], width: float) -> Block:
     def paint(paper: Paper, x: float, y: float) -> None:
         for place, (number, lines) in enumerate(notes):
             left = x + place * (width + 5.0)
-            paper.text(left + 1.8, y + 2.3, number, "axis", align="right")
-            paper.lines(left + 3.4, y, lines, "small")
+            paper.text(left + 2.7, y + 2.3, number, "axis", align="right")
+            paper.lines(left + 4.0, y, lines, "small")
 
     return Block(max(len(lines) for _, lines in notes) * line_height("small"), paint)
 
