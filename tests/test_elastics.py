@@ -24,7 +24,7 @@ from core.elastics import (
     write_elastic,
 )
 from core.errors import LineError, UserError
-from core.sewing.elastic_csv import csv_of, elastic_from_csv
+from core.sewing.elastic_csv import TEMPLATE, csv_of, elastic_from_csv
 
 ROLL = Elastic("roll 7", 12.0, ((0.0, 0.0), (0.2, 1.0), (0.5, 4.0)), 30.0, "measured", estimate=False)
 WORN = Design(ScanSource("a.ply")).with_line("mid-bust", 0.7)
@@ -129,11 +129,21 @@ def test_tables_come_in_many_units_and_marks(heading, rows, per_newton):
         ("# width: 12\n\n" + HEAD + "10,1\n\n20\n", "Line 6 of the table roll"),
         (HEAD + "10,1\n20,2\n10,0.8\n", "goes back after 20 % and 2 N"),
         (HEAD + "10,100\n20,90000\n", "Look at its units"),
+        (HEAD + "0.1,1\n0.2,2\n0.4,3\n", "ends at 0.4 %: no elastic stretches so little.*'elongation 1'"),
+        (HEAD + "20,900\n40,2800\n", "ends at 2800 N: no elastic 12 mm wide pulls so hard.*cN"),
     ],
 )
 def test_a_table_that_is_none_is_refused_in_a_sentence(text, sentence):
     with pytest.raises(LineError, match=sentence):
         elastic_from_csv(text, "roll", 12.0)
+
+
+def test_what_the_template_says_of_a_source_is_none():
+    filled = TEMPLATE
+    for share in (20, 40, 60, 80):
+        filled = filled.replace(f"{share},\n", f"{share},{share / 20}\n")
+    assert elastic_from_csv(filled, "roll").source == ""
+    assert elastic_from_csv("# width: 12\n# source: ours\n" + HEAD + "10,1\n20,2\n", "roll").source == "ours"
 
 
 def test_a_table_must_tell_the_width():

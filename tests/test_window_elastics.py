@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -185,5 +186,43 @@ def test_a_linked_pair_is_made_of_the_same_in_one_step() -> None:
         for name, row in cut_rows(window).items():
             assert row.reached_front_mm == pytest.approx(before[name].reached_front_mm, abs=0.2)
         assert window.garment.rows["strap left"].elastic.words == "Strap 12 mm"
+
+    run_main([], script)
+
+
+def test_one_that_is_called_as_ours_gets_a_name_of_its_own_and_none_is_called_measured_without_a_source(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    table = tmp_path / "strap.csv"
+    table.write_text("# name: Strap 15 mm\n# width_mm: 15\nelongation %,force N\n20,2.6\n80,9.8\n")
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        undrawn(window)
+        monkeypatch.setattr(elastics_desk, "ask_table", lambda *_: str(table))
+        window.garment.library_asked.emit()
+        sheet = window.elastics_desk.sheet
+        assert sheet is not None
+        yield sheet.isVisible
+        sheet.import_asked.emit()
+        assert sheet.marked == "Strap 15 mm, own"
+        assert not sheet.views["Strap 15 mm"].own
+        assert "does not say" in sheet.mark.text()
+        sheet.table.mark("Strap 15 mm")
+        assert sheet.mark.text() == "An estimate, not measured"
+        sheet.reject()
+        yield lambda: window.elastics_desk.sheet is None
+        window.inspector.open("garment")
+        choose(window, "mid-bust", "Strap 15 mm, own")
+        yield made_of(window, "mid-bust")
+        # Another one of that name, as a newer table has it: the project keeps its own.
+        save_elastic(replace(own_elastics()[0][0], curve=((0.0, 0.0), (0.4, 5.0), (0.9, 12.0))))
+        window.garment.rows["mid-bust"].elastic.click()
+        menu = open_menu(window)
+        assert "Strap 15 mm, own" in [each.text() for each in menu.actions()]
+        assert [each.text() for each in menu.actions() if each.isChecked()][:1] == [
+            "Strap 15 mm, own, as in this project"
+        ]
+        menu.close()
 
     run_main([], script)

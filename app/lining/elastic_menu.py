@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 
 from PySide6.QtGui import QAction
@@ -25,15 +25,20 @@ def fill_elastics(menu: QMenu, chosen: str, kept: Iterable[Elastic], choose: Cho
     menu.addSeparator()
     own, problems = own_elastics()
     known = {each.name: each for each in (*built_in(), *own)}
+    brought = [each for each in kept if known.get(each.name) != each]
+    elsewhere = "" if chosen in {each.name for each in brought} else chosen
     for kind, elastics in _kinds(each for each in built_in() if known[each.name] == each).items():
         widths = menu.addMenu(kind)
-        _tick(widths.menuAction(), chosen in {each.name for each in elastics})
+        _tick(widths.menuAction(), elsewhere in {each.name for each in elastics})
         for each in elastics:
             words = tr("{width} mm").format(width=f"{each.width_mm:g}")
-            _add(widths, words, each.name == chosen, partial(choose, each))
-    _group(menu, tr("Your own elastics"), own, chosen, choose)
-    brought = [each for each in kept if known.get(each.name) != each]
-    _group(menu, tr("In this project"), brought, chosen, choose)
+            _add(widths, words, each.name == elsewhere, partial(choose, each))
+    _group(menu, tr("Your own elastics"), {each.name: each for each in own}, elsewhere, choose)
+    twice = tr("{name}, as in this project")
+    titles = {
+        twice.format(name=say(each.name)) if each.name in known else each.name: each for each in brought
+    }
+    _group(menu, tr("In this project"), titles, chosen, choose)
     for problem in problems:
         action = menu.addAction(say(problem.message))
         action.setToolTip(say(problem.hint))
@@ -52,11 +57,12 @@ def _kinds(elastics: Iterable[Elastic]) -> dict[str, list[Elastic]]:
     return kinds
 
 
-def _group(menu: QMenu, title: str, elastics: list[Elastic], chosen: str, choose: Choose) -> None:
+def _group(menu: QMenu, heading: str, elastics: Mapping[str, Elastic], chosen: str, choose: Choose) -> None:
+    """Add elastics by what they are called here, under a heading."""
     if elastics:
-        menu.addSection(title)
-    for each in elastics:
-        _add(menu, each.name, each.name == chosen, partial(choose, each))
+        menu.addSection(heading)
+    for title, each in elastics.items():
+        _add(menu, title, each.name == chosen, partial(choose, each))
 
 
 def _add(menu: QMenu, words: str, ticked: bool, do: Callable[[], None]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,7 @@ from app.keeping.dialogs import ask_save, ask_table
 from app.panels.elastics_sheet import ElasticsSheet
 from app.presenting.elastics import elastic_views
 from app.wording.words import number, tr
+from core.design_elastics import Elastic
 from core.elastics import (
     ALLOWANCE,
     built_in,
@@ -65,7 +67,7 @@ class ElasticsDesk(QObject):
         if not path or sheet is None:
             return
         try:
-            elastic = read_elastic(Path(path))
+            elastic = _beside_ours(read_elastic(Path(path)))
             taken = elastic.name in {each.name for each in own_elastics()[0]}
             question = tr("There is an elastic {name} of yours already. Replace it?").format(
                 name=elastic.name
@@ -143,3 +145,10 @@ def _assumed() -> str:
     """Return what goes into every length to cut though no table told it."""
     words = tr("Its table tells no allowance for seams: {mm} mm go into every length to cut.")
     return words.format(mm=number(ALLOWANCE, 0))
+
+
+def _beside_ours(elastic: Elastic) -> Elastic:
+    """Return an elastic under a name that none of ours has: in lists they could not be told apart."""
+    if elastic.name not in {each.name for each in built_in()}:
+        return elastic
+    return replace(elastic, name=tr("{name}, own").format(name=elastic.name))

@@ -119,8 +119,9 @@ class ElasticsSheet(Sheet):
         if view is None:
             return
         self.title.setText(view.title)
-        self.mark.setText(tr("An estimate, not measured") if view.estimate else tr("Measured"))
-        set_tag(self.mark, "tone", "warn" if view.estimate else "ok")
+        told = tr("Measured") if view.source else tr("Its table does not say where it was measured")
+        self.mark.setText(tr("An estimate, not measured") if view.estimate else told)
+        set_tag(self.mark, "tone", "ok" if view.source and not view.estimate else "warn")
         self.source.setText(view.source)
         self.curve.show_elastic(view)
 

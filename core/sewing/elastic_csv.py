@@ -35,11 +35,16 @@ HELP = (
 """What a user has to know to write a table."""
 
 
-TEMPLATE = """\
+SHORTEST_REACH, MOST_PER_CM = 0.02, 100.0
+"""Less elongation [1], or more force per width [N/cm], is no elastic's: the unit in the heading is wrong."""
+
+_UNFILLED = "whose it is, when it was measured, at which stretch"
+
+TEMPLATE = f"""\
 # name: my elastic 12 mm
 # width_mm: 12
 # allowance_mm: 20
-# source: whose it is, when it was measured, at which stretch
+# source: {_UNFILLED}
 elongation %,force N
 20,
 40,
@@ -64,7 +69,25 @@ def elastic_from_csv(text: str, name: str, width_mm: float | None = None) -> Ela
         allowance = _number(told["allowance"].removesuffix("mm"), "allowance", name)
     estimate = told.get("estimate", "no").strip().lower() in ("yes", "true", "1")
     curve = _curve(text, name, width)
-    return Elastic(name, width, curve, allowance, told.get("source", ""), estimate)
+    source = told.get("source", "").replace(_UNFILLED, "")
+    elastic = Elastic(name, width, curve, allowance, source, estimate)
+    _check_units(elastic)
+    return elastic
+
+
+def _check_units(elastic: Elastic) -> None:
+    """Raise LineError where figures are no elastic's in the units that the headings tell."""
+    if elastic.reach < SHORTEST_REACH:
+        raise LineError(
+            f"The table {elastic.name} ends at {100.0 * elastic.reach:g} %: no elastic stretches so little.",
+            "If 1 means twice as long, head it 'elongation 1'.",
+        )
+    if elastic.strength > MOST_PER_CM * elastic.width_mm / 10.0:
+        raise LineError(
+            f"The table {elastic.name} ends at {elastic.strength:g} N: no elastic {elastic.width_mm:g} mm "
+            "wide pulls so hard.",
+            "Look at its unit: 'force cN' or 'force gf' may be meant.",
+        )
 
 
 def tells_allowance(text: str) -> bool:
