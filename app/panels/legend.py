@@ -26,6 +26,9 @@ WIDTH = 152
 BAR = QRectF(2.0, 12.0, 14.0, 168.0)
 """Where the colours are, within their widget [px]."""
 
+SMALL = 92.0
+"""The height of the colours where there is little room [px]."""
+
 _WORD = 13.0  # height of a word at a limit [px]
 _PULL = 120.0  # pixels that an end is dragged to make the range smaller or larger by a factor of e
 
@@ -104,6 +107,12 @@ class Legend(FloatingPanel):
     def show_note(self, note: str) -> None:
         """Say under the bar what the values are."""
         self._note.setText(note)
+        self.bar.say(note)
+
+    def set_small(self, small: bool) -> None:
+        """Take less room: shorter, and what is said below the colours is said by a tip."""
+        self.bar.set_small(small)
+        self._note.setVisible(not small)
 
     def show_range(self, low: float, high: float, stops: Sequence[str], by_hand: bool) -> None:
         """Show the ends of the range and the colours from low to high."""
@@ -154,21 +163,32 @@ class LegendBar(QWidget):
         self._grip: tuple[bool, float, tuple[float, float]] | None = None
         self._digits, self._signed = 1, False
         self._marks: tuple[tuple[float, str, str], ...] = ()
-        ends = (
-            (tr("Highest value of the colours"), BAR.top()),
-            (tr("Lowest value of the colours"), BAR.bottom()),
-        )
-        self.high, self.low = (FigureField("", name, widest="−100.0") for name, _ in ends)
-        for field, (_, y) in zip((self.high, self.low), ends, strict=True):
+        self._bar = QRectF(BAR)
+        ends = tr("Highest value of the colours"), tr("Lowest value of the colours")
+        self.high, self.low = (FigureField("", name, widest="−100.0") for name in ends)
+        for field in (self.high, self.low):
             field.setParent(self)
             field.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
-            field.move(20, round(y) - field.height() // 2)
-        self.setFixedSize(self.sizeHint())
-        self.setToolTip(tr("Drag an end or type a number to set the range; double click: automatic."))
+        self.setFixedWidth(self.sizeHint().width())
+        self.set_small(False)
+        self.say("")
         self.setCursor(Qt.CursorShape.SizeVerCursor)
 
     def sizeHint(self) -> QSize:
-        return QSize(124, round(BAR.bottom()) + 17)
+        return QSize(124, round(self._bar.bottom()) + 17)
+
+    def say(self, note: str) -> None:
+        """Tell in a tip what the values are, and how their range is set."""
+        how = tr("Drag an end or type a number to set the range; double click: automatic.")
+        self.setToolTip("\n".join(filter(None, (note, how))))
+
+    def set_small(self, small: bool) -> None:
+        """Be shorter, or as high as usual."""
+        self._bar.setHeight(SMALL if small else BAR.height())
+        for field, y in ((self.high, self._bar.top()), (self.low, self._bar.bottom())):
+            field.move(20, round(y) - field.height() // 2)
+        self.setFixedHeight(self.sizeHint().height())
+        self.update()
 
     def set_kind(self, kind: MapKind) -> None:
         """Write the numbers of another map."""
@@ -197,18 +217,18 @@ class LegendBar(QWidget):
         """Return how far down a value stands [px]; beyond the ends at the ends."""
         low, high = self.range_
         part = (value - low) / (high - low) if high > low else 0.5
-        return BAR.bottom() - min(max(part, 0.0), 1.0) * BAR.height()
+        return self._bar.bottom() - min(max(part, 0.0), 1.0) * self._bar.height()
 
     def paintEvent(self, event: QPaintEvent) -> None:
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         tokens = tokens_of(self)
-        colours = QLinearGradient(BAR.bottomLeft(), BAR.topLeft())
+        colours = QLinearGradient(self._bar.bottomLeft(), self._bar.topLeft())
         for place, stop in zip(np.linspace(0.0, 1.0, len(self._stops)), self._stops, strict=True):
             colours.setColorAt(float(place), QColor(stop))
         painter.setBrush(colours)
         painter.setPen(QPen(QColor(tokens.accent if self._by_hand else tokens.outline), 1.0))
-        painter.drawRoundedRect(BAR.adjusted(0.5, 0.5, -0.5, -0.5), 3.0, 3.0)
+        painter.drawRoundedRect(self._bar.adjusted(0.5, 0.5, -0.5, -0.5), 3.0, 3.0)
         painter.setFont(font("caption", tabular=True))
         low, high = self.range_
         digits = self._digits
@@ -218,7 +238,7 @@ class LegendBar(QWidget):
         for value in np.linspace(low, high, TICKS):
             y = self.y_of(float(value))
             painter.setPen(QPen(QColor(tokens.control), 1.0))
-            painter.drawLine(QPointF(BAR.right() + 1, y), QPointF(BAR.right() + 4, y))
+            painter.drawLine(QPointF(self._bar.right() + 1, y), QPointF(self._bar.right() + 4, y))
             if low < value < high:
                 painter.setPen(QColor(tokens.text_quiet))
                 painter.drawText(QRectF(27, y - 10, 60, 20), left, number(float(value), digits, self._signed))
@@ -228,20 +248,20 @@ class LegendBar(QWidget):
 
     def _paint_marks(self, painter: QPainter) -> None:
         """Paint the limits that lie within the range: a line over the colours, and a word that has room."""
-        tokens, above = tokens_of(self), BAR.bottom() + _WORD
+        tokens, above = tokens_of(self), self._bar.bottom() + _WORD
         left = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
         for value, tone, word in self._marks:
             if self.range_[0] < value < self.range_[1]:
                 y = self.y_of(value)
                 above = min(y, above - _WORD)
                 painter.setPen(QPen(QColor(getattr(tokens, tone)), 2.0))
-                painter.drawLine(QPointF(BAR.left(), y), QPointF(BAR.right() + 4, y))
+                painter.drawLine(QPointF(self._bar.left(), y), QPointF(self._bar.right() + 4, y))
                 painter.drawText(QRectF(62, above - 10, 90, 20), left, word)
 
     def _paint_value(self, painter: QPainter, value: float) -> None:
         tokens, y = tokens_of(self), self.y_of(value)
         painter.setPen(QPen(QColor(tokens.text), 2.0))
-        painter.drawLine(QPointF(BAR.left() - 2, y), QPointF(BAR.right() + 6, y))
+        painter.drawLine(QPointF(self._bar.left() - 2, y), QPointF(self._bar.right() + 6, y))
         pill = QRectF(96, y - 9, 54, 18)
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(QColor(tokens.ink))
@@ -251,7 +271,7 @@ class LegendBar(QWidget):
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         if event.button() == Qt.MouseButton.LeftButton:
-            is_high = self._signed or event.position().y() < BAR.center().y()
+            is_high = self._signed or event.position().y() < self._bar.center().y()
             self._grip = (is_high, event.position().y(), self.range_)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
@@ -259,7 +279,7 @@ class LegendBar(QWidget):
             return
         is_high, start, (low, high) = self._grip
         down = event.position().y() - start
-        if self._signed and start > BAR.center().y():
+        if self._signed and start > self._bar.center().y():
             down = -down  # the lower end goes the other way
         if is_high:
             fixed = 0.0 if self._signed else low

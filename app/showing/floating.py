@@ -39,6 +39,21 @@ class Floating(QObject):
         panel.raise_()
         self.settle()
 
+    def corner_of(self, panel: QWidget) -> str:
+        """Return the corner that a panel is kept in."""
+        return next(corner for corner, pile in self._piles.items() if panel in pile)
+
+    def move(self, panel: QWidget, corner: str) -> None:
+        """Keep a panel in another corner from now on, behind those that are there."""
+        if corner != self.corner_of(panel):
+            self._piles[self.corner_of(panel)].remove(panel)
+            self._piles[corner].append(panel)
+        self.settle()
+
+    def seen(self, panel: QWidget) -> QRect:
+        """Return where the visible part of a panel is."""
+        return panel.geometry().marginsRemoved(_shadow(panel))
+
     def remove(self, panel: QWidget) -> None:
         """Leave ``panel`` where it is from now on."""
         for pile in self._piles.values():

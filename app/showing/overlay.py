@@ -163,6 +163,11 @@ class Overlay(QWidget):
                 pills[i] = QRectF(x, y - PILL / 2.0, width, PILL)
         return pills
 
+    def words(self) -> list[QRectF]:
+        """Return where anything is written over the view."""
+        band = [self._band_pill(self._band)[0]] if self._band is not None else []
+        return [*band, *(self.pills() if self._pins else ())]
+
     def _pin_width(self, pin: Pin) -> float:
         return _width(pin.label, pin.state)
 
@@ -183,7 +188,8 @@ class Overlay(QWidget):
             self._pill(painter, pill, pin.name == self._selected)
             self._words(painter, pill, dot, pin.label, pin.state)
 
-    def _paint_band(self, painter: QPainter, band: BandLabel) -> None:
+    def _band_pill(self, band: BandLabel) -> tuple[QRectF, bool]:
+        """Return where the label of a band is, and whether it is beside the body."""
         x, y, _ = self._spots([band.anchor])[0]
         reach = float(self._spots(band.spine)[:, 0].max())
         width = _width(band.text, band.detail)
@@ -192,10 +198,14 @@ class Overlay(QWidget):
         # Where there is no room beside the body, the label hangs under the line instead of lying on it.
         drop = 18.0 if left == beside else 64.0
         top = min(max(y + drop, MARGIN), self.height() - MARGIN - PILL)
-        pill = QRectF(left, top, width, PILL)
+        return QRectF(left, top, width, PILL), left == beside
+
+    def _paint_band(self, painter: QPainter, band: BandLabel) -> None:
+        x, y, _ = self._spots([band.anchor])[0]
+        pill, beside = self._band_pill(band)
         at = QPointF(x, y)
-        foot = QPointF(min(max(x, left + 12.0), left + width - 12.0), top)
-        end = QPointF(left, pill.center().y()) if left == beside else foot
+        foot = QPointF(min(max(x, pill.left() + 12.0), pill.right() - 12.0), pill.top())
+        end = QPointF(pill.left(), pill.center().y()) if beside else foot
         self._leader(painter, at, end, False, False)
         painter.setPen(QPen(QColor("#FFFFFF"), 2.0))
         painter.setBrush(QColor(band.colour))

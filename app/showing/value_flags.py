@@ -78,6 +78,14 @@ class ValueFlags(QWidget):
                     self._click(event.position())
         return False
 
+    def words(self) -> list[QRectF]:
+        """Return where the values are written."""
+        metrics = QFontMetricsF(font("title", tabular=True))
+        return [_pill(spot, flag.text, metrics) for flag, spot in self._placed()]
+
+    def _placed(self) -> list[tuple[ValueFlag, QPointF]]:
+        return list(zip(self._flags, self._spots(), strict=True))
+
     def _click(self, at: QPointF) -> None:
         spots = self._spots()
         away = [float(np.hypot(spot.x() - at.x(), spot.y() - at.y())) for spot in spots]
@@ -103,7 +111,7 @@ class ValueFlags(QWidget):
         tokens = tokens_of(self)
         painter.setFont(font("title", tabular=True))
         metrics = QFontMetricsF(painter.font())
-        for flag, spot in zip(self._flags, self._spots(), strict=True):
+        for flag, spot in self._placed():
             hidden = self._viewport.scene.hidden(flag.place)
             top = spot + _MAST
             pen = QPen(QColor(tokens.ink), 1.4)
@@ -114,8 +122,14 @@ class ValueFlags(QWidget):
             painter.setPen(QPen(QColor(tokens.on_ink), 1.5))
             painter.setBrush(Qt.BrushStyle.NoBrush if hidden else QColor(tokens.ink))
             painter.drawEllipse(spot, 4.0, 4.0)
-            pill = QRectF(top.x() - 4.0, top.y() - 20.0, metrics.horizontalAdvance(flag.text) + 14.0, 21.0)
+            pill = _pill(spot, flag.text, metrics)
             painter.setPen(QPen(QColor(tokens.on_ink), 1.0))
             painter.setBrush(QColor(tokens.ink))
             painter.drawRoundedRect(pill, 5.0, 5.0)
             painter.drawText(pill, Qt.AlignmentFlag.AlignCenter, flag.text)
+
+
+def _pill(spot: QPointF, text: str, metrics: QFontMetricsF) -> QRectF:
+    """Return where the flag flies whose foot is on a spot."""
+    top = spot + _MAST
+    return QRectF(top.x() - 4.0, top.y() - 20.0, metrics.horizontalAdvance(text) + 14.0, 21.0)

@@ -20,6 +20,7 @@ from app.seeing.scene import Scene
 from app.showing.value_flags import ValueFlag, ValueFlags
 from app.viewing.band_map import BandPainter, BandValues
 from app.viewing.body_view import BodyView
+from app.viewing.legend_place import LegendPlace
 from app.viewing.map_values import MapValues
 from app.wording.words import number
 from core.live import Frame
@@ -64,6 +65,7 @@ class MapDesk(QObject):
         self.legend.hide()
         self._view.place(self.legend, "top-right", explains=True)
         self.flags = ValueFlags(self._view.viewport)
+        self._place = LegendPlace(self._view, self.legend, self.flags)
         self._connect()
 
     def _connect(self) -> None:
@@ -257,6 +259,7 @@ class MapDesk(QObject):
         said = [each for each in told.values() if each is not None]
         self.flags.show_flags(flag for flag, _ in said)
         self.legend.show_value(said[-1][1] if said else None)
+        self._place.consider()
 
     def _told(self, pinned: Pinned) -> tuple[ValueFlag, float] | None:
         """Return the flag that stands on a place now, and the value there, if there is one."""
