@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
+from typing import Any
 
 import platformdirs
 import PySide6
@@ -50,13 +51,23 @@ def application(language: str | None = None, dark: bool | None = None) -> QAppli
     return existing
 
 
+class _QtWords(QTranslator):
+    """Qt's own words; of a text that got a key letter since it was translated, the translation without."""
+
+    def translate(self, context: str, text: str, disambiguation: Any = None, n: int = -1) -> str | None:
+        """Return the translation of a text of Qt, or nothing."""
+        found = super().translate(context, text, disambiguation, n)
+        # Of an empty text Qt would take it that it is meant.
+        return found or super().translate(context, text.replace("&", ""), disambiguation, n) or None
+
+
 def use_words(app: QApplication, language: str) -> None:
     """Set the language of all words that are made from now on, those of Qt's own dialogs among them."""
     use_language(language)
     for former in app.findChildren(QTranslator):
         app.removeTranslator(former)
         former.deleteLater()
-    words = QTranslator(app)
+    words = _QtWords(app)
     # English is what Qt speaks by itself; of a language that it lacks, a part is left in English.
     if words.load(f"qtbase_{language}", QLibraryInfo.path(QLibraryInfo.LibraryPath.TranslationsPath)):
         app.installTranslator(words)

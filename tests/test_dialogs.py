@@ -187,6 +187,11 @@ def test_dialogs_of_the_toolkit_speak_the_language_of_the_window(qapp: QApplicat
         application(language="ja")
         box = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel)
         assert box.buttons()[0].text() == "キャンセル"
+        files = QFileDialog()
+        files.setOption(QFileDialog.Option.DontUseNativeDialog)
+        words = [label.text() for label in files.findChildren(QLabel)]
+        assert words
+        assert not any("Look in" in each or "Files of" in each for each in words), words
     finally:
         application(language="en")
     box = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel)
