@@ -107,11 +107,15 @@ def test_what_is_asked_carries_the_line(qtbot: QtBot) -> None:
 def test_figures_of_a_former_shape_fade_and_rows_stay_what_they_are(qtbot: QtBot) -> None:
     panel = panel_of(qtbot, STRAP, BAND)
     strap = panel.rows["strap left"]
+    leaves = [each for each in panel.findChildren(QPushButton) if each.text() in ("Copy", "CSV…")]
+    assert [each.isEnabled() for each in leaves] == [True, True]
     panel.set_stale()
     assert strap.cut.property("tone") == "faint"
+    assert [each.isEnabled() for each in leaves] == [False, False], "nothing says on paper of when it is"
     panel.set_view(GarmentView((STRAP,), worn=True))
     assert panel.rows == {"strap left": strap}, "what has the keyboard keeps it"
     assert strap.cut.property("tone") == ""
+    assert [each.isEnabled() for each in leaves] == [True, True]
 
 
 def test_without_a_piece_no_list_leaves(qtbot: QtBot) -> None:

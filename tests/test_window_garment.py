@@ -262,6 +262,11 @@ def test_newtons_go_with_the_stiffness_of_tissue_and_the_list_leaves_as_a_table(
         heading, row = QGuiApplication.clipboard().text().splitlines()
         told = row.split("\t")[heading.split("\t").index("Tension N")]
         assert told == f"{cut_rows(window)['mid-bust'].tension_n:.1f}"
+        window.session.preview_line("mid-bust", 0.9)
+        yield lambda: window.garment.stale
+        window.garment.copy_asked.emit()
+        copied = QGuiApplication.clipboard().text().splitlines()[1].split("\t")
+        assert copied[heading.split("\t").index("Tension N")] == told, "of a body at rest alone"
         path = tmp_path / "cuts.csv"
         monkeypatch.setattr(tables, "ask_save", lambda *_: str(path))
         window.garment.table_asked.emit()

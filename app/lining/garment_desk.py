@@ -8,10 +8,12 @@ from PySide6.QtCore import QObject
 
 from app.keeping.tables import copy_table, save_table
 from app.panels.garment import GarmentPanel
+from app.panels.garment_view import GarmentView
 from app.presenting.garment import as_table, garment_view
 from app.presenting.verdict import doubt_of
-from app.wording.words import number, tr
+from app.wording.words import number, say, tr
 from core.cutting import cut_list
+from core.errors import LineError
 from core.live import Frame
 
 if TYPE_CHECKING:
@@ -55,16 +57,19 @@ class GarmentDesk(QObject):
             self._panel.set_stale()
 
     def _show(self, frame: Frame) -> None:
-        self._panel.set_view(
-            garment_view(frame, cut_list(frame.stages, frame.control_points)), doubt_of(frame)
-        )
+        try:
+            cuts = cut_list(frame.stages, frame.control_points)
+        except LineError as problem:
+            self._panel.set_view(GarmentView(()), say(problem.message))
+        else:
+            self._panel.set_view(garment_view(frame, cuts), doubt_of(frame))
 
     def _set_tissue(self, stiffness: float) -> None:
         said = tr("Tissue {value} N/m").format(value=number(stiffness, 0))
         self._window.session.change({"tissue_stiffness": stiffness}, said)
 
     def _as_table(self) -> list[list[str]]:
-        frame = self._frame
+        frame = self._shown
         if frame is None:
             return []
         cuts = cut_list(frame.stages, frame.control_points)

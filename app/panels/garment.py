@@ -74,8 +74,6 @@ class GarmentPanel(QWidget):
         self._doubt.setVisible(bool(doubt))
         self.tissue.show_tissue(view.tissue, view.notes)
         self.tissue.setVisible(view.worn)
-        for leaves in self._buttons.findChildren(QPushButton)[:2]:
-            leaves.setEnabled(view.worn)  # without a piece there is no list
         self.nothing.setVisible(not view.worn)
         self.offer.setVisible(view.worn and view.bare)
         self._area.setVisible(bool(view.rows))
@@ -84,7 +82,7 @@ class GarmentPanel(QWidget):
         self._show()
 
     def set_stale(self) -> None:
-        """Fade the figures: the body is another one meanwhile."""
+        """Fade the figures, and let no list leave: the body is another one meanwhile."""
         if not self.stale:
             self.stale = True
             self._show()
@@ -106,6 +104,9 @@ class GarmentPanel(QWidget):
         self.opened.emit()
 
     def _show(self) -> None:
+        worn = self.view is not None and self.view.worn
+        for leaves in self._buttons.findChildren(QPushButton)[:2]:
+            leaves.setEnabled(worn and not self.stale)  # without a piece there is no list
         for view in self.view.rows if self.view is not None else ():
             self.rows[view.line].show_view(view, self.stale)
         self._show_pressures()
