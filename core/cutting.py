@@ -177,6 +177,7 @@ def _notes(rows: tuple[CutRow, ...], tissue: float) -> tuple[str, ...]:
         notes.append(f"The force of {'; '.join(guessed)} is an estimate: measure your own before you cut.")
     if any(row.closed and row.cut_mm for row in rows):
         notes.append("The back of a band is taken to be stretched as far as its front.")
+        notes.append("Lengths run along the line, which need not lie level: a girth by tape is another one.")
     allowances = {row.allowance_mm for row in rows if row.cut_mm}
     if len(allowances) == 1:
         notes.append(

@@ -51,7 +51,7 @@ def test_a_row_tells_its_largest_pressure_and_more_where_it_is_pointed_at() -> N
     assert view.tip.splitlines()[:3] == [
         "Largest 2.4 kPa · 18 mmHg, back left, 342 mm above the lowest point of the scan",
         "Mean where it lies on the skin 1.2 kPa · 9 mmHg",
-        "Presses with 5.5 N, whichever way",
+        "Presses on the skin with 5.5 N in all",
     ]
     assert view.tip.endswith(comfort().lights[AMBER].en)
     stale = pressure_views(LISTED, DESIGN, stale=True)["mid-bust"]

@@ -44,7 +44,7 @@ def _plain(found: Press) -> str:
         f"{'bridged mm':>11}  where most"
     )
     rows = [line for row in found.listed.rows for line in _lines(row)]
-    total = f"All bands together press with {found.listed.force_n:.1f} N, whichever way."
+    total = f"All bands together press on the skin with {found.listed.force_n:.1f} N."
     left_out = [f"  {sentence}" for sentence in LEFT_OUT]
     return "\n".join([heading, *rows, "", total, *_limits(), "", "What the figures leave out:", *left_out])
 

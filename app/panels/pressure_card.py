@@ -10,7 +10,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
-from app.dress.parts import Disclosure, IconLabel, button, hairline, sentence
+from app.dress.parts import Disclosure, ToolButton, button, hairline, sentence
 from app.dress.theme import font, label, set_tag, set_tip, tokens_of
 from app.wording.words import number, tr
 
@@ -186,22 +186,26 @@ class PressureCard(QWidget):
         self.place.setText(view.place)
         set_tip(self.place, view.place_tip)
         self.place.setEnabled(not faint)
+        self.eye.setEnabled(not faint)
         self.says.setText(view.says)
         self.force.setText(view.force)
         self.scale.show_marks(view.marks, faint)
-        for each in (self.largest, self._most, self.place, self._eye, self.force, self.scale):
+        for each in (self.largest, self._most, self.place, self.eye, self.force, self.scale):
             each.setVisible(some)
         self.light.setVisible(some and not faint)  # a former shape has no light
         for each in (self.largest, self.says, self.force):
             set_tag(each, "tone", "faint" if faint else "")
 
     def _where(self) -> QHBoxLayout:
-        self._most, self._eye = label(tr("Most:"), "secondary"), IconLabel("eye", "text_caption", 14)
+        self._most = label(tr("Most:"), "secondary")
+        self.eye = ToolButton("eye", tr("Look at it, with the map of pressure"), size=14, room=24)
+        self.eye.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # the words beside it do the same by keyboard
+        self.eye.clicked.connect(self.place_asked)
         row = QHBoxLayout()
         row.setSpacing(0)
         row.addWidget(self._most)
         row.addWidget(self.place)
-        row.addWidget(self._eye)
+        row.addWidget(self.eye)
         row.addStretch(1)
         return row
 

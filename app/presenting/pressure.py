@@ -78,7 +78,7 @@ def _figures(row: PressRow) -> list[str]:
     assert row.mean_kpa is not None
     most = tr("Largest {kpa}").format(kpa=kpa_words(row.max_kpa))
     mean = tr("Mean where it lies on the skin {kpa}").format(kpa=kpa_words(row.mean_kpa))
-    force = tr("Presses with {force} N, whichever way").format(force=number(row.force_n or 0.0))
+    force = tr("Presses on the skin with {force} N in all").format(force=number(row.force_n or 0.0))
     where = f"{most}, {place_words(row)}" if row.where else most
     return [where, mean, force]
 
@@ -111,10 +111,10 @@ def place_words(row: PressRow) -> str:
     return words.format(side=side_words(row.where), mm=height)
 
 
-def pressure_summary(listed: PressList | None, design: Design) -> PressureSummary:
-    """Return what all bands press with together; None is not known yet."""
+def pressure_summary(listed: PressList | None, design: Design, doubt: str = "") -> PressureSummary:
+    """Return what all bands press with together; None is not known yet, or no result as ``doubt`` says."""
     if listed is None:
-        return _nothing(tr("Worked out as soon as the run rests."))
+        return _nothing(doubt or tr("Worked out as soon as the run rests."))
     most = listed.hardest
     if most is None or most.max_kpa is None:
         return _nothing(tr("No worn line presses whose tension is known."))
@@ -133,7 +133,7 @@ def pressure_summary(listed: PressList | None, design: Design) -> PressureSummar
         place,
         f"{place_words(most)}\n{look}",
         " ".join([comfort().says(most.max_kpa).told(language()), *_unmeant(most)]),
-        tr("All bands press with {force} N, whichever way").format(force=number(listed.force_n)),
+        tr("All bands together press on the skin with {force} N").format(force=number(listed.force_n)),
         marks,
     )
 
