@@ -21,6 +21,7 @@ from core.pressure import LEFT_OUT
 from core.profile import AXES, Curve, Plane, Slicer
 from core.progress import Progress, quiet
 from core.report import Shown, shape_warnings, still_lines, warnings
+from core.sewing.tensions import ran_away
 from core.sizes import sizes, sizes_text
 from core.solver import Marks, Record
 from core.tffd import deform
@@ -153,8 +154,13 @@ class Sheet:
 
 
 def sheet_of(shown: Shown, records: Sequence[Record], heading: Heading, progress: Progress = quiet) -> Sheet:
-    """Return the sheet of a body as it is ``shown``; ``records`` are those of its turns. Raises Cancelled."""
+    """Return the sheet of a body as it is ``shown``; ``records`` are those of its turns.
+
+    Raises Cancelled, and LineError if the turns ran away: they leave no body.
+    """
     stages, points, verdict = shown.stages, shown.control_points, shown.verdict
+    if verdict.motion == "diverging":
+        raise ran_away()
     progress("measuring", 0.1)
     before, after = before_after(stages, points)
     found, why = _sizes(before, heading)

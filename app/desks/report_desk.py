@@ -25,7 +25,7 @@ from app.reporting.pdf import write_pdf
 from app.reporting.pictures import shots
 from app.reporting.preview import ReportPage
 from app.seeing.occlusion import bake_occlusion
-from app.wording.words import language, tr
+from app.wording.words import language, say, tr
 from core.errors import ProjectError, UserError
 from core.live import Frame
 from core.mesh import Floats
@@ -53,6 +53,7 @@ class ReportDesk(QObject):
         self._frame: Frame | None = None  # the one that the sheet is of
         self._asked: Frame | None = None  # the one that a sheet is being made of
         self._job: Job | None = None
+        self._refused = ""  # why there is no sheet of the frame that was asked for
         self._language = ""
         self._laid: tuple[Handout | None, str] = (None, "")
         self._occlusion: tuple[object, Floats] | None = None
@@ -84,7 +85,7 @@ class ReportDesk(QObject):
         """Show the work again."""
         if self.is_open:
             self._window.jobs.cancel(self._job)
-            self._job = self._asked = None
+            self._job, self._asked, self._refused = None, None, ""
             self._window.layout_.show_work()
             self._window.layout_.enter()
 
@@ -126,7 +127,7 @@ class ReportDesk(QObject):
         if self._asked is not None and _alike(self._asked, frame):
             return
         window.jobs.cancel(self._job)
-        self._job = self._asked = None
+        self._job, self._asked, self._refused = None, None, ""
         self._show()
         if window.is_settled():
             self._make(frame)
@@ -167,8 +168,11 @@ class ReportDesk(QObject):
         self._job = window.jobs.run(tr("Making the sheet"), work, draw, self._fail)
 
     def _fail(self, error: Exception) -> None:
-        self._window.desk.show_failure(error)
         self._job = None
+        if isinstance(error, UserError):
+            self._refused = f"{say(error.message)} {say(error.hint)}"
+        else:
+            self._window.desk.show_failure(error)
         self._show()
 
     def _take(self, handout: Handout) -> None:
@@ -190,6 +194,7 @@ class ReportDesk(QObject):
         if stale:
             waits = tr("The sheet is made as soon as the run rests.")
             words = tr("The sheet is being made.") if self._window.is_settled() else waits
+            words = self._refused or words
         self.page.show_choices(design.customer if design else "", self._language)
         self.page.show_pages(self.pages, words, stale=stale)
 

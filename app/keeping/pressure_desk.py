@@ -10,6 +10,7 @@ from PySide6.QtCore import QObject, Signal
 from app.panels.garment import GarmentPanel
 from app.panels.pressure_card import PressureCard
 from app.presenting.pressure import light_limits, pressure_summary, pressure_views
+from app.presenting.verdict import doubt_of
 from app.wording.words import tr
 from core.live import Frame
 from core.press_list import PressList, press_list
@@ -36,6 +37,7 @@ class PressureDesk(QObject):
         panel.cards.addWidget(self.card)
         self._shown: PressList | None = None
         self._stale: bool | None = None
+        self._doubt = ""  # why figures of now are no result
         self._body: object = None
         self._known: WeakKeyDictionary[Frame, PressList] = WeakKeyDictionary()
         self._asked: WeakSet[Frame] = WeakSet()
@@ -61,12 +63,12 @@ class PressureDesk(QObject):
     def of_elastics(self, frame: Frame) -> PressList | None:
         """Return the same for the list of lines: only where it is seen, and a line is made of an elastic."""
         seen = self._window.lines.isVisible() and frame.stages.design.worn_elastics()
-        return self.of(frame) if seen else None
+        return self.of(frame) if seen and not doubt_of(frame) else None
 
     @property
     def shown(self) -> PressList | None:
-        """What is shown beside the cut list, if that is of now."""
-        return None if self._stale else self._shown
+        """What is shown beside the cut list, if that is of now and a result."""
+        return None if self._stale or self._doubt else self._shown
 
     def follow(self) -> None:
         """Bring the figures beside the cut list up to date, if they are seen."""
@@ -80,9 +82,10 @@ class PressureDesk(QObject):
         if (known or self._shown) is self._shown and stale == self._stale:
             return
         self._shown, self._stale = known or self._shown, stale
-        design = frame.stages.design
-        self._panel.set_pressures(pressure_views(self._shown, design, stale) if self._shown else {})
-        self.card.show_summary(pressure_summary(self._shown, design), stale and self._shown is not None)
+        design, self._doubt = frame.stages.design, doubt_of(frame)
+        told = None if self._doubt else self._shown
+        self._panel.set_pressures(pressure_views(told, design, stale) if told else {})
+        self.card.show_summary(pressure_summary(told, design, self._doubt), stale and told is not None)
         self.card.setVisible(bool(design.worn()))
 
     def _take(self, frame: Frame, found: object) -> None:

@@ -29,6 +29,11 @@ class LineTension:
     estimate: bool
 
 
+def ran_away() -> LineError:
+    """Return what to say where the points are those of no body any more."""
+    return LineError("The calculation ran away: there is no shape to sew for.", "Set the lines longer.")
+
+
 def line_tensions(stages: Stages, control_points: Points) -> Mapping[str, LineTension]:
     """Return what each worn line pulls with at ``control_points``, shape (n, 3) [mm], by line.
 
@@ -38,7 +43,7 @@ def line_tensions(stages: Stages, control_points: Points) -> Mapping[str, LineTe
     """
     worn = [line for line in stages.model.lines if line.name in stages.design.worn()]
     if not np.isfinite(control_points).all() or not all(line.length(control_points) for line in worn):
-        raise LineError("The calculation ran away: there is no shape to sew for.", "Set the lines longer.")
+        raise ran_away()
     held = stages.design.line_hold == "held"
     pulling = _held(stages, control_points) if held else _springs(stages, control_points)
     return pulling if held else {**pulling, **_on_ribs(stages)}
