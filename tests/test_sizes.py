@@ -141,7 +141,7 @@ def test_sister_sizes_are_those_of_the_sources():
 def test_where_others_find_quite_another_size_a_few_words_say_so():
     told = {key: sizes_text(answer, "en")["caution"] for key, answer in sizes(720.0, 870.0).items()}
     assert {key for key, caution in told.items() if caution} == {"uk", "us", "it", "au"}
-    assert sizes_text(made("uk", 28, 34), "ja")["caution"] == "4 インチ足さず"
+    assert sizes_text(made("uk", 28, 34), "ja")["caution"] == "4インチ加算なし"
     for table in TABLES.values():
         assert table.caution is None or (table.doubts and len(table.caution.en) < 20), (
             "it stands beside a size"

@@ -254,7 +254,7 @@ def test_one_is_made_by_keys_alone_and_all_of_the_form_has_a_name_and_room(langu
         choose(form.end, 2)
         yield form.keep.isEnabled
         suggested = form.name.placeholderText()
-        assert suggested == {"en": "Bust point left → Bust point right", "ja": "BP 左 → BP 右"}[language]
+        assert suggested == {"en": "Bust point left → Bust point right", "ja": "左BP → 右BP"}[language]
         yield from all_have_a_name_and_room(window)
         form.name.setFocus()
         QTest.keyClick(form.name, KEY.Key_Return)

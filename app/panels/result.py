@@ -42,7 +42,7 @@ class ResultPanel(QStackedWidget):
         self._measured: tuple[MeasureView, ...] = ()
         self._stale = False
         self._empty = EmptyState(
-            "result", tr("Nothing solved yet"), tr("Set a line shorter and see it here.")
+            "result", tr("No measures yet"), tr("They appear once the control mesh lies on the body.")
         )
         self._doubt = sentence("", "secondary")
         self._doubt.setContentsMargins(4, 2, 4, 4)

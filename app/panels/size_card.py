@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from html import escape
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
-from app.dress.parts import button, hairline, sentence
+from app.dress.parts import Disclosure, button, hairline, sentence
 from app.dress.theme import font, label, set_tag
 from app.panels.figure_field import FigureField
 from app.wording.words import number, tr
@@ -22,8 +23,8 @@ COLUMNS = 3
 class SizeView:
     """The size in one system: how it is written, the rule that found it, and what lies ``near`` it.
 
-    ``short`` is the system in a few letters; ``tip`` tells its name and what is uncertain in it. Where others
-    may find quite another size, ``caution`` says so in a few words and ``doubt`` in a sentence.
+    ``short`` is the system in a few letters, ``system`` its name; ``doubts`` are what is uncertain in it.
+    Where others may find quite another size, ``caution`` says so in a few words and ``doubt`` in a sentence.
     """
 
     key: str
@@ -31,7 +32,8 @@ class SizeView:
     size: str
     rule: str
     near: tuple[str, ...]
-    tip: str
+    system: str
+    doubts: tuple[str, ...]
     caution: str = ""
     doubt: str = ""
 
@@ -39,6 +41,11 @@ class SizeView:
     def title(self) -> str:
         """System and size, as one says them."""
         return f"{self.short} {self.size}"
+
+    @property
+    def tip(self) -> str:
+        """What is told under the pointer, wrapped as it is rich."""
+        return "".join(f"<p>{escape(each)}</p>" for each in (self.system, *self.doubts))
 
 
 class SizeCard(QWidget):
@@ -57,6 +64,8 @@ class SizeCard(QWidget):
         self._grid.setSpacing(2)
         self.rule, self.doubt, self.near = (sentence("", "secondary") for _ in range(3))
         set_tag(self.doubt, "tone", "warn")
+        self.fold, self.doubts = Disclosure(tr("What is uncertain in it")), sentence("", "caption")
+        self.fold.toggled.connect(self.doubts.setVisible)
         self.allowance = _AllowanceField("mm", tr("Taken off the under-bust, worn tight"), widest="20.0")
         self.allowance.entered.connect(self.allowed)
         column = QVBoxLayout(self)
@@ -64,7 +73,15 @@ class SizeCard(QWidget):
         column.setSpacing(4)
         column.addWidget(label(tr("Band and cup, of the body at rest"), "caption"))
         column.addLayout(self._make_head())
-        for each in (self.others, self.rule, self.doubt, self.near, self._make_allowance()):
+        for each in (
+            self.others,
+            self.rule,
+            self.doubt,
+            self.near,
+            self.fold,
+            self.doubts,
+            self._make_allowance(),
+        ):
             column.addWidget(each)
         column.addWidget(hairline())
         self.hide()
@@ -73,8 +90,9 @@ class SizeCard(QWidget):
         """Show sizes, the ``chosen`` system large; without any, ``why`` there is none, or nothing at all."""
         self.views = tuple(views)
         self.setVisible(bool(views or why))
-        for each in (self.main, self.caution, self.others, self.doubt, self.near, self._allowed):
+        for each in (self.main, self.caution, self.others, self.doubt, self.near, self.fold, self._allowed):
             each.setVisible(bool(views))
+        self.doubts.setVisible(bool(views) and self.fold.isChecked())
         self.allowance.show_value(allowance_mm)
         if not views:
             self.rule.setText(why)
@@ -87,6 +105,7 @@ class SizeCard(QWidget):
         self.doubt.setText(main.doubt)
         self.doubt.setVisible(bool(main.doubt))
         self.near.setText("\n".join(main.near))
+        self.doubts.setText("\n".join((main.system, *(f"• {each}" for each in main.doubts))))
         self._show_others([view for view in views if view is not main])
 
     def button(self, key: str) -> QPushButton:

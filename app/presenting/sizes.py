@@ -34,18 +34,24 @@ def _letters(measured: Measures) -> Iterator[str]:
 
 
 def _view(key: str, answer: SizeAnswer, letters: tuple[str, ...]) -> SizeView:
-    doubts, caution = [each.told(language()) for each in answer.doubts], answer.table.caution
-    doubts += [each.told(language()) for each in letter_sizes().doubts] if letters else []
+    said = (*answer.doubts, *(letter_sizes().doubts if letters else ()))
+    doubts, caution = _unlike([each.told(language()) for each in said]), answer.table.caution
     return SizeView(
         key,
         key.upper() if len(key) == 2 else answer.table.system,
         answer.label or "\N{EN DASH}",
         " ".join(say(each) for each in answer.rule),
         (*_near(answer), *letters),
-        "\n".join([answer.table.title.told(language()), *(f"• {each}" for each in doubts)]),
+        answer.table.title.told(language()),
+        doubts,
         caution.told(language()) if caution else "",
         doubts[0] if caution and doubts else "",
     )
+
+
+def _unlike(sentences: list[str]) -> tuple[str, ...]:
+    """Return what is said, each once: what another one says and goes on is left out."""
+    return tuple(one for one in sentences if not any(one != each and one in each for each in sentences))
 
 
 def _near(answer: SizeAnswer) -> Iterator[str]:
