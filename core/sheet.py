@@ -14,11 +14,11 @@ from core.cutting import CutList, cut_list
 from core.doubts import doubts
 from core.measures import Measures, before_after, measure_rows
 from core.measuring.definitions import DEFINITIONS
-from core.mesh import Floats, Points
+from core.mesh import Floats, Mesh, Points
 from core.pipeline import Stages
 from core.press_list import PressRow, press_list
 from core.pressure import LEFT_OUT
-from core.profile import AXES, Curve, Plane, Slicer
+from core.profile import AXES, Curve, Plane, Slicer, nearest
 from core.progress import Progress, quiet
 from core.report import Shown, shape_warnings, still_lines, warnings
 from core.sewing.tensions import ran_away
@@ -77,7 +77,8 @@ class VolumeKept:
     error_percent: float
 
 
-Line2 = tuple[tuple[float, float], ...]
+Pair = tuple[float, float]
+Line2 = tuple[Pair, ...]
 """A flat curve, place by place: across and up [mm], as ``core.profile.Plane`` has them."""
 
 
@@ -85,16 +86,17 @@ Line2 = tuple[tuple[float, float], ...]
 class SectionCurves:
     """A cut of the body across ``axis`` at ``at_mm``, before and after; ``box`` is the part that can move.
 
-    ``bust_point`` is where that is in the cut before; of a level cut the middle of both. A side is cut
-    through its bust point, which moves aside: ``after_at_mm`` is where it is after.
+    ``bust_point`` is where that lies on the cut before, ``bust_point_after`` after; of a level cut the middle
+    of both. A side is cut through its bust point, which moves aside: ``after_at_mm`` is where it is after.
     """
 
     name: str
     axis: str
     at_mm: float
     after_at_mm: float
-    box: tuple[tuple[float, float], tuple[float, float]]
-    bust_point: tuple[float, float]
+    box: tuple[Pair, Pair]
+    bust_point: Pair
+    bust_point_after: Pair
     before: tuple[Line2, ...]
     after: tuple[Line2, ...]
 
@@ -233,23 +235,33 @@ def _sections(stages: Stages, control_points: Points) -> tuple[SectionCurves, ..
     rest, places = stages.body.mesh, deform(stages.binding, control_points)
     free = control.mesh.vertices[~control.fixed]
     vertex = int(np.linalg.norm(rest.vertices - left, axis=1).argmin())
-    aside = float(places[vertex, 0] - rest.vertices[vertex, 0])
+    move = places[vertex] - rest.vertices[vertex]
     found = []
-    for name, axis, mark, moved in (("side", "x", left, aside), ("bust", "z", middle, 0.0)):
-        plane = Plane(axis, float(mark[AXES.index(axis)]))
-        after, flat = Plane(axis, plane.at + moved), plane.flat(free)
+    for name, axis, mark, moved in (("side", "x", left, left + move), ("bust", "z", middle, middle)):
+        flat = Plane(axis, 0.0).flat(free)
         box = _pair(flat.min(axis=0) - AROUND), _pair(flat.max(axis=0) + AROUND)
-        cuts = (plane, rest.vertices), (after, places)
-        curves = (tuple(map(_line, Slicer(rest, each).curves(shape))) for each, shape in cuts)
-        found.append(SectionCurves(name, axis, plane.at, after.at, box, _pair(plane.flat(mark)), *curves))
+        at, point, before = _cut(rest, rest.vertices, axis, mark)
+        after_at, point_after, after = _cut(rest, places, axis, moved)
+        found.append(SectionCurves(name, axis, at, after_at, box, point, point_after, before, after))
     return tuple(found)
+
+
+def _cut(rest: Mesh, places: Points, axis: str, mark: Floats) -> tuple[float, Pair, tuple[Line2, ...]]:
+    """Return where a cut through a bust point lies, where that is in it, and its curves.
+
+    The landmark of a side may stand a hair off the skin: what is told lies on it.
+    """
+    plane = Plane(axis, float(mark[AXES.index(axis)]))
+    curves = Slicer(rest, plane).curves(places)
+    foot = nearest(curves, plane.flat(mark)) if axis == "x" else None
+    return plane.at, _pair(plane.flat(mark) if foot is None else foot.place), tuple(map(_line, curves))
 
 
 def _line(curve: Curve) -> Line2:
     return tuple(_pair(place) for place in curve.places)
 
 
-def _pair(place: Floats) -> tuple[float, float]:
+def _pair(place: Floats) -> Pair:
     return round(float(place[0]), 2), round(float(place[1]), 2)
 
 

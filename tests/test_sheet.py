@@ -85,7 +85,7 @@ def test_the_sections_go_through_the_bust(worn: Solution, sheet: Sheet) -> None:
     side, level = sheet.sections
     left = worn.stages.landmarks.points["bust_point_left"].position
     assert (side.name, side.axis, side.at_mm) == ("side", "x", left[0])
-    assert side.bust_point == pytest.approx((-left[1], left[2]), abs=0.01)
+    assert side.bust_point == pytest.approx((-left[1], left[2]), abs=0.1), "the landmark lies on the skin"
     assert (level.name, level.axis) == ("bust", "z")
     for each in sheet.sections:
         assert len(each.before) >= 1
@@ -101,15 +101,15 @@ def test_the_side_is_cut_through_the_bust_point_before_and_after(worn: Solution,
     side, lift = sheet.sections[0], sheet.lift
     assert lift is not None
     assert abs(side.after_at_mm - side.at_mm) > 0.3, "it has moved aside"
-    across, up = side.bust_point
-    moved = across + lift.left_forward, up + lift.left_up
-    for curves, place in ((side.before, side.bust_point), (side.after, moved)):
+    way = np.subtract(side.bust_point_after, side.bust_point)
+    assert way == pytest.approx((lift.left_forward, lift.left_up), abs=0.3)
+    for curves, place in ((side.before, side.bust_point), (side.after, side.bust_point_after)):
         ends = np.concatenate([np.stack([each[:-1], each[1:]], axis=1) for each in map(np.array, curves)])
         ends = ends[(ends[:, 0] != ends[:, 1]).any(axis=1)]
         along = ends[:, 1] - ends[:, 0]
         share = np.einsum("kx,kx->k", place - ends[:, 0], along) / np.einsum("kx,kx->k", along, along)
         foot = ends[:, 0] + np.clip(share, 0.0, 1.0)[:, None] * along
-        assert np.linalg.norm(foot - place, axis=1).min() < 0.2
+        assert np.linalg.norm(foot - place, axis=1).min() < 0.02
 
 
 def test_a_body_at_rest_has_an_empty_cut_list(built: Built) -> None:

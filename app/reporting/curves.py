@@ -69,9 +69,9 @@ def _legend() -> Block:
 
 
 def _bust_points(sheet: Sheet) -> list[tuple[float, float]]:
-    """Return the bust point of the side before and after [mm], if the shape is one."""
-    lift, (across, up) = sheet.lift, sheet.sections[0].bust_point
-    return [(across, up), (across + lift.left_forward, up + lift.left_up)] if lift else []
+    """Return the bust point on the side before and after [mm], if the shape is one."""
+    side = sheet.sections[0]
+    return [side.bust_point, side.bust_point_after] if sheet.sound else []
 
 
 def _section(
