@@ -11,7 +11,7 @@ from typing import Any
 
 from core.design_elastics import TISSUE_LIMITS, TISSUE_STIFFNESS, Elastic, check_elastics
 from core.design_lines import LineTraits, OwnLine, WornLine, partner_of
-from core.design_measures import OwnMeasure, put_measure
+from core.design_measures import OwnMeasure, check_customer, put_measure
 from core.errors import LandmarkError, LineError, UserError
 from core.lines import RATIO_LIMITS
 from core.mechanics import CHOICES, DEFAULT_LINE_STIFFNESS, RANGES, Mechanics
@@ -88,6 +88,7 @@ class Design:
     def __post_init__(self) -> None:
         self._check_words()
         self._check_numbers()
+        check_customer(self.customer)
         for line in self.lines:
             if not RATIO_LIMITS[0] <= line.ratio <= RATIO_LIMITS[1]:
                 raise LineError(

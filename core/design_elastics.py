@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
+from core.design_lines import is_printable
 from core.errors import LineError
 
 Point = tuple[float, float]
@@ -47,8 +48,7 @@ class Elastic:
     estimate: bool = True
 
     def __post_init__(self) -> None:
-        printable = all(letter.isprintable() for letter in self.name)
-        if not self.name.strip() or len(self.name) > LONGEST_NAME or not printable:
+        if not self.name.strip() or not is_printable(self.name, LONGEST_NAME):
             raise LineError("An elastic needs a name.", f"Use up to {LONGEST_NAME} letters.")
         for key, (low, high) in LIMITS.items():
             number, what = getattr(self, key), key.removesuffix("_mm")

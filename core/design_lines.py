@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from unicodedata import category
 
 from core.errors import LineError
 from core.mechanics import RANGES
@@ -14,6 +15,13 @@ LONGEST_TITLE = 60
 
 WIDTHS = (2.0, 100.0)
 """The narrowest and the widest band [mm]."""
+
+
+def is_printable(name: str, longest: int) -> bool:
+    """Tell whether a name of so many letters at most can be written: it may have wide spaces, no marks of
+    control and no halves of letters.
+    """
+    return len(name) <= longest and all(letter.isprintable() or category(letter) == "Zs" for letter in name)
 
 
 @dataclass(frozen=True)
@@ -71,7 +79,7 @@ class LineTraits:
     elastic: str = ""
 
     def __post_init__(self) -> None:
-        if len(self.title) > LONGEST_TITLE or not all(letter.isprintable() for letter in self.title):
+        if not is_printable(self.title, LONGEST_TITLE):
             raise LineError(
                 f"The title of the line {self.name} is too long or cannot be printed.",
                 f"Use up to {LONGEST_TITLE} letters.",

@@ -5,8 +5,12 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from core.design_lines import is_printable
 from core.errors import UserError
 from core.landmark import NAMES
+
+LONGEST_CUSTOMER = 120
+"""Letters of what a customer is called."""
 
 KINDS = ("straight", "skin", "girth")
 """Straight between two landmarks, over the skin between them, or round the trunk on a level plane."""
@@ -33,8 +37,7 @@ class OwnMeasure:
     level: float = 0.0
 
     def __post_init__(self) -> None:
-        printable = all(letter.isprintable() for letter in self.name)
-        if not self.name.strip() or len(self.name) > LONGEST_NAME or not printable:
+        if not self.name.strip() or not is_printable(self.name, LONGEST_NAME):
             raise UserError("A measure needs a name of its own.", f"Use up to {LONGEST_NAME} letters.")
         if self.kind not in KINDS:
             raise UserError(f"There is no kind of measure '{self.kind}'.", "Choose straight, skin or girth.")
@@ -63,6 +66,15 @@ class OwnMeasure:
         if self.level < 0.0:
             return f"Yours: a tape, level, {-self.level:g} mm below {places[0]}."
         return f"Yours: a tape, level, at {places[0]}."
+
+
+def check_customer(name: str) -> None:
+    """Raise UserError if no sheet could name a customer so; nobody may be named."""
+    if not is_printable(name, LONGEST_CUSTOMER):
+        raise UserError(
+            "The name of the customer is too long or cannot be printed.",
+            f"Use up to {LONGEST_CUSTOMER} letters.",
+        )
 
 
 def put_measure(

@@ -10,10 +10,11 @@ import pytest
 from test_own_measures import _Editing
 
 from core.design import Design, ScanSource
+from core.design_measures import OwnMeasure
 from core.design_text import from_json, to_json
 from core.document import Document
 from core.document_text import from_texts, to_texts
-from core.errors import ProjectError
+from core.errors import ProjectError, UserError
 from core.project import ScanFile, open_project, save_project
 
 PLAIN = Design(ScanSource("a.ply"))
@@ -34,6 +35,17 @@ def test_projects_of_nobody_are_as_they_were() -> None:
     assert "customer" not in json.loads(to_json(PLAIN))
     assert from_json(to_json(PLAIN)).customer == ""
     assert json.loads(to_json(ANNA))["format"] == 1, "older programs keep what they do not know"
+
+
+@pytest.mark.parametrize("name", ["\ud800", "An\nna", "A\x07", "a" * 121])
+def test_a_customer_that_cannot_be_printed_is_refused(name: str) -> None:
+    with pytest.raises(UserError, match="customer"):
+        from_json(json.dumps(json.loads(to_json(PLAIN)) | {"customer": name}))
+
+
+def test_wide_spaces_are_part_of_names() -> None:
+    assert replace(PLAIN, customer="山田\u3000花子").customer == "山田\u3000花子"
+    assert OwnMeasure("胸\u3000幅", "girth", (), 900.0).name == "胸\u3000幅"
 
 
 def test_a_customer_that_is_no_text_is_refused() -> None:

@@ -58,6 +58,8 @@ def run_report(
     Each file is whole or not there. Raises UserError, before anything is solved if a name cannot be.
     """
     _check(wishes)
+    if wishes.customer is not None:
+        design = replace(design, customer=wishes.customer)
     worn = run_worn(design, lengths, elastics, bare=True)
     solution = worn.solution
     sheet = sheet_of(solution, solution.records, _heading(source, design, wishes))
@@ -93,7 +95,7 @@ def _heading(source: str, design: Design, wishes: SheetWishes) -> Heading:
     return Heading(
         project=Path(source).stem,
         date=datetime.date.today().isoformat(),
-        customer=design.customer if wishes.customer is None else wishes.customer,
+        customer=design.customer,
         variant=document.shown if document is not None and len(document.designs) > 1 else "",
         system=wishes.system,
         allowance_mm=wishes.allowance,

@@ -12,6 +12,7 @@ from app.dress.theme import font, label, tokens_of
 from app.reporting.pages import Pages
 from app.reporting.paper import A4, UNITS
 from app.wording.words import LANGUAGES, tr
+from core.design_measures import LONGEST_CUSTOMER
 
 WIDE, GAP = 316, 24
 """Width of the column beside the pages, and what is between them [px]."""
@@ -39,6 +40,7 @@ class ReportPage(QWidget):
         self.customer = QLineEdit()
         self.customer.setFont(font("body"))
         self.customer.setFixedHeight(30)
+        self.customer.setMaxLength(LONGEST_CUSTOMER)
         self.customer.setPlaceholderText(tr("Name or number"))
         self.customer.editingFinished.connect(self.tell_name)
         self.languages = Segment(list(LANGUAGES.items()), wide=True)
@@ -96,7 +98,8 @@ class ReportPage(QWidget):
         """Tell whose it is, if that has been typed since it was told last."""
         if self.customer.isModified():
             self.customer.setModified(False)
-            self.named.emit(self.customer.text().strip())
+            name = " ".join(self.customer.text().split())
+            self.named.emit("".join(each for each in name if each.isprintable()))
 
     def _want(self, what: str) -> None:
         self.tell_name()  # a press of a button leaves the keyboard in the field: its name is not told yet
