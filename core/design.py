@@ -11,7 +11,7 @@ from typing import Any
 
 from core.design_elastics import TISSUE_LIMITS, TISSUE_STIFFNESS, Elastic, check_elastics
 from core.design_lines import LineTraits, OwnLine, WornLine, partner_of
-from core.design_measures import OwnMeasure, check_customer, put_measure
+from core.design_measures import WORN_TIGHT, OwnMeasure, check_customer, put_measure
 from core.errors import LandmarkError, LineError, UserError
 from core.lines import RATIO_LIMITS
 from core.mechanics import CHOICES, DEFAULT_LINE_STIFFNESS, RANGES, Mechanics
@@ -55,8 +55,8 @@ class Design:
     not as usual, ``placed`` the landmarks that were placed by hand, ``own_measures`` what is measured beside
     the usual, ``elastics`` those that lines are made of, with their curves, so that a project opens
     elsewhere. ``tissue_stiffness`` [N/m] tells what the model's forces are in newtons, an estimate (see
-    docs/sewing.md). ``customer`` is whom it is for, in whatever words. ``unknown`` keeps what a later version
-    wrote.
+    docs/sewing.md). ``customer`` is whom it is for, in whatever words, ``worn_tight_mm`` what her sizes take
+    off the under-bust. ``unknown`` keeps what a later version wrote.
     """
 
     scan: ScanSource
@@ -83,6 +83,7 @@ class Design:
     elastics: tuple[Elastic, ...] = ()
     tissue_stiffness: float = TISSUE_STIFFNESS
     customer: str = ""
+    worn_tight_mm: float = 0.0
     unknown: Mapping[str, Any] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
@@ -95,17 +96,13 @@ class Design:
                     f"{line.name} cannot be set to {100 * line.ratio:.1f} % of its rest length.",
                     f"Stay between {100 * RATIO_LIMITS[0]:.0f} and {100 * RATIO_LIMITS[1]:.0f} %.",
                 )
-        twice = _twice([line.name for line in self.own_lines])
-        if twice:
+        if twice := _twice([line.name for line in self.own_lines]):
             raise LineError(f"There are two lines '{twice}'.", "Give each line a name of its own.")
-        twice = _twice([line.name for line in self.traits])
-        if twice:
+        if twice := _twice([line.name for line in self.traits]):
             raise LineError(f"The line {twice} is treated in two ways.", "Say once how.")
-        twice = _twice([mark.name for mark in self.placed])
-        if twice:
+        if twice := _twice([mark.name for mark in self.placed]):
             raise LandmarkError(f"The landmark {twice} is placed twice.", "Place it once.")
-        twice = _twice([measure.name for measure in self.own_measures])
-        if twice:
+        if twice := _twice([measure.name for measure in self.own_measures]):
             raise UserError(f"There are two measures '{twice}'.", "Give each measure a name of its own.")
         check_elastics(self.elastics, {each.name: each.elastic for each in self.traits if each.elastic})
 
@@ -128,6 +125,7 @@ class Design:
             *((getattr(self, key), *limits, key.replace("_", " ")) for key, limits in RANGES.items()),
             (1.0 if self.gain is None else self.gain, 0.0, 10.0, "gain"),
             (self.tissue_stiffness, *TISSUE_LIMITS, "tissue stiffness"),
+            (self.worn_tight_mm, *WORN_TIGHT, "allowance of a tape worn tight"),
         ):
             if not low <= number <= high:
                 raise UserError(
@@ -175,7 +173,8 @@ class Design:
         mine, others = (
             reduce(Design.with_traits, map(LineTraits.acting, each.traits), each) for each in (self, other)
         )
-        return replace(mine, own_measures=(), customer="") == replace(others, own_measures=(), customer="")
+        said: dict[str, Any] = {"own_measures": (), "customer": "", "worn_tight_mm": 0.0}
+        return replace(mine, **said) == replace(others, **said)
 
     def with_template(self, template: str) -> Design:
         """Return the design with another template. Raises LineError if there are own lines.

@@ -18,6 +18,11 @@ KINDS = ("straight", "skin", "girth")
 LONGEST_NAME = 60
 """Letters of the name of a measure."""
 
+WORN_TIGHT = 0.0, 20.0
+"""What a tape that is worn tight may take off the under-bust [mm]: a band presses into the body, a scan does
+not.
+"""
+
 FURTHEST = 3000.0
 """No level lies so high or so low [mm]."""
 

@@ -35,7 +35,7 @@ def to_json(design: Design, written: int = 1) -> str:
         del values["elastics"]
     if design.tissue_stiffness == TISSUE_STIFFNESS:
         del values["tissue_stiffness"]
-    for key in ("own_measures", "customer"):
+    for key in ("own_measures", "customer", "worn_tight_mm"):
         if not values[key]:
             del values[key]
     return json.dumps({"format": written, "length_unit": "mm", **unknown, **values}, indent=1)

@@ -10,7 +10,7 @@ from core.errors import UserError
 VARIANTS = ("A", "B", "C")
 """What variants are called, in this order."""
 
-_OF_THE_BODY = ("scan", "placed", "own_measures", "tissue_stiffness", "customer")
+_OF_THE_BODY = ("scan", "placed", "own_measures", "tissue_stiffness", "customer", "worn_tight_mm")
 
 
 @dataclass(frozen=True)

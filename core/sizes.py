@@ -13,12 +13,13 @@ from typing import Any
 
 import platformdirs
 
+from core.design_measures import WORN_TIGHT
 from core.errors import SizeError
 from core.sizing.rule import allowance_sentence, band_sentences, cup_sentences
 from core.sizing.table import BAND, Scale, SizeTable, Words
 from core.sizing.table_file import read_table, table_of
 
-ALLOWANCE = (0.0, 20.0)
+ALLOWANCE = WORN_TIGHT
 """What may be taken off the under-bust girth for a tape that is worn tight [mm]: an estimate, not a norm."""
 
 _ORDER = ("jp", "eu", "uk", "us", "fr", "it", "au")

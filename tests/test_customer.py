@@ -37,6 +37,16 @@ def test_projects_of_nobody_are_as_they_were() -> None:
     assert json.loads(to_json(ANNA))["format"] == 1, "older programs keep what they do not know"
 
 
+def test_what_her_tape_takes_off_is_hers_too(tmp_path: Path) -> None:
+    tight = replace(PLAIN, worn_tight_mm=12.5)
+    assert tight.acts_as(PLAIN)
+    document = Document.of(PLAIN).showing("B").with_design(tight)
+    assert {design.worn_tight_mm for _, design in from_texts(to_texts(document)).designs} == {12.5}
+    assert "worn_tight_mm" not in json.loads(to_json(PLAIN))
+    with pytest.raises(UserError):
+        replace(PLAIN, worn_tight_mm=21.0)
+
+
 @pytest.mark.parametrize("name", ["\ud800", "An\nna", "A\x07", "a" * 121])
 def test_a_customer_that_cannot_be_printed_is_refused(name: str) -> None:
     with pytest.raises(UserError, match="customer"):

@@ -80,7 +80,17 @@ def test_the_sheet_follows_and_a_former_one_is_not_given_away() -> None:
         assert sheet.lift is not None
         frame = window.session.frame
         assert frame is not None
-        assert sheet.lift.left_up == frame.marks.nipple_left_z - frame.stages.rest_marks.nipple_left_z
+        lift = frame.marks.nipple_left_z - frame.stages.rest_marks.nipple_left_z
+        assert sheet.lift.left_up == pytest.approx(lift, abs=0.1)
+        window.session.commit_line("mid-bust", "Mid-bust", 0.9)
+        yield settled(window)
+        window.session.commit_line("mid-bust", "Mid-bust", 0.96)
+        yield lambda: settled(window)() and made(window)()
+        again = window.report_desk.handout.sheet
+        assert again.turns == sheet.turns, "a garment is plotted from rest, not from the edit before"
+        assert (again.lift, again.volume) == (sheet.lift, sheet.volume)
+        for _ in range(2):
+            window.actions_.undo.trigger()
         window.actions_.undo.trigger()
         yield made(window)
         assert window.report_desk.handout.sheet.cuts.rows == ()

@@ -172,9 +172,9 @@ def _add_sheet(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--allowance",
         type=float,
-        default=0.0,
         metavar="MM",
-        help="taken off the under-bust for a tape that is worn tight, 0 to 20; an estimate",
+        help="taken off the under-bust for a tape that is worn tight, 0 to 20, an estimate; else as the project "
+        "says",
     )
 
 

@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 class SheetWishes:
     """Where to write: ``out`` the PDF, in a ``language``, ``json`` and ``csv`` if they are named.
 
-    ``customer`` is None where that of the project holds; ``system`` and ``allowance`` [mm] are about sizes.
+    ``customer`` and ``allowance`` [mm] are None where those of the project hold; ``system`` of sizes comes
+    first.
     """
 
     out: str
@@ -38,7 +39,7 @@ class SheetWishes:
     language: str = "en"
     customer: str | None = None
     system: str = "jp"
-    allowance: float = 0.0
+    allowance: float | None = None
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,9 @@ def run_report(
                 partial.write_text(text(sheet), encoding="utf-8")
     said = _write(solution, sheet, wishes)
     files = [name for name in (wishes.out, wishes.json, wishes.csv) if name]
-    return Reported(worn.settled, files, [*dict.fromkeys((*worn.warnings, *sheet.doubts, *sheet.warnings)), *said])
+    return Reported(
+        worn.settled, files, [*dict.fromkeys((*worn.warnings, *sheet.doubts, *sheet.warnings)), *said]
+    )
 
 
 def _check(wishes: SheetWishes) -> None:
@@ -83,7 +86,7 @@ def _check(wishes: SheetWishes) -> None:
             )
     if not wishes.out:
         raise UserError("The place to write to has no name.", "Name a file: --out sheet.pdf.")
-    known = sizes(750.0, 900.0, wishes.allowance)
+    known = sizes(750.0, 900.0, wishes.allowance or 0.0)
     if wishes.system not in known:
         raise UserError(
             f"There is no table of sizes '{wishes.system}'.", f"Choose one of: {', '.join(known)}."
@@ -98,7 +101,7 @@ def _heading(source: str, design: Design, wishes: SheetWishes) -> Heading:
         customer=design.customer,
         variant=document.shown if document is not None and len(document.designs) > 1 else "",
         system=wishes.system,
-        allowance_mm=wishes.allowance,
+        allowance_mm=design.worn_tight_mm if wishes.allowance is None else wishes.allowance,
     )
 
 

@@ -16,7 +16,6 @@ from PySide6.QtPrintSupport import QPrintDialog, QPrinter
 from app.asking.jobs import Job
 from app.dress.wishes import wish
 from app.keeping.dialogs import ask_save
-from app.keeping.measures_desk import wished_allowance
 from app.presenting.lines import line_colours
 from app.reporting.handout import Handout
 from app.reporting.pages import Pages, pages_of
@@ -31,6 +30,7 @@ from core.live import Frame
 from core.mesh import Floats
 from core.progress import Progress
 from core.project import whole_file
+from core.settled import settled_frame
 from core.sheet import Heading, Sheet, sheet_of
 from core.writing_out.sheet_file import sheet_csv, sheet_json
 
@@ -144,18 +144,21 @@ class ReportDesk(QObject):
         window, heading = self._window, self._heading()
         self._asked = frame
         body, known = frame.stages.body, self._occlusion
-        records = frame.tracks.get(frame.stages.design.volume, ())
 
-        def work(progress: Progress) -> tuple[Sheet, Floats]:
-            sheet = sheet_of(frame, records, heading, progress)
+        def work(progress: Progress) -> tuple[Sheet, Frame, Floats]:
+            # From rest, as the command line and who opens the project again: turns that went on from a former
+            # design end a hair beside, and would be plotted as if the garment began there.
+            design = frame.stages.design
+            whole = settled_frame(design, frame.stages, lambda what, share: progress(what, 0.1 * share))
+            sheet = sheet_of(whole, whole.tracks.get(design.volume, ()), heading, progress)
             baked = known[1] if known is not None and known[0] is body else bake_occlusion(body.mesh)
-            return sheet, baked
+            return sheet, whole, baked
 
         def draw(found: object) -> None:
-            sheet, baked = cast(tuple[Sheet, Floats], found)
+            sheet, whole, baked = cast(tuple[Sheet, Frame, Floats], found)
             self._occlusion = (body, baked)
             plain = Handout(sheet, {}, self._colours(frame))
-            pieces = shots(frame, baked)
+            pieces = shots(whole, baked)
             drawing = tr("Drawing the pictures of the sheet")
             self._job = window.jobs.run_pieces(
                 drawing, pieces, lambda pictures: done(plain, pictures), lambda _: done(plain, {})
@@ -207,7 +210,7 @@ class ReportDesk(QObject):
             document.customer,
             document.shown if len(document.designs) > 1 else "",
             wish("size_system"),
-            wished_allowance(),
+            document.design.worn_tight_mm,
         )
 
     def _colours(self, frame: Frame) -> dict[str, str]:

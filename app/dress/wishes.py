@@ -15,7 +15,6 @@ UNTIL_THEN = {
     "export": "{}",  # what was chosen to export, as app.exporting.choices keeps it
     "section_folded": "no",  # whether the section's panel shows its place alone
     "size_system": "jp",  # the key of a table of sizes
-    "size_allowance": "0",  # mm taken off the under-bust for a tape that is worn tight
 }
 """Every wish by its key in the settings, with the answer that holds until the user gives another."""
 

@@ -13,13 +13,12 @@ from app.panels.result import ResultPanel
 from app.presenting.measures import as_table, measure_views, measured_views
 from app.presenting.sizes import size_views
 from app.presenting.verdict import doubt_of
-from app.wording.words import tr
+from app.wording.words import number, tr
 from core.body import Body
 from core.live import Frame
 from core.measures import Measures, before_after
 from core.measuring.definitions import Measure
 from core.mesh import Points
-from core.sizes import ALLOWANCE
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -46,8 +45,8 @@ class MeasuresDesk(QObject):
         panel.table_asked.connect(
             lambda: save_table(window, self._as_table(), tr("Save the table of measures"), "measures")
         )
-        panel.sizes.chosen.connect(lambda key: self._wish("size_system", key))
-        panel.sizes.allowed.connect(lambda mm: self._wish("size_allowance", f"{mm:g}"))
+        panel.sizes.chosen.connect(self._choose)
+        panel.sizes.allowed.connect(self._allow)
 
     def show_frame(self, frame: Frame) -> None:
         """Show the measures of a frame."""
@@ -116,12 +115,18 @@ class MeasuresDesk(QObject):
         measure = found.get(self._panel.mark) if found else None
         return measure.curves if measure else ()
 
-    def _wish(self, key: str, value: str) -> None:
-        wish_for(key, value)
+    def _choose(self, system: str) -> None:
+        wish_for("size_system", system)
+        self._show_sizes()
+
+    def _allow(self, mm: float) -> None:
+        said = tr("Worn tight: {mm} mm off the under-bust").format(mm=number(mm, 1))
+        self._window.session.change({"worn_tight_mm": mm}, said)
         self._show_sizes()
 
     def _show_sizes(self) -> None:
-        allowance = wished_allowance()
+        design = self._window.session.design
+        allowance = design.worn_tight_mm if design else 0.0
         views, why = size_views(self._rest, allowance) if self._rest else ([], "")
         self._panel.sizes.set_sizes(views, wish("size_system"), allowance, why)
 
@@ -129,12 +134,3 @@ class MeasuresDesk(QObject):
         # What was measured on a former body is no measure of this one.
         measured = () if self._panel.stale else self._panel.measured
         return as_table([*measured, *self._panel.rows])
-
-
-def wished_allowance() -> float:
-    """Return what the user takes off the under-bust [mm]; settings may hold anything."""
-    low, high = ALLOWANCE
-    try:
-        return min(max(float(wish("size_allowance")), low), high)
-    except ValueError:
-        return low
