@@ -17,10 +17,12 @@ from core.cutting import cut_list
 from core.design import Design, ScanSource
 from core.elastics import find_elastic
 from core.errors import LineError, UserError
+from core.own_lines import ready_made
 from core.pipeline import build
 from core.sections import arc_length
 from core.solution import run
 from core.space import UNITS, Space
+from core.template import read_template
 from core.writing_out.drawing import SCALE_BAR, told, write_curves, write_strips
 from core.writing_out.worn import AS_WORN, Strip, strips, worn_curves
 
@@ -98,8 +100,10 @@ def test_a_strip_is_as_long_as_the_program_says_everywhere_else(solution, flat):
     for strip, line in zip(flat, worn_lines(solution), strict=True):
         reached = line.length(solution.control_points)
         assert strip.length == pytest.approx(reached + line.back_length, abs=1e-9)
-        (right, centre, left) = strip.marks
-        assert (right, left) == ((0.0, "right side"), (pytest.approx(reached), "left side"))
+        (right, centre, left, back, end) = strip.marks
+        assert (right, left) == ((0.0, "right side, seam"), (pytest.approx(reached), "left side"))
+        assert back == (pytest.approx(reached + 0.5 * line.back_length, rel=0.02), "centre back")
+        assert end == (pytest.approx(strip.length), "right side, seam")
         assert centre == (pytest.approx(reached / 2.0, rel=0.02), "centre front")
     assert {strip.name: strip.width for strip in flat} == {"mid-bust": 12.0, "under-bust": 22.0}
 
@@ -116,13 +120,28 @@ def test_a_strip_of_elastic_is_as_long_as_it_is_to_be_cut(solution):
     assert cut.length == row.cut_mm
     assert cut.length < 0.9 * row.reached_whole_mm
     assert (worn.length, worn.note) == (flat_length(stretched, "under-bust"), AS_WORN)
-    (right, centre, left, seam) = cut.marks
-    assert (right, seam) == ((15.0, "right side"), (pytest.approx(cut.length - 15.0), "seam"))
+    (right, centre, left, back, end) = cut.marks
+    assert (right[0], end[0]) == (15.0, pytest.approx(cut.length - 15.0))
+    assert right[1] == end[1] == "right side, seam"
+    assert left[0] < back[0] < end[0]
     # Between its seams the strip is the band, relaxed as a whole.
     share = (left[0] - 15.0) / (cut.length - 30.0)
     assert share == pytest.approx(row.reached_front_mm / row.reached_whole_mm)
     assert 15.0 < centre[0] < left[0]
     assert "stretched by" in told(cut)
+
+
+def test_the_ends_of_a_strap_are_told_apart(solution):
+    own = ready_made(read_template("168"))["straps"]
+    stages = solution.stages
+    stages = build(replace(stages.design, own_lines=own).with_line("strap left", 0.98), stages)
+    lines = {line.name: line for line in stages.model.lines}
+    points = stages.control.mesh.vertices
+    strap = next(each for each in strips(stages, points, {}, {}) if each.name == "strap left")
+    first, last = (points[lines["strap left"].path[at], 2] for at in (0, -1))
+    assert abs(first - last) > 50.0
+    names = ["upper end", "lower end"] if first > last else ["lower end", "upper end"]
+    assert [strap.marks[0], strap.marks[-1]] == list(zip((0.0, strap.length), names, strict=True))
 
 
 def test_an_svg_is_at_its_size_in_millimetres(tmp_path, flat):

@@ -7,7 +7,7 @@ millimetres is measured there.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -140,10 +140,21 @@ def test_what_stands_on_a_strip_is_in_the_language_of_the_window(tmp_path: Path,
         again = Outcome(outcome.stages, outcome.control_points, outcome.records)
         root = ElementTree.parse(write("flat", tmp_path / "ja.svg", again, Manner())).getroot()
     words = [each.text or "" for each in root.iter(f"{SVG}text")][2:]  # heading and scale bar say mm
-    assert {"前中心", "右脇", "左脇", "縫い代"} <= set(words)
+    assert {"前中心", "右脇（縫い目）", "左脇", "後ろ中心"} <= set(words)
     assert re.findall(r"[A-Za-z]{3,}", " ".join(words)) == []
     wide = float(root.get("width", "").removesuffix("mm"))
     assert wide > 20.0 + max(4.0 * sum(ord(letter) > 255 for letter in text) for text in words)
+
+
+def test_strips_are_headed_with_project_and_customer(tmp_path: Path, outcome: Outcome) -> None:
+    for named, told in (
+        (("anna-3", "Anna M."), "anna-3 · Anna M."),
+        (("anna-3", ""), "anna-3"),
+        (None, ".ply"),
+    ):
+        file = write("flat", tmp_path / "w.svg", replace(outcome, named=named), Manner())
+        heading = next(ElementTree.parse(file).getroot().iter(f"{SVG}text")).text or ""
+        assert heading.endswith(f"{told}  1:1, mm")
 
 
 @pytest.mark.parametrize("kind", STRIP_FORMATS)

@@ -165,16 +165,11 @@ class ExportDesk(QObject):
         """Return what came out: while nothing changes the same one, with all that it has worked out."""
         view, known = self._window.view, self._outcome
         material = view.viewport.scene.material
-        looks = view.hidden_lines, material
-        if (
-            known is None
-            or known.control_points is not frame.control_points
-            or looks
-            != (
-                known.hidden,
-                known.material,
-            )
-        ):
+        session = self._window.session
+        named = session.name, session.design.customer if session.design else ""
+        looks = view.hidden_lines, material, named
+        same = known is not None and known.control_points is frame.control_points
+        if known is None or not same or looks != (known.hidden, known.material, known.named):
             tracks = frame.tracks
             records = tracks.get(frame.stages.design.volume) or next(iter(tracks.values()), ())
             known = self._outcome = Outcome(frame.stages, frame.control_points, records, *looks)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 from app.seeing.camera import View
@@ -43,7 +44,8 @@ class Outcome:
     """A body at rest and as ``control_points``, (n, 3) [mm], reshape it, with the turns that led there.
 
     What is worked out for one file is kept for the next. ``hidden`` are lines that pictures leave out,
-    ``material`` what the body looks made of in them.
+    ``material`` what the body looks made of in them, ``named`` project and customer, None as
+    they were opened.
     """
 
     stages: Stages
@@ -51,6 +53,13 @@ class Outcome:
     records: Sequence[Record] = ()
     hidden: frozenset[str] = frozenset()
     material: str = "clay"
+    named: tuple[str, str] | None = None
+
+    @property
+    def whose(self) -> str:
+        """The names of project and customer, as a drawing is headed."""
+        named = self.named or (Path(self.design.scan.path).name, self.design.customer)
+        return " · ".join(filter(None, named))
 
     @property
     def design(self) -> Design:

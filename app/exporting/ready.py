@@ -19,7 +19,7 @@ from core.report import write_turns
 from core.space import Space, space_of
 from core.writing_out.drawing import CURVE_FORMATS, STRIP_FORMATS, drawing_kind, write_curves, write_strips
 from core.writing_out.measures_file import MeasuresSheet, measures_kind, write_measures
-from core.writing_out.worn import CENTRE, LEFT, RIGHT, SEAM, strips, worn_curves
+from core.writing_out.worn import BACK, CENTRE, LEFT, LOWER, SEAM, SIDE_SEAM, UPPER, strips, worn_curves
 
 if TYPE_CHECKING:
     from app.printing.studio import Studio
@@ -130,13 +130,21 @@ def _lines(path: str, outcome: Outcome, manner: Manner) -> Ready:
 def _flat(path: str, outcome: Outcome, manner: Manner) -> Ready:
     drawn = strips(outcome.stages, outcome.control_points, *outcome.looks)
     told = ", ".join(f"{each.title} {number(each.length)} mm" for each in drawn)
-    heading = f"Busk {__version__}, {outcome.design.scan.name}"
+    heading = f"Busk {__version__} · {outcome.whose}"
     return Ready(told, "1:1", lambda at, _, hear: write_strips(at, drawn, heading, _strip_words))
 
 
 def _strip_words(text: str) -> str:
     """Return what stands on a strip in the language in use."""
-    marks = {RIGHT: tr("right side"), LEFT: tr("left side"), CENTRE: tr("centre front"), SEAM: tr("seam")}
+    marks = {
+        SIDE_SEAM: tr("right side, seam"),
+        CENTRE: tr("centre front"),
+        LEFT: tr("left side"),
+        BACK: tr("centre back"),
+        SEAM: tr("seam"),
+        UPPER: tr("upper end"),
+        LOWER: tr("lower end"),
+    }
     return marks.get(text) or say(text)
 
 

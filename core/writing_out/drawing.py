@@ -94,7 +94,10 @@ def _obj_lines(parts: Iterable[tuple[str, str, Points]], space: Space) -> Iterab
 
 def _svg(strips: Sequence[Strip], heading: str, say: Say) -> Xml.Element:
     words = [_wide(text) for text in (heading, *(say(told(strip)) for strip in strips))]
-    width = 2 * _MARGIN + max([1.3 * SCALE_BAR, *words, *(strip.length for strip in strips)])
+    ends = [
+        strip.length + (0.75 * _wide(say(strip.marks[-1][1])) if strip.marks else 0.0) for strip in strips
+    ]
+    width = 2 * _MARGIN + max([1.3 * SCALE_BAR, *words, *ends])
     tops = _tops(strips)
     size = {
         "width": f"{width:.3f}mm",

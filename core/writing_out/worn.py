@@ -10,14 +10,16 @@ import numpy as np
 from core.centre_line import NO_BACK, USUAL_WIDTH, CentreLine, Surface, centre_line
 from core.cutting import CutRow, cut_list
 from core.errors import LineError
+from core.fitting.back_length import Back
 from core.lines import Line
 from core.mesh import Floats, Points
 from core.pipeline import Stages
 from core.sections import arc_length
 from core.tffd import deform
 
-RIGHT, CENTRE, LEFT, SEAM = "right side", "centre front", "left side", "seam"
-"""What the marks of a strip are called."""
+SIDE_SEAM, CENTRE, LEFT, BACK, SEAM = "right side, seam", "centre front", "left side", "centre back", "seam"
+UPPER, LOWER = "upper end", "lower end"
+"""What the marks of a strip are called: a band that goes round begins and ends at the right side."""
 
 AS_WORN = "as worn: an elastic is cut shorter"
 """What is said of a strip of which no elastic is chosen."""
@@ -85,8 +87,8 @@ def strips(
 ) -> tuple[Strip, ...]:
     """Return the worn lines as flat strips: as they are to be cut, or as worn where no elastic is chosen.
 
-    Marks lie at both sides, where the front part crosses the centre, and where seams begin. Raises LineError
-    if none is worn.
+    Marks lie at both sides, where front part and back cross the centre, at the ends of an open line, and
+    where seams begin. Raises LineError if none is worn.
     """
     middle = float(stages.control.mesh.vertices[stages.control.border, 0].mean())
     cuts = {row.line: row for row in cut_list(stages, control_points).rows}
@@ -97,7 +99,7 @@ def strips(
             titles.get(line.name, line.name),
             line.length(control_points) + line.back_length,
             widths.get(line.name, USUAL_WIDTH),
-            _marks(line, control_points[line.path], middle),
+            _marks(line, control_points[line.path], stages.backs.get(line.name), middle),
             AS_WORN,
         )
         flat.append(_cut(worn, cuts[line.name]))
@@ -139,11 +141,20 @@ def _halves(places: Points, laid: CentreLine) -> tuple[Points, Points]:
     return places[: last + 1], np.concatenate([places[last:], places[:1]])
 
 
-def _marks(line: Line, places: Points, middle: float) -> tuple[tuple[float, str], ...]:
+def _marks(line: Line, places: Points, back: Back | None, middle: float) -> tuple[tuple[float, str], ...]:
     s = arc_length(places)
+    end = float(s[-1])
     marks = [(at, CENTRE) for at in _crossings(places[:, 0] - middle, s)]
     if line.back_length > 0.0:
-        marks = [(0.0, RIGHT), *marks, (float(s[-1]), LEFT)]
+        behind = []
+        if back is not None and len(back.path) > 1:  # from the left end round to the right
+            along = arc_length(back.path)
+            shares = [at / float(along[-1]) for at in _crossings(back.path[:, 0] - middle, along)]
+            behind = [(end + share * line.back_length, BACK) for share in shares]
+        marks = [(0.0, SIDE_SEAM), *marks, (end, LEFT), *behind, (end + line.back_length, SIDE_SEAM)]
+    elif line.path[0] != line.path[-1]:
+        names = (UPPER, LOWER) if places[0, 2] > places[-1, 2] else (LOWER, UPPER)
+        marks = [(0.0, names[0]), *marks, (end, names[1])]
     return tuple(marks)
 
 
