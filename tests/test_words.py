@@ -11,7 +11,18 @@ import pytest
 from PySide6.QtGui import QRawFont
 from PySide6.QtWidgets import QApplication
 
-from app.wording.words import LANGUAGES, number, read_words, say, speaking, tr, use_language
+from app.wording.words import (
+    LANGUAGES,
+    colon,
+    joined,
+    listed,
+    number,
+    read_words,
+    say,
+    speaking,
+    tr,
+    use_language,
+)
 
 ROOT = Path(__file__).parent.parent
 TRANSLATIONS = [code for code in LANGUAGES if code != "en"]
@@ -136,3 +147,11 @@ def test_another_language_is_spoken_for_a_while() -> None:
 )
 def test_numbers_are_written_with_a_real_minus(value: float, digits: int, signed: bool, text: str) -> None:
     assert number(value, digits, signed) == text
+
+
+@pytest.mark.parametrize(
+    ("code", "told"), [("en", "C70, A80: So it is. So not."), ("ja", "C70、A80：So it is.So not.")]
+)
+def test_what_is_joined_is_parted_as_the_language_parts_it(code: str, told: str) -> None:
+    with speaking(code):
+        assert listed(["C70", "A80"]) + colon() + joined(["So it is.", "", "So not."]) == told

@@ -23,7 +23,7 @@ from app.presenting.verdict import is_result, state_of
 from app.printing.turntable import turntable_files
 from app.showing.verdict_chip import state_title
 from app.wording.export_choices import exports, format_title
-from app.wording.words import say, tr
+from app.wording.words import joined, say, tr
 from core.errors import UserError
 from core.live import Frame
 from core.project import still_written
@@ -108,7 +108,7 @@ class ExportDesk(QObject):
 
     def _show_refused(self, name: str, error: Exception) -> None:
         if isinstance(error, UserError) and self.sheet is not None:
-            self.sheet.show_contents(name, "", f"{say(error.message)} {say(error.hint)}", possible=False)
+            self.sheet.show_contents(name, "", joined((say(error.message), say(error.hint))), possible=False)
         else:
             self._window.desk.show_failure(error)
 

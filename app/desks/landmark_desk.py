@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QToolTip
 
 from app.dress.theme import tone_of
 from app.presenting.scan import kind_of, landmark_title, landmark_views, other_side, spot_of
-from app.wording.words import say, tr
+from app.wording.words import joined, say, tr
 from core.body import Body
 from core.design import Design
 from core.doubts import ESSENTIAL, first_doubt, landmark_doubts
@@ -92,7 +92,7 @@ class LandmarkDesk(QObject):
             said, *more = landmark_doubts(stages.landmarks)
             spoken_of = first_doubt(stages.landmarks)
             look = (tr("Look at it"), lambda: self._look_at(spoken_of))
-            self._window.notices.show_notice("warn", said, " ".join(map(say, more)), [look], lasting=True)
+            self._window.notices.show_notice("warn", said, joined(map(say, more)), [look], lasting=True)
 
     def show_stuck(self, stuck: StuckError) -> None:
         """Show what was found on a scan that cannot go on."""

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from app.exporting.outcome import Manner, Outcome
-from app.wording.words import number, say, tr
+from app.wording.words import listed, number, say, tr
 from core import __version__
 from core.errors import UserError
 from core.export import FORMATS, kind_of, write_control_points, write_mesh
@@ -123,13 +123,13 @@ def _mesh(path: str, mesh: Mesh, manner: Manner) -> Ready:
 def _lines(path: str, outcome: Outcome, manner: Manner) -> Ready:
     curves = worn_curves(outcome.stages, outcome.points(manner.before), *outcome.looks)
     space = space_of(drawing_kind(path, CURVE_FORMATS), manner.unit, manner.axes)
-    told = ", ".join(f"{curve.title} {number(curve.length)} mm" for curve in curves)
+    told = listed(f"{curve.title} {number(curve.length)} mm" for curve in curves)
     return Ready(told, _in_space(space), lambda at, _, hear: write_curves(at, curves, space))
 
 
 def _flat(path: str, outcome: Outcome, manner: Manner) -> Ready:
     drawn = strips(outcome.stages, outcome.control_points, *outcome.looks)
-    told = ", ".join(f"{each.title} {number(each.length)} mm" for each in drawn)
+    told = listed(f"{each.title} {number(each.length)} mm" for each in drawn)
     heading = f"Busk {__version__} · {outcome.whose}"
     return Ready(told, "1:1", lambda at, _, hear: write_strips(at, drawn, heading, _strip_words))
 
@@ -153,7 +153,7 @@ def _measures(path: str, outcome: Outcome, manner: Manner) -> Ready:
     rows = [row for row in outcome.measures if row[when] is not None]
     titles = {row["key"]: _measure_title(row) for row in rows}
     values = {row["key"]: (float(row[when]), str(row["unit"])) for row in rows}
-    unsure = "; ".join(titles[row["key"]] for row in rows if row["estimate"])
+    unsure = listed(titles[row["key"]] for row in rows if row["estimate"])
     note = f"Busk {__version__}, {outcome.design.scan.name}, {'at rest' if manner.before else 'reshaped'}."
     note += f" Estimates: {unsure}." if unsure else ""
     sheet = MeasuresSheet(values, unit, titles, note)

@@ -15,7 +15,7 @@ from app.panels.picture_list import PictureRow
 from app.presenting.bust import bust_move, bust_sentence
 from app.presenting.verdict import is_result, kept_volume, state_of
 from app.showing.verdict_chip import TONES, state_title
-from app.wording.words import number, tr
+from app.wording.words import colon, number, tr
 from core.design import Design
 from core.document import Document
 from core.frame import Frame
@@ -139,7 +139,7 @@ class HistoryDesk(QObject):
 def _title(snapshot: _Snapshot, document: Document) -> str:
     """Return what led to a result, with its variant where there are several."""
     several = len(document.designs) > 1 or snapshot.variant != document.shown
-    return f"{snapshot.variant}: {snapshot.row.title}" if several else snapshot.row.title
+    return f"{snapshot.variant}{colon()}{snapshot.row.title}" if several else snapshot.row.title
 
 
 def _figures(frame: Frame) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from PySide6.QtCore import QObject
 from app.dress.ask import ask, ask_name
 from app.dress.parts import pull_down
 from app.presenting.lines import row_title
-from app.wording.words import say, tr
+from app.wording.words import listed, say, tr
 from core.design import Design
 from core.design_lines import LONGEST_TITLE
 from core.errors import UserError
@@ -136,4 +136,4 @@ def _led_anew(before: Design, after: Design) -> str:
     """Return the titles of the lines that were led by hand and are led otherwise now."""
     paths = {line.name: line.points for line in before.own_lines}
     names = [line.name for line in after.own_lines if paths.get(line.name, line.points) != line.points]
-    return ", ".join(dict.fromkeys(row_title(name, after) for name in names))
+    return listed(dict.fromkeys(row_title(name, after) for name in names))

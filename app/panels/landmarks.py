@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QApplication, QFrame, QHBoxLayout, QScrollArea, QV
 from app.dress.parts import Disclosure, EmptyState, ToolButton, button, hairline, sentence
 from app.dress.theme import label, tokens_of
 from app.panels.landmark_row import LandmarkRow, LandmarkView
-from app.wording.words import say, tr
+from app.wording.words import joined, say, tr
 
 
 def keys_in_words() -> list[tuple[str, str]]:
@@ -269,7 +269,7 @@ class Doubts(QFrame):
         do = tr("Select each: drag its pin if it lies wrong, or say that it is right.")
         self._count.setText(tr("To look at: {count}").format(count=count))
         self._count.setVisible(bool(count))
-        self._said.setText(" ".join([*map(say, doubts), *[do] * bool(count)]))
+        self._said.setText(joined([*map(say, doubts), *[do] * bool(count)]))
         self.setVisible(bool(doubts) or bool(count))
 
     def paintEvent(self, event: QPaintEvent) -> None:

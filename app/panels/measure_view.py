@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.wording.words import number, tr
+from app.wording.words import colon, number, tr
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ class MeasureView:
         values = [
             f"{self.written(each)} {self.unit}" for each in (self.before, self.after) if each is not None
         ]
-        return f"{self.label}: {' → '.join(values)} {self.caption}".rstrip()
+        return f"{self.label}{colon()}{' → '.join(values)} {self.caption}".rstrip()
 
 
 def digits_of(unit: str) -> int:

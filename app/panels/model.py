@@ -15,7 +15,7 @@ from app.dress.parts import ToolButton, button, hairline, sentence
 from app.dress.theme import font, label, set_tag, tokens_of
 from app.panels.setting_field import AmountField, Field, field_of
 from app.wording.model_choices import Setting, consequences, defaults, groups, summary
-from app.wording.words import number, tr
+from app.wording.words import colon, number, tr
 
 DOOR_HEIGHT = 52
 """Height of the foot of the inspector, where the way to the settings is [px]."""
@@ -132,7 +132,7 @@ class ModelPanel(QWidget):
     def _choose(self, setting: Setting, value: Any) -> None:
         if value != self._present[setting.key]:
             changes = consequences(setting.key, value, self._present)
-            self.changed.emit(changes, f"{setting.title}: {setting.words(value)}")
+            self.changed.emit(changes, f"{setting.title}{colon()}{setting.words(value)}")
 
 
 class ModelDoor(QAbstractButton):

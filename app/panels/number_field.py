@@ -8,7 +8,7 @@ from PySide6.QtGui import QFocusEvent
 
 from app.dress.theme import font
 from app.panels.typed_field import TypedField
-from app.wording.words import number, say, tr
+from app.wording.words import joined, number, say, tr
 from core.errors import LineError
 from core.lines import length_ratio
 
@@ -70,7 +70,7 @@ class NumberField(TypedField):
         try:
             return length_ratio(text, self._line, self._rest_mm, self._whole_mm, self._unit)
         except LineError as refused:
-            raise ValueError(f"{say(refused.message)} {say(refused.hint)}") from None
+            raise ValueError(joined((say(refused.message), say(refused.hint)))) from None
 
     def _take(self, value: float) -> None:
         self._ratio = value

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.wording.words import number, tr
+from app.wording.words import listed, number, tr
 from core.frame import Frame
 from core.mesh import Floats
 from core.solver import Marks
@@ -60,7 +60,7 @@ def ups(rest: Marks, left: Floats, right: Floats) -> Floats:
 
 def step_words(step: BustStep) -> str:
     """Return a move in words: "3.9 mm up, 2.1 mm forward"."""
-    return f"{up_words(step.up)}, {forward_words(step.forward)}"
+    return listed((up_words(step.up), forward_words(step.forward)))
 
 
 def up_words(up: float) -> str:

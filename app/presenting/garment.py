@@ -5,7 +5,7 @@ from __future__ import annotations
 from app.panels.garment_view import CutView, GarmentView
 from app.presenting.lines import line_colours, line_title, titled
 from app.seeing.bands import band_width
-from app.wording.words import number, say, tr
+from app.wording.words import joined, number, say, tr
 from core.cutting import CutList, CutRow
 from core.design import Design
 from core.live import Frame
@@ -103,6 +103,6 @@ def _cells(row: CutRow, kpa: float | None, design: Design) -> list[str]:
         row.allowance_mm,
     )
     written = ["" if each is None else f"{each:.1f}" for each in figures]
-    notes = " ".join(told(note, design) for note in row.notes)
+    notes = joined(told(note, design) for note in row.notes)
     estimate = tr("yes") if row.estimate else tr("no")
     return [line_title(row.line, design), say(row.elastic), *written, estimate, notes]

@@ -10,7 +10,7 @@ from app.panels.length_groove import Feasible
 from app.panels.line_view import LineView, SideView
 from app.seeing.bands import band_width
 from app.wording.tokens import LINE_COLORS
-from app.wording.words import say, tr
+from app.wording.words import listed, say, tr
 from core.design import Design
 from core.design_lines import partner_of
 from core.lines import Line
@@ -31,7 +31,7 @@ def line_title(name: str, design: Design | None = None) -> str:
     own = design.traits_of(name).title if design else ""
     if own:
         side = _side(name)
-        return f"{own}, {side}" if side else own
+        return listed((own, side)) if side else own
     titles = {
         "full-bust": tr("Full bust"),
         "mid-bust": tr("Mid-bust"),
@@ -46,7 +46,7 @@ def line_title(name: str, design: Design | None = None) -> str:
         "ring right": tr("Ring right"),
     }
     kind, side = kind_of(name), _side(name)
-    usual = f"{kind}, {side}" if side else name
+    usual = listed((kind, side)) if side else name
     return titles.get(name, usual[:1].upper() + usual[1:])
 
 

@@ -8,7 +8,7 @@ from app.panels.garment_view import PressureView
 from app.panels.line_view import LineView
 from app.panels.pressure_card import TONES, LightLimits, PressureSummary
 from app.presenting.lines import line_colours, line_title, titled
-from app.wording.words import language, number, say, tr
+from app.wording.words import joined, language, listed, number, say, tr
 from core.design import Design
 from core.press_list import PressList, PressRow
 from core.pressure import LEFT_OUT, NOT_FOR_STRAPS, mmhg
@@ -79,7 +79,7 @@ def _figures(row: PressRow) -> list[str]:
     most = tr("Largest {kpa}").format(kpa=kpa_words(row.max_kpa))
     mean = tr("Mean where it lies on the skin {kpa}").format(kpa=kpa_words(row.mean_kpa))
     force = tr("Presses on the skin with {force} N in all").format(force=number(row.force_n or 0.0))
-    where = f"{most}, {place_words(row)}" if row.where else most
+    where = listed((most, place_words(row))) if row.where else most
     return [where, mean, force]
 
 
@@ -132,7 +132,7 @@ def pressure_summary(listed: PressList | None, design: Design, doubt: str = "") 
         light_word(most.light),
         place,
         f"{place_words(most)}\n{look}",
-        " ".join([comfort().says(most.max_kpa).told(language()), *_unmeant(most)]),
+        joined((comfort().says(most.max_kpa).told(language()), *_unmeant(most))),
         tr("All bands together press on the skin with {force} N").format(force=number(listed.force_n)),
         marks,
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from app.panels.size_card import SizeView
-from app.wording.words import language, number, say, tr
+from app.wording.words import colon, joined, language, listed, number, say, tr
 from core.measures import Measures
 from core.sizes import Neighbour, SizeAnswer, sizes
 from core.sizing.letters import letter_sizes
@@ -30,7 +30,7 @@ def _letters(measured: Measures) -> Iterator[str]:
         girth = measured[table.girth].value
         found = table.sizes(girth) if girth is not None else ()
         if found:
-            yield f"{table.title.told(language())}: {' / '.join(found)}"
+            yield f"{table.title.told(language())}{colon()}{' / '.join(found)}"
 
 
 def _view(key: str, answer: SizeAnswer, letters: tuple[str, ...]) -> SizeView:
@@ -40,7 +40,7 @@ def _view(key: str, answer: SizeAnswer, letters: tuple[str, ...]) -> SizeView:
         key,
         key.upper() if len(key) == 2 else answer.table.system,
         answer.label or "\N{EN DASH}",
-        " ".join(say(each) for each in answer.rule),
+        joined(say(each) for each in answer.rule),
         (*_near(answer), *letters),
         answer.table.title.told(language()),
         doubts,
@@ -65,11 +65,11 @@ def _near(answer: SizeAnswer) -> Iterator[str]:
         if near:
             yield words.format(sizes=" · ".join(near))
     if answer.sisters:
-        labels = ", ".join(each.label for each in answer.sisters)
+        labels = listed(each.label for each in answer.sisters)
         yield tr("Sister sizes: {sizes}").format(sizes=labels)
 
 
 def _away(neighbour: Neighbour) -> str:
     """Return how far a size beside this one is, and which it is."""
     missing = neighbour.missing_mm if neighbour.up else -neighbour.missing_mm
-    return f"{number(missing, 1, signed=True)} mm: {neighbour.label or neighbour.name}"
+    return f"{number(missing, 1, signed=True)} mm{colon()}{neighbour.label or neighbour.name}"

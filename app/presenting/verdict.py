@@ -9,7 +9,7 @@ import numpy as np
 from app.presenting.bust import bust_move, sides_words, step_words, ups
 from app.presenting.lines import line_title
 from app.showing.verdict_chip import state_title
-from app.wording.words import number, say, tr
+from app.wording.words import joined, number, say, tr
 from core.doubts import ESSENTIAL, weak_sides
 from core.live import Frame
 from core.report import blamed_line, warnings
@@ -168,4 +168,4 @@ def _hint(frame: Frame) -> str:
     if not what or line is None:
         return what
     wish = tr("Set {line} longer.") if line.ratio < 1.0 else tr("Set {line} shorter.")
-    return f"{what} {wish.format(line=line_title(line.name, frame.stages.design))}"
+    return joined((what, wish.format(line=line_title(line.name, frame.stages.design))))

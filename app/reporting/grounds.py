@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from app.reporting.telling import colon, joined, known, listed, system_word
-from app.wording.words import language, say, tr
+from app.reporting.telling import known, system_word
+from app.wording.words import colon, joined, language, listed, say, tr
 from core.measuring.definitions import GIRTHS, TAPE, definition_of
 from core.measuring.own import OWN
 from core.sewing.comfort import comfort

@@ -10,7 +10,7 @@ from typing import Any
 from app.presenting.lines import line_title
 from app.presenting.pressure import light_word
 from app.showing.verdict_chip import state_title
-from app.wording.words import language, number, say, tr
+from app.wording.words import colon, listed, number, say, tr
 from core.cutting import CutRow
 from core.design_lines import partner_of
 from core.measuring.definitions import definition_of
@@ -55,7 +55,7 @@ def piece_title(line: str, title: str) -> str:
     if title == line:
         return line_title(line)
     side = {"left": tr("left"), "right": tr("right")}.get(line.rpartition(" ")[2]) if partner_of(line) else ""
-    return f"{title}, {side}" if side else title
+    return listed((title, side)) if side else title
 
 
 def project_words(sheet: Sheet) -> str:
@@ -211,18 +211,3 @@ def _place(line: str, order: Sequence[str]) -> int:
 
 def _figure(value: float | None, digits: int) -> str:
     return NOTHING if value is None else number(value, digits)
-
-
-def colon() -> str:
-    """Return a colon as the language in use writes it."""
-    return "：" if language() == "ja" else ": "
-
-
-def listed(names: list[str]) -> str:
-    """Return names as a list in the language in use."""
-    return ("、" if language() == "ja" else ", ").join(names)
-
-
-def joined(sentences: list[str]) -> str:
-    """Return sentences after one another."""
-    return ("" if language() == "ja" else " ").join(filter(None, sentences))

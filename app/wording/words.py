@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from functools import cache, lru_cache
 from importlib import resources
@@ -110,3 +110,18 @@ def number(value: float, digits: int = 1, signed: bool = False) -> str:
     if not text.strip("+-0.,"):
         text = text.lstrip("+-")
     return text.replace("-", "\N{MINUS SIGN}")
+
+
+def listed(names: Iterable[str]) -> str:
+    """Return names one after the other, as the language in use parts them."""
+    return ("、" if _code == "ja" else ", ").join(names)
+
+
+def colon() -> str:
+    """Return a colon as the language in use writes it, with the room after it."""
+    return "：" if _code == "ja" else ": "
+
+
+def joined(sentences: Iterable[str]) -> str:
+    """Return sentences one after the other, those that are empty left out."""
+    return ("" if _code == "ja" else " ").join(filter(None, sentences))
