@@ -134,7 +134,7 @@ def _text_of(path: Path) -> str:
 def write_elastic(path: Path, elastic: Elastic) -> None:
     """Write an elastic as a table, whole or not at all. Raises ProjectError."""
     with whole_file(path.absolute()) as partial:
-        partial.write_text(csv_of(elastic), encoding="utf-8")
+        partial.write_text(csv_of(elastic), encoding="utf-8-sig")
 
 
 def write_template(path: Path) -> None:

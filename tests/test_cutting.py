@@ -1,5 +1,6 @@
 """The cut list: lengths to cut and tensions, for springs, held lines and lines on the rib cage."""
 
+import codecs
 import csv
 import io
 import json
@@ -227,6 +228,7 @@ COMMAND += ["--settings", "tissue_stiffness=400"]
 
 def test_the_command_prints_what_python_says(mannequin, built, capsys, tmp_path):
     write_elastic(tmp_path / "roll.csv", EDGE)
+    assert (tmp_path / "roll.csv").read_bytes().startswith(codecs.BOM_UTF8), "spreadsheets know its letters"
     words = ["cut", str(mannequin), *COMMAND, "--elastic", f"under-bust={tmp_path / 'roll.csv'}"]
     assert main([*words, "--json"]) == 0
     told = json.loads(capsys.readouterr().out)

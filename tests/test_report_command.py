@@ -44,7 +44,7 @@ def test_a_sheet_with_no_display(mannequin: Path, tmp_path: Path) -> None:
     assert f"{data['cuts']['rows'][0]['cut_mm']:,.0f} mm" in text
     bust = next(row for row in data["measures"] if row["key"] == "bust_girth")
     assert f"{bust['before']:.1f} {bust['after']:.1f}" in text
-    rows = list(csv.DictReader((tmp_path / "sheet.csv").read_text("utf-8").splitlines()))
+    rows = list(csv.DictReader((tmp_path / "sheet.csv").read_text("utf-8-sig").splitlines()))
     assert {row["section"] for row in rows} >= {"sheet", "size", "measure", "cut", "pressure", "left out"}
     # The pictures are there: skin and bands are no greys.
     part = pdf.pixels(0)[150:280].astype(int)

@@ -101,7 +101,14 @@ def test_choices_are_remembered_for_each_thing_and_each_format(tmp_path: Path) -
 
 
 @pytest.mark.parametrize(
-    "kept", ["", "no JSON", "[1]", '{"what": "no such", "body/format": 7, "body.glb/unit": "ell"}']
+    "kept",
+    [
+        "",
+        "no JSON",
+        "[1]",
+        '{"what": "no such", "body/format": 7, "body.glb/unit": "ell"}',
+        '{"body/format": []}',
+    ],
 )
 def test_settings_that_are_no_choices_are_forgotten(kept: str) -> None:
     choices = app.desks.export_desk.Choices(kept)

@@ -219,6 +219,34 @@ def test_the_printer_gets_the_same_pages(tmp_path: Path, monkeypatch: pytest.Mon
     assert run_main(["resources/samples/mannequin.ply"], script) == 0
 
 
+def test_only_the_pages_that_were_chosen_are_printed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Dialog:
+        def __init__(self, printer: QPrinter, parent: object) -> None:
+            printer.setOutputFormat(QPrinter.OutputFormat.PdfFormat)
+            printer.setOutputFileName(str(tmp_path / "printed.pdf"))
+            printer.setPrintRange(QPrinter.PrintRange.PageRange)
+            printer.setFromTo(2, 2)
+
+        def exec(self) -> int:
+            return 1
+
+    monkeypatch.setattr("app.desks.report_desk.QPrintDialog", Dialog)
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.report_desk.open()
+        yield made(window)
+        window.report_desk.page.does["print"].click()
+        printed = Pdf(tmp_path / "printed.pdf")
+        write_pdf(tmp_path / "written.pdf", window.report_desk.pages, "sheet")
+        assert printed.sizes == [(210, 297)]
+        second = [piece.text for piece in Pdf(tmp_path / "written.pdf").pieces(1)]
+        assert [piece.text for piece in printed.pieces(0)] == second
+
+    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+
+
 def test_the_sheet_comes_without_pictures_where_they_cannot_be_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
     def fails(*_: object, **__: object) -> None:
         raise RuntimeError("no graphics")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from dataclasses import dataclass
 from typing import Any
@@ -16,6 +14,7 @@ from core.measures import before_after, measure_rows, measures
 from core.pipeline import build, find, read_body
 from core.report import shape_warnings
 from core.solution import run
+from core.writing_out.cells import csv_text
 
 COLUMNS = (
     *("key", "title", "side", "unit", "before", "after", "difference", "plus_minus"),
@@ -79,17 +78,7 @@ def _as_json(found: Measured) -> str:
 
 
 def _as_csv(found: Measured) -> str:
-    text = io.StringIO()
-    writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
-    writer.writeheader()
-    writer.writerows({key: _cell(value) for key, value in row.items()} for row in found.rows)
-    return text.getvalue().rstrip("\n")
-
-
-def _cell(value: Any) -> Any:
-    if isinstance(value, bool):
-        return str(value).lower()
-    return f"{value:.6g}" if isinstance(value, float) else value
+    return csv_text(COLUMNS, ([row[column] for column in COLUMNS] for row in found.rows)).rstrip("\n")
 
 
 _FORMS = {"": _plain, "json": _as_json, "csv": _as_csv}

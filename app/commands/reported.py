@@ -19,6 +19,7 @@ from core.project import is_project, open_project, whole_file
 from core.sheet import Heading, Sheet, sheet_of
 from core.sizes import sizes
 from core.solution import Solution
+from core.writing_out.cells import ENCODING
 from core.writing_out.sheet_file import sheet_csv, sheet_json
 
 if TYPE_CHECKING:
@@ -64,10 +65,10 @@ def run_report(
     worn = run_worn(design, lengths, elastics, bare=True)
     solution = worn.solution
     sheet = sheet_of(solution, solution.records, _heading(source, design, wishes))
-    for name, text in ((wishes.json, sheet_json), (wishes.csv, sheet_csv)):
+    for name, text, code in ((wishes.json, sheet_json, "utf-8"), (wishes.csv, sheet_csv, ENCODING)):
         if name:
             with whole_file(Path(name).absolute()) as partial:
-                partial.write_text(text(sheet), encoding="utf-8")
+                partial.write_text(text(sheet), encoding=code, errors="replace")  # of a file's name
     said = _write(solution, sheet, wishes)
     files = [name for name in (wishes.out, wishes.json, wishes.csv) if name]
     return Reported(

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TypeVar
 
 from core.errors import UserError
 from core.project import whole_file
+from core.writing_out import cells
 
 T = TypeVar("T")
 
@@ -32,16 +31,5 @@ def told(forms: Mapping[str, Callable[[T], str]], found: T, kind: str, out: str 
 
 def csv_text(columns: Sequence[str], rows: Iterable[object]) -> str:
     """Return rows as comma-separated values: what each has under the names of the columns, with a heading."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows([_cell(getattr(row, column)) for column in columns] for row in rows)
-    return text.getvalue().rstrip("\n")
-
-
-def _cell(value: object) -> object:
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, tuple):
-        return " ".join(str(_cell(each)) for each in value)
-    return f"{value:.6g}" if isinstance(value, float) else value
+    values = ([getattr(row, column) for column in columns] for row in rows)
+    return cells.csv_text(columns, values).rstrip("\n")

@@ -32,6 +32,7 @@ from core.progress import Progress
 from core.project import whole_file
 from core.settled import settled_frame
 from core.sheet import Heading, Sheet, sheet_of
+from core.writing_out.cells import ENCODING
 from core.writing_out.sheet_file import sheet_csv, sheet_json
 
 if TYPE_CHECKING:
@@ -239,13 +240,12 @@ class ReportDesk(QObject):
         path = self._asked_for(title, ending, kinds)
         if not path or self.handout is None:
             return
-        # With the mark that tells spreadsheets that letters beyond English follow.
-        form, code = (sheet_csv, "utf-8-sig") if ending == ".csv" else (sheet_json, "utf-8")
+        form, code = (sheet_csv, ENCODING) if ending == ".csv" else (sheet_json, "utf-8")
         text = form(self.handout.sheet)
 
         def write() -> None:
             with whole_file(Path(path).absolute()) as partial:
-                partial.write_text(text, encoding=code)
+                partial.write_text(text, encoding=code, errors="replace")  # of a file's name
 
         self._write(path, write)
 
@@ -276,8 +276,11 @@ class ReportDesk(QObject):
             said = tr("The sheet could not be printed."), tr("Choose another printer.")
             self._window.desk.show_failure(ProjectError(*said), "print")
             return
-        for page in range(pages.count):
-            if page:
+        wished = range(pages.count)
+        if printer.printRange() == QPrinter.PrintRange.PageRange:
+            wished = wished[max(printer.fromPage() - 1, 0) : printer.toPage() or None]
+        for page in wished:
+            if page != wished[0]:
                 printer.newPage()
             painter.resetTransform()
             scale = printer.resolution() / 25.4 / UNITS

@@ -22,7 +22,7 @@ class Choices:
             kept = json.loads(text)
         except ValueError:
             kept = {}
-        self._kept: dict[str, str] = kept if isinstance(kept, dict) else {}
+        self._kept: dict[str, object] = kept if isinstance(kept, dict) else {}
 
     @property
     def text(self) -> str:
@@ -45,7 +45,7 @@ class Choices:
     def kind(self, what: str) -> str:
         """Return the format that was chosen for something."""
         formats, kept = self.find(what).formats, self._kept.get(f"{what}/format")
-        return kept if kept in formats else next(iter(formats))
+        return kept if isinstance(kept, str) and kept in formats else next(iter(formats))
 
     def settings(self, what: str) -> tuple[Choice, ...]:
         """Return what can be chosen for something in its format."""

@@ -13,6 +13,7 @@ from app.keeping.dialogs import ask_save
 from app.wording.words import tr
 from core.errors import UserError
 from core.project import whole_file
+from core.writing_out.cells import ENCODING, cell
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -23,7 +24,8 @@ Table = Sequence[Sequence[str]]
 
 def copy_table(window: MainWindow, table: Table) -> None:
     """Put a table on the clipboard, its cells apart by tabs as spreadsheets take them."""
-    QGuiApplication.clipboard().setText("".join("\t".join(row) + "\n" for row in table))
+    lines = ("\t".join(str(cell(each)) for each in row) for row in table)
+    QGuiApplication.clipboard().setText("".join(f"{line}\n" for line in lines))
     window.notices.show_notice("ok", tr("The table is copied."))
 
 
@@ -34,12 +36,11 @@ def save_table(window: MainWindow, table: Table, title: str, ending: str) -> Non
         return
     about = f"table of {ending}"
     try:
-        # With the mark that tells spreadsheets that letters beyond English follow.
         with (
             whole_file(Path(path).absolute()) as partial,
-            open(partial, "w", newline="", encoding="utf-8-sig") as file,
+            open(partial, "w", newline="", encoding=ENCODING) as file,
         ):
-            csv.writer(file).writerows(table)
+            csv.writer(file).writerows([cell(each) for each in row] for row in table)
     except UserError as error:
         window.desk.show_failure(error, about)
     else:

@@ -17,6 +17,7 @@ from xml.etree import ElementTree as Xml
 from core.errors import UserError
 from core.project import whole_file
 from core.space import UNITS
+from core.writing_out.cells import cell
 
 Values = Mapping[str, tuple[float, str]]
 """Values with their units by key, lengths in mm; areas and volumes have units of their own."""
@@ -105,7 +106,7 @@ def _as_csv(sheet: MeasuresSheet) -> str:
     writer.writerow(["measure", "title", "value", "unit"])
     for key in sheet.values:
         value, unit = sheet.in_unit(key)
-        writer.writerow([key, sheet.titles.get(key, key), f"{value:z.3f}", unit])
+        writer.writerow([cell(key), cell(sheet.titles.get(key, key)), f"{value:z.3f}", unit])
     return text.getvalue()
 
 

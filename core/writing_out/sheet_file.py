@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from collections.abc import Iterator
 from typing import Any
 
 from core.sheet import Sheet
+from core.writing_out.cells import csv_text
 
 COLUMNS = ("section", "key", "title", "unit", "before", "after", "difference", "plus_minus", "note")
 """The columns of the table; what is told of the body as it is worn stands under *after*."""
@@ -23,11 +22,7 @@ def sheet_json(sheet: Sheet) -> str:
 
 def sheet_csv(sheet: Sheet) -> str:
     """Return the figures of a sheet as comma-separated values, one a row; curves and turns stay in JSON."""
-    text = io.StringIO()
-    writer = csv.DictWriter(text, COLUMNS, restval="", lineterminator="\n")
-    writer.writeheader()
-    writer.writerows({key: _cell(value) for key, value in row.items()} for row in sheet_rows(sheet))
-    return text.getvalue()
+    return csv_text(COLUMNS, ([row.get(column) for column in COLUMNS] for row in sheet_rows(sheet)))
 
 
 def sheet_rows(sheet: Sheet) -> Iterator[Row]:
@@ -96,7 +91,3 @@ def _pressure_rows(sheet: Sheet) -> Iterator[Row]:
         ):
             told = {"key": f"{row.line}: {key} {unit}", "title": f"{row.title}: {key}", "unit": unit}
             yield {"section": "pressure", **told, "after": value, "note": note}
-
-
-def _cell(value: Any) -> Any:
-    return "" if value is None else f"{value:.6g}" if isinstance(value, float) else value
