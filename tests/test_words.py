@@ -8,12 +8,14 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from PySide6.QtGui import QRawFont
-from PySide6.QtWidgets import QApplication
+from PySide6.QtGui import QRawFont, QTextLayout
+from PySide6.QtWidgets import QApplication, QLabel
 
+from app.dress.parts import sentence
 from app.wording.words import (
     LANGUAGES,
     colon,
+    held_together,
     joined,
     listed,
     number,
@@ -147,6 +149,22 @@ def test_another_language_is_spoken_for_a_while() -> None:
 )
 def test_numbers_are_written_with_a_real_minus(value: float, digits: int, signed: bool, text: str) -> None:
     assert number(value, digits, signed) == text
+
+
+def test_no_letter_stands_alone_on_the_last_line(qapp: QApplication) -> None:
+    said = "着用時の長さは前と同じに設定しました。"
+    place = sentence(said)
+    assert place.text() == said, "what is read is what was said"
+    shown = QLabel.text(place)
+    for width in range(60, 300, 3):
+        layout = QTextLayout(shown, place.font())
+        layout.beginLayout()
+        while (line := layout.createLine()).isValid():
+            line.setLineWidth(width)
+            last = shown[line.textStart() :]
+        layout.endLayout()
+        assert len(last.replace("\N{WORD JOINER}", "")) >= 4
+    assert held_together("Set it longer.") == "Set it longer."
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,7 @@ from PySide6.QtWidgets import (
 
 from app.dress.icons import icon, pixmap
 from app.dress.shadow import MARGINS, RADIUS, floating_ground
-from app.dress.theme import font, label, set_tag, tokens_of
+from app.dress.theme import Sentence, font, label, set_tag, tokens_of
 
 
 def button(text: str, kind: str = "secondary") -> QPushButton:
@@ -39,7 +39,7 @@ def button(text: str, kind: str = "secondary") -> QPushButton:
 
 def sentence(text: str = "", role: str = "secondary") -> QLabel:
     """Return text that wraps and takes the height it needs."""
-    result = label(text, role)
+    result = label(text, role, kind=Sentence)
     result.setWordWrap(True)
     result.setAlignment(Qt.AlignmentFlag.AlignTop | Qt.AlignmentFlag.AlignLeft)
     return result

@@ -11,6 +11,7 @@ from PySide6.QtGui import QColor, QFont, QFontDatabase, QPalette
 from PySide6.QtWidgets import QApplication, QLabel, QWidget
 
 from app.wording.tokens import DARK, LIGHT, Tokens
+from app.wording.words import held_together, let_apart
 from core.landmark import CERTAIN
 
 FAMILIES = ("Inter", "Inter Variable", "Noto Sans JP")
@@ -61,12 +62,25 @@ def _type(role: str, tabular: bool) -> QFont:
     return result
 
 
-def label(text: str = "", role: str = "body", tabular: bool = False) -> QLabel:
+class Sentence(QLabel):
+    """Text of which no line of one letter is left at the end."""
+
+    def setText(self, text: str) -> None:  # noqa: N802 - Qt names it
+        """Show a text."""
+        super().setText(held_together(text))
+
+    def text(self) -> str:
+        """Return it as it was said."""
+        return let_apart(super().text())
+
+
+def label(text: str = "", role: str = "body", tabular: bool = False, kind: type[QLabel] = QLabel) -> QLabel:
     """Return a line of text in one role of ``ROLES``; its colour follows the theme.
 
     It is shown letter by letter: names of files and elastics are others' and may look like marks of a page.
     """
-    result = QLabel(text)
+    result = kind()
+    result.setText(text)
     result.setTextFormat(Qt.TextFormat.PlainText)
     result.setFont(font(role, tabular))
     result.setProperty("role", role)

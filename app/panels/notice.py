@@ -15,7 +15,7 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 from app.dress.parts import IconLabel, ToolButton, button
 from app.dress.sheet import reading
 from app.dress.theme import label, tokens_of
-from app.wording.words import say, tr
+from app.wording.words import held_together, say, tr
 
 Action = tuple[str, Callable[[], None]]
 """The word on a button and what it does."""
@@ -158,7 +158,7 @@ class NoticeBar(QWidget):
             return
         notice = self._shown = self._waiting.popleft()
         self._icon.show_icon(TONE_ICONS[notice.tone], notice.tone)
-        said, hint = escape(say(notice.sentence)), escape(say(notice.hint))
+        said, hint = (held_together(escape(say(each))) for each in (notice.sentence, notice.hint))
         self._words.setText(f'<span style="font-weight:600">{said}</span>&nbsp; {hint}')
         self._set_buttons(notice.actions)
         self.details.setPlainText(notice.details)

@@ -13,6 +13,8 @@ LANGUAGES = {"en": "English", "ja": "日本語"}
 """The languages that can be chosen, by code, each in its own words."""
 
 _code = "en"
+_JOINER = "\N{WORD JOINER}"
+_END = re.compile(r"[\u3001-\u30ff\u4e00-\u9fff\uff09]{2,4}$", re.MULTILINE)  # kana, kanji, their marks
 _SENTENCE_END = re.compile(r"(?<=[.?!]) (?=[A-Z'])")
 
 
@@ -125,3 +127,13 @@ def colon() -> str:
 def joined(sentences: Iterable[str]) -> str:
     """Return sentences one after the other, those that are empty left out."""
     return ("" if _code == "ja" else " ").join(filter(None, sentences))
+
+
+def held_together(text: str) -> str:
+    """Return text whose paragraphs never end in a line of a letter or two, where any two letters may part."""
+    return _END.sub(lambda end: _JOINER.join(end[0]), text)
+
+
+def let_apart(text: str) -> str:
+    """Return text that was ``held_together`` as it was."""
+    return text.replace(_JOINER, "")
