@@ -11,8 +11,8 @@ from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
 from app.presenting.frame import bands
-from app.seeing.bands import RibbonActor
-from app.seeing.ribbon import CASING, Surface, build_casing, build_ribbon
+from app.seeing.bands import Band, Bands, RibbonActor
+from app.seeing.ribbon import CASING, Ribbon, Surface, build_casing, build_ribbon
 from app.seeing.sight import Sight
 from core.centre_line import NO_BACK, centre_line
 from core.mesh import Mesh, unit
@@ -90,14 +90,43 @@ def test_a_taut_band_bridges_a_hollow_and_lies_on_the_rest() -> None:
     assert line.lift[np.abs(line.points[:, 0]) > 60.0].max() < 0.5
 
 
-def test_a_band_covers_a_nipple() -> None:
+def breast() -> Mesh:
+    """A trunk with a nipple in front."""
     skin = tube(lambda turn: np.full_like(turn, RADIUS))
     out = np.array([0.0, -1.0, 0.0])
     far = np.linalg.norm(skin.vertices - [0.0, -RADIUS, 100.0], axis=1)
-    skin = Mesh(skin.vertices + 6.0 * np.exp(-((far / 5.0) ** 2))[:, None] * out, skin.faces)
-    ribbon = build_ribbon(arc(-80.0, 80.0, 20.0), Surface(skin), 12.0, arc(80.0, 280.0, 4.0))
-    sight = Sight(pv.PolyData.from_regular_faces(ribbon.mesh.vertices, ribbon.mesh.faces))
-    met = sight.hit(np.array([0.0, -300.0, 100.0]), np.array([0.0, 0.0, 100.0]))
+    return Mesh(skin.vertices + 6.0 * np.exp(-((far / 5.0) ** 2))[:, None] * out, skin.faces)
+
+
+def drawn(ribbon: Ribbon) -> pv.PolyData:
+    return pv.PolyData.from_regular_faces(ribbon.mesh.vertices, ribbon.mesh.faces)
+
+
+@pytest.mark.parametrize("x", [0.0, 4.0, 8.0])
+def test_a_strap_lies_on_a_wide_band(x: float) -> None:
+    plotter, z = pv.Plotter(off_screen=True), np.arange(50.0, 151.0, 20.0)
+    shown, out = Bands(plotter), np.array([0.0, -10.0, 0.0])
+    wide = Band("wide", arc(-80.0, 80.0, 20.0), "#125A6B", 60.0, arc(80.0, 280.0, 4.0))
+    path = np.stack([np.full(len(z), x), np.full(len(z), -np.hypot(RADIUS, x)), z], axis=1)
+    shown.show([wide, Band("strap", path, "#E0A030", 12.0)], Surface(breast()))
+    shown.mark("strap", "")
+    strap, casing = shown.ribbon("strap"), shown._casings["strap"].ribbon
+    below, above = Sight(drawn(shown.ribbon("wide"))), Sight(drawn(strap))
+    for at in strap.top.reshape(-1, 3):
+        assert below.hit(at, at + out) is None
+    hidden = (np.abs(casing.mesh.vertices[:, 0] - x) < 4.0) & (
+        np.abs(casing.mesh.vertices[:, 2] - 100.0) < 45.0
+    )
+    climbs = [np.linalg.norm(each.rise, axis=1).max() for each in (casing, strap)]
+    assert climbs[0] == pytest.approx(climbs[1], rel=0.1), "it climbs as the strap does"
+    for at in casing.mesh.vertices[hidden]:
+        assert above.hit(at, at + out) is not None, "its casing looks out beside it only"
+    plotter.close()
+
+
+def test_a_band_covers_a_nipple() -> None:
+    ribbon = build_ribbon(arc(-80.0, 80.0, 20.0), Surface(breast()), 12.0, arc(80.0, 280.0, 4.0))
+    met = Sight(drawn(ribbon)).hit(np.array([0.0, -300.0, 100.0]), np.array([0.0, 0.0, 100.0]))
     assert met is not None
     assert met[1] < -RADIUS - 6.0
 
@@ -125,13 +154,13 @@ def bare(skin: Mesh, cloth: np.ndarray) -> float:
 
     A sight outwards from there leaves the body; one that enters it first sees a breast hang over the band.
     """
-    drawn = pv.PolyData.from_regular_faces(skin.vertices, skin.faces)
+    body = pv.PolyData.from_regular_faces(skin.vertices, skin.faces)
     low, high = cloth[:, 1:-2], cloth[:, 2:-1]  # without the rims, which dip under the skin
     further, across = (np.roll(low, -1, axis=0) - low).reshape(-1, 3), (high - low).reshape(-1, 3)
     middles = (0.5 * (low + np.roll(high, -1, axis=0))).reshape(-1, 3)
     out = unit(np.cross(further, across))
     met = [
-        drawn.ray_trace(at, at + 8.0 * way, first_point=True)[1] for at, way in zip(middles, out, strict=True)
+        body.ray_trace(at, at + 8.0 * way, first_point=True)[1] for at, way in zip(middles, out, strict=True)
     ]
     over = [
         len(face) > 0 and skin.face_normals[face[0]] @ way > 0.0 for face, way in zip(met, out, strict=True)
@@ -145,9 +174,9 @@ def test_bands_of_the_template_go_round_a_body(
 ) -> None:
     stages = built(name)
     surface = Surface(stages.body.mesh)
-    drawn = bands(stages, ())
-    assert {band.name for band in drawn} == {"full-bust", "mid-bust", "under-bust"}
-    for band in drawn:
+    shown = bands(stages, ())
+    assert {band.name for band in shown} == {"full-bust", "mid-bust", "under-bust"}
+    for band in shown:
         ribbon = build_ribbon(band.path, surface, band.width, band.back)
         rows = ribbon.mesh.vertices.reshape(ribbon.rows, 8, 3)
         middle = rows[:, 3:5].mean(axis=1)

@@ -156,7 +156,11 @@ class Bands:
         self._bands = {band.name: band for band in bands}
         for name, band in self._bands.items():
             ribbon = surface.ribbon(band.path, band.width, band.back)
-            self._ribbons[name] = RibbonActor(self._plotter, ribbon, f"band {name}")
+            # A wider one under it bulges further round a nipple: it would stand through.
+            wider = [
+                drawn.ribbon for each, drawn in self._ribbons.items() if self._bands[each].width > band.width
+            ]
+            self._ribbons[name] = RibbonActor(self._plotter, ribbon.over(wider), f"band {name}")
             self._ribbons[name].paint(band.colour)
         self._show_what_is_asked()
 
@@ -259,7 +263,7 @@ class Bands:
             band = self._bands[name]
             assert self._surface is not None
             ribbon = self._surface.ribbon(band.path, band.width, band.back, cased=True)
-            casing = RibbonActor(self._plotter, ribbon, f"casing {name}")
+            casing = RibbonActor(self._plotter, ribbon.under(self.ribbon(name)), f"casing {name}")
             casing.actor.prop.lighting = False
             casing.raise_to(self._rises.get(name))
             self._casings[name] = casing

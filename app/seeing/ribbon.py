@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from scipy import sparse
 from scipy.ndimage import maximum_filter
+from scipy.spatial import cKDTree
 
 from app.seeing.skin import Skin, skin_of
 from core.centre_line import NO_BACK, CentreLine, centre_line, smooth
@@ -23,7 +24,10 @@ CASING = 7.0
 _FLAT = 0.86  # how far the flat top of a ribbon reaches, in half widths
 _APART = 5.0  # about how far apart points lie on it: the skin would stand through a longer chord [mm]
 _PUFF = (-1.2, 0.5)  # how the rim of a ribbon is puffed, whose top is 1, from outside
+_RIM = len(_PUFF)
 _LEAST, _MORE = 0.7, 1.2  # how high a ribbon stands off the skin, and how much more where it is puffed [mm]
+_CLOTH, _CROSSING = 0.4, 6.0  # how far a ribbon stands off another, and how near that is to be under it [mm]
+_CLIMB = 2.5  # how far it is raised at most: what is selected is drawn over all by a little more [mm]
 _ROUND = np.radians([0.0, 18.0, 36.0, 54.0, 72.0, 90.0])  # where the rows of a round end lie
 _TIP = 0.1  # a ribbon narrower than this, in widths, dips under the skin
 
@@ -35,7 +39,8 @@ class Ribbon:
     ``follow`` averages body displacements, shape (r, n), so that points = vertices + follow @ displacement.
     ``part`` (rows,) is the segment of the line's path that each row lies on, -1 on the back; ``at`` (rows,)
     how far along the places of its centre line, 0 to 1, and ``lifted`` (rows, 3) how far it is held off the
-    skin [mm].
+    skin [mm]. ``up`` (r, 3) are the normals of the skin under its points, ``rise`` (r, 3) how far they are
+    raised over other ribbons [mm].
     """
 
     mesh: Mesh
@@ -43,6 +48,8 @@ class Ribbon:
     part: Indices
     at: Floats
     lifted: Points
+    up: Points
+    rise: Points
 
     @property
     def rows(self) -> int:
@@ -53,6 +60,33 @@ class Ribbon:
     def columns(self) -> int:
         """Number of points of a cross-section, which is even."""
         return len(self.mesh.vertices) // self.rows
+
+    @property
+    def top(self) -> Points:
+        """The points between its rims, shape (rows, columns - 4, 3) [mm]."""
+        return self.mesh.vertices.reshape(self.rows, -1, 3)[:, _RIM:-_RIM]
+
+    def over(self, lower: Sequence[Ribbon]) -> Ribbon:
+        """Return it raised to where it lies on ``lower`` ribbons that it crosses."""
+        if not lower:
+            return self
+        under = np.concatenate([each.top.reshape(-1, 3) for each in lower])
+        far, near = map(np.asarray, cKDTree(under).query(self.top, 4, distance_upper_bound=_CROSSING))
+        up = self.up.reshape(self.rows, -1, 3)
+        above = under[near.clip(max=len(under) - 1)] - self.top[:, :, None]
+        high = np.einsum("kcnx,kcx->kcn", above, up[:, _RIM:-_RIM]) + _CLOTH
+        high = np.where(np.isfinite(far), high.clip(0.0, _CLIMB), 0.0).max(axis=2)
+        raised = smooth(maximum_filter(high, size=3, mode="nearest"), 2, closed=False)
+        rise = np.pad(raised, ((0, 0), (_RIM, _RIM)), "edge")[..., None] * up
+        return self._raised(rise.reshape(-1, 3))
+
+    def under(self, ribbon: Ribbon) -> Ribbon:
+        """Return this casing raised as its ``ribbon`` is, to look out from under it all round."""
+        nearest = cKDTree(ribbon.mesh.vertices).query(self.mesh.vertices)[1]
+        return self._raised(ribbon.rise[nearest])
+
+    def _raised(self, rise: Points) -> Ribbon:
+        return replace(self, mesh=self.mesh.moved(self.mesh.vertices + rise), rise=rise)
 
 
 _LAID: WeakKeyDictionary[Skin, dict[object, Ribbon]] = WeakKeyDictionary()
@@ -132,12 +166,14 @@ def _puffed(line: CentreLine, surface: Surface, width: float, sink: float) -> Ri
     puff[narrow < _TIP] = _PUFF[0]
     lift = _LEAST + _MORE * puff - sink
     if closed:
-        laid, up = smooth(laid, 3, closed), smooth(up, 3, closed)
-    raised = laid + (lift + surface.bumps(laid, up))[..., None] * unit(up)
+        laid, up = smooth(laid, 3, closed), unit(smooth(up, 3, closed))
+    raised = laid + (lift + surface.bumps(laid, up))[..., None] * up
     lifted = line.lift[:, None] * line.normals
     raised += lifted[:, None]
     vertices, faces = raised.reshape(-1, 3), _grid_faces(len(points), len(across), closed)
-    return Ribbon(Mesh(vertices, faces), surface.follow(vertices), line.part, at, lifted)
+    follow = surface.follow(vertices)
+    flush = np.zeros_like(vertices)
+    return Ribbon(Mesh(vertices, faces), follow, line.part, at, lifted, up.reshape(-1, 3), flush)
 
 
 def _rounded(line: CentreLine, radius: float) -> tuple[CentreLine, Floats, Floats]:
