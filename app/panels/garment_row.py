@@ -15,7 +15,7 @@ from app.panels.garment_view import CutView, PressureView
 from app.panels.line_parts import LineChip
 from app.wording.words import number, tr
 
-CHIP, CUT, NEWTONS, PRESSURE = 20, 54, 46, 56
+CHIP, CUT, NEWTONS, PRESSURE = 20, 54, 52, 56
 """Room of the columns [px]; the name has the rest."""
 
 NOTHING = "\N{EN DASH}"
