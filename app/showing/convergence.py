@@ -169,7 +169,8 @@ class Strip(QWidget):
                 each.setVisible(bool(text))
         self._hint.setText(verdict.hint)
         said = "   ".join(f"{name} {value}" for name, value in pairs[:2])
-        self._said.setText(f"{verdict.pace}     {said}     {verdict.hint}".rstrip())
+        # What to do stands first: in a narrow window the end is cut off.
+        self._said.setText("     ".join(filter(None, (verdict.hint, verdict.pace, said))))
         self._said.setToolTip(f"<p>{verdict.hint}</p>" if verdict.hint else "")
 
     def set_control(self, control: str) -> None:
