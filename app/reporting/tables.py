@@ -20,7 +20,7 @@ HALF = 88.0
 
 _ROW, _CUT_ROW = 4.6, 5.6
 _FEW = 3  # footnotes that stand below each other
-_EDGES = (81.0, 96.5, 111.0, 126.0, 141.0, 150.0, 160.5)  # right ends of the figures of a cut
+_EDGES = (78.0, 92.0, 105.0, 116.0, 130.0, 144.0, 151.5, 161.5)  # right ends of the figures of a cut
 _ELASTIC, _LIGHT, _WORD = 35.0, 164.5, 168.0
 _MEASURED = (HALF - 29.0, HALF - 14.5, HALF)  # right ends of before, after, change
 
@@ -75,6 +75,7 @@ def _cut_head() -> Block:
         tr("width mm"),
         tr("worn mm"),
         tr("cut mm"),
+        tr("seams"),
         tr("stretch %"),
         tr("tension N"),
         tr("kPa"),
@@ -99,7 +100,7 @@ def _cut_head() -> Block:
 def _cut_row(view: CutView, colour: str) -> Block:
     marks = " ".join(map(str, view.marks))
     title = elided(view.title, "strong", _ELASTIC - 7.0 - text_width(marks, "axis"))
-    room = _EDGES[0] - _ELASTIC - 7.0
+    room = _EDGES[0] - _ELASTIC - 4.5
     kind = fitting(view.elastic, room)
     elastic = elided(view.elastic, kind, room)
     word = elided(view.word, "body", WIDE - _WORD)

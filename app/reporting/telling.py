@@ -148,6 +148,7 @@ def _cut_view(cut: CutRow, press: PressRow, marks: tuple[int, ...]) -> CutView:
         width or NOTHING,
         _figure(cut.reached_whole_mm, 0),
         _figure(cut.cut_mm, 0),
+        _figure(cut.allowance_mm, 0),
         _figure(stretch, 0),
         _figure(cut.tension_n, 1),
         _figure(press.max_kpa, 1),
@@ -173,7 +174,7 @@ def _measure_row(row: dict[str, Any], *, after: bool) -> MeasureRow:
     figures = (
         _figure(row["before"], digits),
         _figure(row["after"], digits),
-        NOTHING if row["difference"] is None else number(row["difference"], digits, signed=True),
+        _change(row, digits),
     )
     figures = figures if after else (figures[0], NOTHING, NOTHING)
     unit = row["unit"].replace("2", "\N{SUPERSCRIPT TWO}")
@@ -182,6 +183,13 @@ def _measure_row(row: dict[str, Any], *, after: bool) -> MeasureRow:
         off = f" ± {number(row['plus_minus'], digits)}" if row["plus_minus"] >= 0.5 else ""
         unit = f"{unit} {tr('est.')}{off}".strip()
     return MeasureRow(_measure_title(row), unit, figures)
+
+
+def _change(row: dict[str, Any], digits: int) -> str:
+    """Return the change of what is printed, so that the columns agree."""
+    if row["before"] is None or row["after"] is None:
+        return NOTHING if row["difference"] is None else number(row["difference"], digits, signed=True)
+    return number(round(row["after"], digits) - round(row["before"], digits), digits, signed=True)
 
 
 def _measure_title(row: dict[str, Any]) -> str:
