@@ -46,6 +46,22 @@ class Shown(Protocol):
         """How the run stands."""
 
 
+def kept_volume(shown: Shown) -> tuple[float, float]:
+    """Return how far the volume that is kept is from the one at rest, of that of the control mesh [%, ml].
+
+    It is the body's own where the exact answer keeps that, else that of the control mesh; while it swings,
+    the mean of its swing.
+    """
+    stages, rest = shown.stages, shown.stages.model.volume.rest_volume
+    if shown.verdict.state == "vibrating":
+        change = shown.verdict.error * rest
+    elif stages.design.dense_volume and stages.design.volume == "exact":
+        change = float(stages.body_change(shown.control_points).sum())
+    else:
+        change = stages.model.volume.volume(shown.control_points) - rest
+    return 100.0 * change / rest, change / 1000.0
+
+
 def write_solution(solution: Solution, folder: Path) -> dict[str, Any]:
     """Write body.ply, control.ply, control.csv, turns.csv and report.json, and return the report.
 

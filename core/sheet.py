@@ -20,12 +20,12 @@ from core.press_list import PressRow, press_list
 from core.pressure import LEFT_OUT
 from core.profile import AXES, Curve, Plane, Slicer, nearest
 from core.progress import Progress, quiet
-from core.report import Shown, shape_warnings, still_lines, warnings
+from core.report import Shown, kept_volume, shape_warnings, still_lines, warnings
 from core.sewing.tensions import ran_away
 from core.sizes import sizes, sizes_text
 from core.solver import Marks, Record
 from core.tffd import deform
-from core.verdict import Verdict
+from core.verdict import SOUND
 
 AROUND = 12.0
 """What a section shows beside the part that can move [mm]."""
@@ -35,9 +35,6 @@ NOT_MODELLED = (
     "Lines alone shape the body: cloth between them, seams, wires and hooks are not there.",
 )
 """What no figure of a sheet takes into account."""
-
-SOUND = ("settled", "strained", "settling")
-"""States whose figures can be worked with, or will be once all has settled."""
 
 
 @dataclass(frozen=True)
@@ -167,15 +164,14 @@ def sheet_of(shown: Shown, records: Sequence[Record], heading: Heading, progress
     before, after = before_after(stages, points)
     found, why = _sizes(before, heading)
     progress("pressing", 0.8)
-    pressed = press_list(stages, points)
-    state = _state(verdict)
+    pressed, (percent, error_ml) = press_list(stages, points), kept_volume(shown)
     return Sheet(
         heading=heading,
         scan=stages.design.scan.name,
-        state=state,
+        state=verdict.told,
         settled=verdict.state == "settled",
-        lift=_lift(stages.rest_marks, stages.watch(points)) if state in SOUND else None,
-        volume=_volume(shown),
+        lift=_lift(stages.rest_marks, stages.watch(points)) if verdict.sound else None,
+        volume=VolumeKept(stages.model.volume.rest_volume / 1000.0, error_ml, percent),
         measures=tuple(measure_rows(before, after)),
         sizes=found,
         no_size=why,
@@ -202,28 +198,10 @@ def _sizes(before: Measures, heading: Heading) -> tuple[tuple[dict[str, Any], ..
     return tuple(sizes_text(answers[key]) for key in keys), ""
 
 
-def _state(verdict: Verdict) -> str:
-    """Return the word for a run: its verdict's, but skin that strains beyond what is calm is told too."""
-    strained = verdict.condition is not None and verdict.condition.strained
-    return "strained" if verdict.state == "settled" and strained else verdict.state
-
-
 def _lift(rest: Marks, now: Marks) -> Lift:
     up = now.nipple_left_z - rest.nipple_left_z, now.nipple_right_z - rest.nipple_right_z
     forward = now.nipple_left_out - rest.nipple_left_out, now.nipple_right_out - rest.nipple_right_out
     return Lift(*up, *forward, 0.5 * sum(up), 0.5 * sum(forward))
-
-
-def _volume(shown: Shown) -> VolumeKept:
-    """Return the volume that is kept: the body's own where the exact answer keeps that."""
-    stages, rest = shown.stages, shown.stages.model.volume.rest_volume
-    if stages.design.dense_volume and stages.design.volume == "exact":
-        change = float(stages.body_change(shown.control_points).sum())
-    elif shown.verdict.state == "vibrating":
-        change = shown.verdict.error * rest
-    else:
-        change = stages.model.volume.volume(shown.control_points) - rest
-    return VolumeKept(rest / 1000.0, change / 1000.0, 100.0 * change / rest)
 
 
 def _sections(stages: Stages, control_points: Points) -> tuple[SectionCurves, ...]:

@@ -21,6 +21,9 @@ MOTIONS = ("settled", "settling", "vibrating", "diverging")
 STATES = (*MOTIONS, "folded", "overstrained")
 """What can be said of a run in one word."""
 
+SOUND = ("settled", "strained", "settling")
+"""What is told of runs whose figures can be worked with, or will be once all has settled."""
+
 SETTLED_STEP = 0.002
 """A run has settled when no control point moved further than this in each of the last turns [mm]."""
 
@@ -65,6 +68,17 @@ class Verdict:
         if self.condition.folded:
             return "folded"
         return "overstrained" if self.condition.overstrained else self.motion
+
+    @property
+    def told(self) -> str:
+        """The state as designers are told it: "strained" where skin strains though all has settled."""
+        strained = self.condition is not None and self.condition.strained
+        return "strained" if self.state == "settled" and strained else self.state
+
+    @property
+    def sound(self) -> bool:
+        """Whether figures can be worked with, or will be once all has settled."""
+        return self.told in SOUND
 
     @property
     def words(self) -> str:

@@ -12,11 +12,11 @@ from window_tools import Script, points, run_main, settled
 
 from app.main_window import MainWindow
 from app.panels.setting_field import AmountField, MenuField, SegmentField
-from app.presenting.verdict import kept_volume
 from app.wording.model_choices import consequences, defaults, groups, summary
 from core.design import Design, ScanSource
 from core.design_lines import OwnLine
 from core.live import Frame
+from core.report import kept_volume
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

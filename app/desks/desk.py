@@ -21,13 +21,13 @@ from app.panels.notice import FILES, REFUSED
 from app.presenting.frame import facts
 from app.presenting.lines import titled
 from app.presenting.run import PLOT_INTERVAL, exact_answer, tracks
-from app.presenting.verdict import kept_volume, state_of, strip_verdict
+from app.presenting.verdict import state_of, strip_verdict
 from app.wording.samples import sample_design
 from app.wording.words import tr
 from core.design import Design
 from core.errors import UserError
 from core.live import Frame
-from core.report import warnings
+from core.report import kept_volume, warnings
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow

@@ -13,12 +13,13 @@ from PySide6.QtGui import QImage
 from app.panels.history import HistoryPanel
 from app.panels.picture_list import PictureRow
 from app.presenting.bust import bust_move, bust_sentence
-from app.presenting.verdict import is_result, kept_volume, state_of
+from app.presenting.verdict import is_result, state_of
 from app.showing.verdict_chip import TONES, state_title
 from app.wording.words import colon, number, tr
 from core.design import Design
 from core.document import Document
 from core.frame import Frame
+from core.report import kept_volume
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow

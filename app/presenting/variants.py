@@ -7,13 +7,14 @@ from collections.abc import Callable, Sequence
 from app.panels.variants import Figure, FigureRow, Told, VariantsView
 from app.presenting.bust import bust_move, bust_sentence
 from app.presenting.lines import line_colours, line_title, row_title
-from app.presenting.verdict import is_result, kept_volume, state_of
+from app.presenting.verdict import is_result, state_of
 from app.showing.verdict_chip import state_title
 from app.wording.words import say, tr
 from core.cutting import CutRow, cut_list
 from core.design import Design
 from core.live import Frame
 from core.press_list import PressList
+from core.report import kept_volume
 
 Variants = Sequence[tuple[str, Design, Frame | None]]
 """Variants by name, with the frame of those that are solved."""

@@ -12,7 +12,7 @@ from app.showing.verdict_chip import state_title
 from app.wording.words import joined, number, say, tr
 from core.doubts import ESSENTIAL, weak_sides
 from core.live import Frame
-from core.report import blamed_line, warnings
+from core.report import blamed_line, kept_volume, warnings
 from core.solving.condition import Condition
 
 _WATCHED = 24  # turns over which a swing is measured
@@ -33,30 +33,12 @@ class StripVerdict:
 
 def state_of(frame: Frame) -> str:
     """Return the word for a frame: its verdict's, but skin that strains beyond what is calm is told too."""
-    verdict = frame.verdict
-    strained = verdict.condition is not None and verdict.condition.strained
-    return "strained" if verdict.state == "settled" and strained else verdict.state
+    return frame.verdict.told
 
 
 def is_result(frame: Frame) -> bool:
     """Return whether the figures of a frame can be worked with, or will be when it has settled."""
-    return state_of(frame) in ("settled", "strained", "settling")
-
-
-def kept_volume(frame: Frame) -> tuple[float, float]:
-    """Return how far the volume that is kept is from the one at rest, of that of the control mesh [%, ml].
-
-    It is the body's own where the exact answer keeps that, else that of the control mesh; while it swings,
-    the mean of its swing.
-    """
-    design, rest = frame.stages.design, frame.stages.model.volume.rest_volume / 1000.0
-    if frame.verdict.state == "vibrating":
-        error = frame.verdict.error * rest
-    elif design.dense_volume and design.volume == "exact":
-        error = frame.stages.moving.volume_change(frame.points) / 1000.0
-    else:
-        error = frame.error_ml
-    return 100.0 * error / rest, error
+    return frame.verdict.sound
 
 
 def strip_verdict(frame: Frame) -> StripVerdict:
