@@ -42,7 +42,8 @@ class ElasticChoice(QObject):
     """Makes lines of elastics, as one undo step.
 
     The length of a line is then that of its elastic unstretched. So that the body stays as it is, that length
-    is looked for with which the same is reached, in a job; or it is kept, if that is wished for.
+    is looked for with which the same is reached, in a job; or it is kept, if that is wished for. What was
+    asked for goes with the design it was asked of: another document, variant or an undo lets go of it.
     """
 
     def __init__(self, window: MainWindow) -> None:
@@ -50,12 +51,16 @@ class ElasticChoice(QObject):
         self._window, self._session = window, window.session
         self.reach = True
         self._job: Job | None = None
+        self._asked: Design | None = None
+        self._variant, self._index = "", 0
         self._menu = QMenu(window)
         self._menu.setToolTipsVisible(True)
         window.garment.elastic_asked.connect(self.show_menu)
         window.lines.elastic_asked.connect(self.show_menu)
         window.garment.all_asked.connect(self.show_menu_of_all)
         window.garment.stretched.connect(self.stretch)
+        self._session.opened.connect(lambda *_: window.jobs.cancel(self._job))
+        self._session.undo_stack.indexChanged.connect(self._follow)
 
     def show_menu(self, name: str, under: QWidget) -> None:
         """Offer elastics for a line and its linked partner."""
@@ -88,10 +93,11 @@ class ElasticChoice(QObject):
 
         if self.reach and worn and design.line_hold == "spring":
             self._window.jobs.cancel(self._job)
+            self._asked, self._variant = design, self._shown_variant()
             self._job = self._window.jobs.run(
                 tr("Finding how long to cut it"),
                 lambda progress: _made(_stages(frame, design), worn),
-                lambda made: self._take(names, elastic, dress, design, cast(_Made, made)),
+                lambda made: self._take(names, elastic, dress, cast(_Made, made)),
                 self._window.desk.show_failure,
                 waited=True,
             )
@@ -127,12 +133,24 @@ class ElasticChoice(QObject):
         self._menu.addAction(tr("Elastics…"), self._window.garment.library_asked.emit)
         pull_down(self._menu, under)
 
-    def _take(
-        self, names: tuple[str, ...], elastic: Elastic | None, dress: Dress, asked: Design, made: _Made
-    ) -> None:
+    def _shown_variant(self) -> str:
+        return self._session.document.shown if self._session.document is not None else ""
+
+    def _follow(self, index: int) -> None:
+        """Let go of what is looked for once another variant is shown, or what it was asked of is undone."""
+        undone = index < self._index and self._session.design is not self._asked
+        self._index = index
+        if undone or self._shown_variant() != self._variant:
+            self._window.jobs.cancel(self._job)
+
+    def _take(self, names: tuple[str, ...], elastic: Elastic | None, dress: Dress, made: _Made) -> None:
         """Take the lengths that were found, or look again if something was edited meanwhile."""
-        if self._session.design is not asked:
-            self.choose(names, elastic)
+        asked, now = self._asked, self._session.design
+        assert asked is not None
+        assert now is not None
+        if now is not asked:
+            gone = {each.name for each in asked.own_lines} - {each.name for each in now.own_lines}
+            self.choose(tuple(name for name in names if name not in gone), elastic)
             return
         ratios = {name: made.design.ratio(name) for name in names if name in made.design.worn()}
         found = [name for name, ratio in ratios.items() if ratio != asked.ratio(name)]

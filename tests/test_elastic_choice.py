@@ -1,0 +1,92 @@
+"""An elastic whose length is still looked for: it goes to the lines it was chosen for, or nowhere."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+import pytest
+from garment_tools import at_rest, choose, made_of
+from window_tools import PATIENCE, Script, run_main, settled, undrawn
+
+from app.lining import elastic_choice
+from app.main_window import MainWindow
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+@pytest.fixture
+def gate(monkeypatch: pytest.MonkeyPatch) -> threading.Event:
+    """Lengths are looked for until it is open."""
+    opened, found = threading.Event(), elastic_choice._made
+
+    def waits(*asked: Any) -> Any:
+        opened.wait(PATIENCE)
+        return found(*asked)
+
+    monkeypatch.setattr(elastic_choice, "_made", waits)
+    return opened
+
+
+def test_an_elastic_goes_to_no_other_variant_and_to_no_other_document(gate: threading.Event) -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        undrawn(window)
+        window.inspector.open("garment")
+        choose(window, "mid-bust", "Strap", "15 mm")
+        assert window.jobs.at_work()
+        window.variant_desk.choose("B")
+        gate.set()
+        yield at_rest(window)
+        document = window.session.document
+        assert document is not None
+        assert [design.elastics for _, design in document.designs] == [(), ()]
+        gate.clear()
+        window.session.undo_stack.setClean()
+        choose(window, "mid-bust", "Strap", "15 mm")
+        window.desk.open_sample("person")
+        yield lambda: window.session.name == "person" and window.is_settled()
+        gate.set()
+        yield at_rest(window)
+        assert window.session.design is not None
+        assert window.session.design.elastics == ()
+        assert window.session.undo_stack.isClean()
+
+    run_main([], script)
+
+
+def test_an_elastic_goes_with_the_next_edit_and_leaves_with_an_undo_and_with_its_line(
+    gate: threading.Event,
+) -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        undrawn(window)
+        window.line_maker.add("straps")
+        window.lines_desk.commit_length("strap left", 0.97)
+        window.inspector.open("garment")
+        yield at_rest(window)
+        choose(window, "mid-bust", "Strap", "15 mm")
+        window.actions_.undo.trigger()
+        gate.set()
+        yield at_rest(window)
+        assert window.session.design is not None
+        assert window.session.design.elastics == ()
+        assert window.notices.notice() is None
+        window.actions_.redo.trigger()
+        yield at_rest(window)
+        gate.clear()
+        choose(window, "strap left", "Strap", "15 mm")
+        for name in ("strap left", "strap right"):
+            if name in window.lines.rows:
+                window.lines_desk.remove(name)
+        gate.set()
+        yield at_rest(window)
+        design = window.session.design
+        assert not {"strap left", "strap right"} & {each.name for each in design.traits}
+        gate.clear()
+        choose(window, "mid-bust", "Strap", "15 mm")
+        window.lines_desk.commit_length("mid-bust", 0.96)
+        gate.set()
+        yield made_of(window, "mid-bust")
+
+    run_main([], script)
