@@ -97,6 +97,9 @@ def test_an_export_that_failed_is_told_until_it_succeeds(
         yield lambda: tone() == "ok"
         window.notices.close_notice()
         assert tone() == "", "nothing waits behind it"
+        window.session.open("resources/samples/person.ply")
+        yield lambda: window.session.name == "person"
+        assert window.status._saved.text() == "", "this one was never saved"
 
     run_main([], script)
 

@@ -14,6 +14,7 @@ from window_tools import Script, run_main, settled, undrawn
 import app.keeping.tables
 from app.main_window import MainWindow
 from app.panels.picture_list import VIEW, PictureRow
+from app.wording.words import number
 from core.frame import Frame
 from core.solving.condition import CALM_RANGE
 
@@ -198,7 +199,10 @@ def test_measures_say_from_where_they_count_and_leave_as_a_table(
         line = frame_of(window).stages.model.lines[1]
         whole = rows["Mid-bust, whole band"]
         assert (line.name, whole.before) == ("mid-bust", pytest.approx(line.whole_length))
-        assert whole.change == pytest.approx(frame_of(window).lengths["mid-bust"] - line.rest_length)
+        grown = frame_of(window).lengths["mid-bust"] - line.rest_length
+        assert whole.change == pytest.approx(grown, abs=0.1)
+        shown = [float(whole.written(each)) for each in (whole.before, whole.after)]
+        assert whole.written(whole.change) == number(shown[1] - shown[0]), "the columns agree"
         window.result.table_asked.emit()
         heading, *table = csv.reader(path.read_text(encoding="utf-8-sig").splitlines())
         assert heading == ["Measure", "Counted from", "Unit", "Before", "After", "Change", "Note"]

@@ -173,8 +173,8 @@ def _add_sheet(parser: argparse.ArgumentParser) -> None:
         "--allowance",
         type=float,
         metavar="MM",
-        help="taken off the under-bust for a tape that is worn tight, 0 to 20, an estimate; else as the project "
-        "says",
+        help="taken off the under-bust for a tape that is worn tight, 0 to 20, an estimate; else as the "
+        "project says",
     )
 
 

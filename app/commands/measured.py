@@ -61,7 +61,9 @@ def _plain(found: Measured) -> str:
 
 
 def _line(title: str, row: dict[str, Any], solved: bool) -> str:
-    values = [row["before"], *([row["after"], row["difference"]] if solved else [])]
+    both = row["before"], row["after"]
+    change = None if None in both else round(both[1], 1) - round(both[0], 1)  # so that the columns agree
+    values = [both[0], *([both[1], change] if solved else [])]
     if all(value is None for value in values):
         return f"{title}{'-':>9}  {row['note']}"
     told = [f"{'-' if value is None else format(value, 'z.1f'):>9}" for value in values[:2]]

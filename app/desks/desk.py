@@ -62,6 +62,7 @@ class Desk(QObject):
         self.select_line(window.view.selected_line)
         window.layout_.enter()
         window.scan_desk.show_opened(frame.stages)
+        window.status.set_saved("")  # what was said is of the document before
         for sentence in warnings(frame.stages):
             window.notices.show_notice("warn", sentence, lasting=True)
 

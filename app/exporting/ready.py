@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from app.exporting.outcome import Manner, Outcome
+from app.wording.measure_titles import measure_title
 from app.wording.words import listed, number, say, tr
 from core import __version__
 from core.errors import UserError
@@ -18,7 +19,13 @@ from core.progress import Pieces, Progress
 from core.report import write_turns
 from core.space import Space, space_of
 from core.writing_out.drawing import CURVE_FORMATS, STRIP_FORMATS, drawing_kind, write_curves, write_strips
-from core.writing_out.measures_file import MeasuresSheet, measures_kind, write_measures
+from core.writing_out.measures_file import (
+    LENGTHS_ALONE,
+    MeasuresSheet,
+    measures_kind,
+    seamly_names,
+    write_measures,
+)
 from core.writing_out.worn import BACK, CENTRE, LEFT, LOWER, SEAM, SIDE_SEAM, UPPER, strips, worn_curves
 
 if TYPE_CHECKING:
@@ -151,7 +158,7 @@ def _strip_words(text: str) -> str:
 def _measures(path: str, outcome: Outcome, manner: Manner) -> Ready:
     when, unit = "before" if manner.before else "after", manner.unit or USUAL_UNIT
     rows = [row for row in outcome.measures if row[when] is not None]
-    titles = {row["key"]: _measure_title(row) for row in rows}
+    titles = {row["key"]: measure_title(row) for row in rows}
     values = {row["key"]: (float(row[when]), str(row["unit"])) for row in rows}
     unsure = listed(titles[row["key"]] for row in rows if row["estimate"])
     note = f"Busk {__version__}, {outcome.design.scan.name}, {'at rest' if manner.before else 'reshaped'}."
@@ -159,12 +166,10 @@ def _measures(path: str, outcome: Outcome, manner: Manner) -> Ready:
     sheet = MeasuresSheet(values, unit, titles, note)
     told = tr("{count} measures at rest") if manner.before else tr("{count} measures as reshaped")
     how = tr("in {unit}").format(unit=_unit_words(unit))
-    return Ready(told.format(count=len(values)), how, lambda at, _, hear: write_measures(at, sheet))
-
-
-def _measure_title(row: dict[str, Any]) -> str:
-    sides = {"left": tr("{what}, left"), "right": tr("{what}, right")}
-    return sides.get(row["side"], "{what}").format(what=say(row["title"]))
+    # Files for pattern programs hold lengths alone, each by its name there.
+    kind = measures_kind(path, unit)
+    count = len(seamly_names(sheet.lengths) if kind in LENGTHS_ALONE else values)
+    return Ready(told.format(count=count), how, lambda at, _, hear: write_measures(at, sheet))
 
 
 def _turns(path: str, outcome: Outcome, manner: Manner) -> Ready:

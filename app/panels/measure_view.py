@@ -34,8 +34,14 @@ class MeasureView:
 
     @property
     def change(self) -> float | None:
-        """By how much it grew, if that is known."""
-        return None if self.after is None or self.before is None else self.after - self.before
+        """By how much it grew as it is written, if that is known: the columns of a table agree."""
+        return self.change_at(digits_of(self.unit))
+
+    def change_at(self, digits: int) -> float | None:
+        """Return by how much it grew where so many decimals are written."""
+        if self.after is None or self.before is None:
+            return None
+        return round(self.after, digits) - round(self.before, digits)
 
     @property
     def known(self) -> bool:

@@ -9,6 +9,7 @@ from typing import Any
 from app.panels.measure_view import MeasureView
 from app.presenting.lines import line_title
 from app.presenting.own_measures import own_words
+from app.wording.measure_titles import measure_title
 from app.wording.words import say, tr
 from core.design_measures import OwnMeasure
 from core.live import Frame
@@ -38,10 +39,8 @@ def measured_views(before: Measures, after: Measures, own: Sequence[OwnMeasure] 
 
 def _measured(row: dict[str, Any], told: Mapping[str, str]) -> MeasureView:
     own, key = row["key"].startswith(OWN), row["key"]
-    sides = {"left": tr("{what}, left"), "right": tr("{what}, right")}
-    title = row["title"] if own else say(row["title"])
     return MeasureView(
-        sides.get(row["side"], "{what}").format(what=title),
+        measure_title(row),
         row["unit"].replace("2", "\N{SUPERSCRIPT TWO}"),
         row["before"],
         row["after"],
@@ -73,7 +72,7 @@ def as_table(views: Sequence[MeasureView]) -> list[list[str]]:
             view.label,
             view.reference or view.tip,
             view.unit,
-            *("" if each is None else f"{each:.1f}" for each in (view.before, view.after, view.change)),
+            *("" if each is None else f"{each:.1f}" for each in (view.before, view.after, view.change_at(1))),
             "" if view.caption == view.reference else view.caption,
         ]
         for view in views

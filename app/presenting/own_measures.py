@@ -76,7 +76,9 @@ def said_of(before: Measure, after: Measure) -> tuple[str, str, str]:
     if before.value is None or after.value is None:
         return "", "", say(before.note or after.note)
     values = " → ".join(number(value) for value in (before.value, after.value))
-    said = tr("before → after, {change} mm").format(change=number(after.value - before.value, signed=True))
+    said = tr("before → after, {change} mm").format(
+        change=number(round(after.value, 1) - round(before.value, 1), signed=True)
+    )
     sure = min(before.confidence, after.confidence)
     unsure = tr("What it is taken from is sure to {percent} %").format(percent=number(100 * sure, 0))
     doubts = (unsure if sure < CERTAIN else "", say(after.note))

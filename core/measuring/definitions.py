@@ -152,11 +152,12 @@ _TABLE = (
     ),
     Definition(
         "bust_height",
-        "Bust height",
+        "Bust height over under-bust",
         "mm",
         "",
-        "Ours: the mean height of the bust points over the under-bust level. The standard measures from the "
-        "ground, which few scans show.",
+        "Ours: the mean height of the bust points over the under-bust level, which follows the skin: it "
+        "rises with the breast, so this may fall while the bust points are lifted. The standard measures "
+        "from the ground, which few scans show.",
         BUST,
     ),
     Definition(

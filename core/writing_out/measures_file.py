@@ -24,6 +24,9 @@ Values = Mapping[str, tuple[float, str]]
 
 _NO_NAME = re.compile(r"[^\w@]+")  # what a formula of a pattern cannot have in a name
 _XML_VERSIONS = {"smis": "0.3.4", "vit": "0.5.1"}  # the newest that also older programs open
+LENGTHS_ALONE = tuple(_XML_VERSIONS)
+"""The files that hold neither areas nor volumes."""
+
 _XML_UNITS = {"mm": "mm", "cm": "cm", "in": "inch"}
 _NOBODY = {"birth-date": "1800-01-01", "gender": "unknown", "email": ""}  # what both write for "not told"
 
