@@ -137,6 +137,14 @@ def test_a_measure_is_shown_on_the_body_until_esc_and_framed_at_a_double_click()
         view = scene.view
         click(table, "bust_girth")
         assert (window.result.mark, scene.measure.shown) == ("bust_girth", True)
+        window.activateWindow()  # else the keys of the menus are asleep
+        yield window.isActiveWindow
+        table.setFocus()
+        for key, place in ((Qt.Key.Key_End, -1), (Qt.Key.Key_Home, 0), (Qt.Key.Key_F2, 0)):
+            QTest.keyClick(table, key)
+            assert window.result.mark == [each.key for each in table.rows if each.key][place]
+        assert window.result.isVisible(), "what is not one's own is not renamed elsewhere"
+        window.result.select("bust_girth")
         QTest.keyClick(table, Qt.Key.Key_Down)
         assert window.result.mark == "bust_girth_skin"
         assert scene.view == view, "the body is only turned at a double-click"

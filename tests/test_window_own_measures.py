@@ -192,14 +192,6 @@ def test_one_is_changed_renamed_and_deleted_by_keys_each_one_step() -> None:
         assert table.tools.isVisible()
         window.activateWindow()  # else the keys of the menus are asleep
         yield window.isActiveWindow
-        table.setFocus()
-        QTest.keyClick(table, KEY.Key_Home)
-        assert window.result.mark == table.rows[0].key
-        QTest.keyClick(table, KEY.Key_F2)
-        assert window.inspector.panel() is window.result, "what is not one's own is not renamed elsewhere"
-        QTest.keyClick(table, KEY.Key_End)
-        assert window.result.mark == [each.key for each in table.rows if each.key][-1]
-        window.result.select("own:Gore")
         QTest.keyClick(table, KEY.Key_F2)
         assert (window.result.editing, form.draft.ends) == (True, GORE.marks)
         yield form.keep.isEnabled
