@@ -6,6 +6,7 @@ millimetres is measured there.
 
 from __future__ import annotations
 
+import csv
 import re
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -23,6 +24,7 @@ from app.wording.export_choices import exports
 from app.wording.words import speaking
 from core.cutting import cut_list
 from core.design import Design, ScanSource
+from core.design_measures import OwnMeasure
 from core.elastics import find_elastic
 from core.export import FORMATS
 from core.mesh import Mesh
@@ -52,6 +54,18 @@ def outcome() -> Outcome:
 def write(what: str, path: Path, outcome: Outcome, manner: Manner) -> Path:
     make_ready(what, path, outcome, manner).write(path, None, quiet)
     return path
+
+
+def test_measures_of_ones_own_keep_their_names_in_files(outcome: Outcome, tmp_path: Path) -> None:
+    marks = "bust_point_left", "bust_point_right"
+    own = replace(outcome.stages.design, own_measures=(OwnMeasure("Bust girth", "straight", marks),))
+    stages = replace(outcome.stages, design=own)
+    named = Outcome(stages, outcome.control_points, outcome.records)
+    with speaking("ja"):
+        written = write("measures", tmp_path / "a.csv", named, Manner())
+    titles = [title for _, title, *_ in csv.reader(written.read_text("utf-8").splitlines())]
+    assert titles.count("Bust girth") == 1, "in the words of the designer"
+    assert titles.count("バスト囲") == 1, "in those of the window"
 
 
 def turned(places: np.ndarray, unit: str, axes: str) -> np.ndarray:

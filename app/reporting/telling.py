@@ -10,6 +10,7 @@ from typing import Any
 from app.presenting.lines import line_title
 from app.presenting.pressure import light_word
 from app.showing.verdict_chip import state_title
+from app.wording.measure_titles import measure_title
 from app.wording.words import colon, listed, number, say, tr
 from core.cutting import CutRow
 from core.design_lines import partner_of
@@ -117,7 +118,7 @@ def measure_rows(sheet: Sheet) -> list[tuple[str, list[MeasureRow]]]:
         shown = [_measure_row(row, after=sheet.sound) for row in those if known(row)]
         missing = [row for row in those if not known(row)]
         for note, same in groupby(missing, key=lambda row: row["note"]):
-            title = listed([_measure_title(row) for row in same])
+            title = listed([measure_title(row) for row in same])
             shown.append(MeasureRow(title, "", (), f"{title}{colon()}{say(note)}"))
         found.append((group, shown))
     return found
@@ -182,7 +183,7 @@ def _measure_row(row: dict[str, Any], *, after: bool) -> MeasureRow:
     if row["estimate"]:
         off = f" ± {number(row['plus_minus'], digits)}" if row["plus_minus"] >= 0.5 else ""
         unit = f"{unit} {tr('est.')}{off}".strip()
-    return MeasureRow(_measure_title(row), unit, figures)
+    return MeasureRow(measure_title(row), unit, figures)
 
 
 def _change(row: dict[str, Any], digits: int) -> str:
@@ -190,12 +191,6 @@ def _change(row: dict[str, Any], digits: int) -> str:
     if row["before"] is None or row["after"] is None:
         return NOTHING if row["difference"] is None else number(row["difference"], digits, signed=True)
     return number(round(row["after"], digits) - round(row["before"], digits), digits, signed=True)
-
-
-def _measure_title(row: dict[str, Any]) -> str:
-    sides = {"left": tr("{what}, left"), "right": tr("{what}, right")}
-    title = row["title"] if row["key"].startswith(OWN) else say(row["title"])
-    return sides.get(row["side"], "{what}").format(what=title)
 
 
 def _group(key: str) -> str:
