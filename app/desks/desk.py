@@ -113,6 +113,11 @@ class Desk(QObject):
         said = tr("Something went wrong inside Busk."), tr("Your design is kept. The log tells more.")
         notices.show_notice("bad", *said, lasting=True, details=trace)
 
+    def show_left(self, words: str) -> None:
+        """Say that work which nobody waits for was stopped, and how it comes again."""
+        said = tr("Stopped: {work}").format(work=words)
+        self._window.notices.show_notice("info", said, tr("It begins again when you look at it next."))
+
     def show_written(self, about: str, sentence: str, path: str) -> None:
         """Say that a file has been written, and where, and no longer that it cannot be."""
         folder, notices = Path(path).absolute().parent, self._window.notices

@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
@@ -159,17 +160,20 @@ class ReportDesk(QObject):
             sheet, whole, baked = cast(tuple[Sheet, Frame, Floats], found)
             self._occlusion = (body, baked)
             plain = Handout(sheet, {}, self._colours(frame))
-            pieces = shots(whole, baked)
-            drawing = tr("Drawing the pictures of the sheet")
-            self._job = window.jobs.run_pieces(
-                drawing, pieces, lambda pictures: done(plain, pictures), lambda _: done(plain, {})
-            )
+            finish, left = partial(done, plain), self._leave_off
+            drawing, pieces = tr("Drawing the pictures of the sheet"), shots(whole, baked)
+            self._job = window.jobs.run_pieces(drawing, pieces, finish, lambda _: finish({}), left=left)
 
         def done(plain: Handout, pictures: Mapping[str, QImage]) -> None:
             self._frame, self._asked, self._job = frame, None, None
             self._take(replace(plain, pictures=pictures))
 
-        self._job = window.jobs.run(tr("Making the sheet"), work, draw, self._fail)
+        self._job = window.jobs.run(tr("Making the sheet"), work, draw, self._fail, left=self._leave_off)
+
+    def _leave_off(self) -> None:
+        self._job = self._asked = None
+        self._refused = tr("Stopped: the sheet is made when you open it again.")
+        self._show()
 
     def _fail(self, error: Exception) -> None:
         self._job = None
@@ -177,6 +181,7 @@ class ReportDesk(QObject):
             self._refused = f"{say(error.message)} {say(error.hint)}"
         else:
             self._window.desk.show_failure(error)
+            self._refused = tr("The sheet could not be made.")
         self._show()
 
     def _take(self, handout: Handout) -> None:
@@ -196,9 +201,8 @@ class ReportDesk(QObject):
             self.pages = pages_of(self.handout, self._language) if self.handout is not None else None
         words = ""
         if stale:
-            waits = tr("The sheet is made as soon as the run rests.")
-            words = tr("The sheet is being made.") if self._window.is_settled() else waits
-            words = self._refused or words
+            made, waits = tr("The sheet is being made."), tr("The sheet is made as soon as the run rests.")
+            words = self._refused or (made if self._window.is_settled() else waits)
         self.page.show_choices(design.customer if design else "", self._language)
         self.page.show_pages(self.pages, words, stale=stale)
 

@@ -79,6 +79,8 @@ class MeasuresDesk(QObject):
                 tr("Measuring the body"),
                 lambda progress: before_after(frame.stages, frame.control_points),
                 self._show_measured,
+                self._fail,
+                left=self._leave_off,
             )
 
     def _show_measured(self, found: object) -> None:
@@ -88,6 +90,20 @@ class MeasuresDesk(QObject):
         self._panel.set_measured(measured_views(self._rest, self._worn, frame.stages.design.own_measures))
         self._show_sizes()
         self._show_mark()
+
+    def _fail(self, error: Exception) -> None:
+        self._window.desk.show_failure(error)
+        self._give_up(tr("The body could not be measured."))
+
+    def _leave_off(self) -> None:
+        self._window.desk.show_left(tr("Measuring the body"))
+        self._give_up(tr("Stopped: the body is measured when this list is shown again."))
+
+    def _give_up(self, why: str) -> None:
+        """Be ready to be asked again; what was measured before stays, as of a former shape."""
+        self._job = self._asked = None
+        if not self._panel.measured:
+            self._panel.set_measured([], why)
 
     def try_out(self, found: tuple[Measure, Measure] | None) -> None:
         """Draw a measure that is being made, before and after, on the body instead of the marked one."""

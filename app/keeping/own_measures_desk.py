@@ -169,7 +169,13 @@ class OwnMeasuresDesk(QObject):
             tr("Measuring the body"),
             lambda progress: own_before_after(frame.stages, frame.control_points, wished),
             lambda found: self._show(cast(tuple[Measure, Measure], found)),
+            self._fail,
+            left=lambda: self._show(None, tr("Stopped: change something to measure again.")),
         )
+
+    def _fail(self, error: Exception) -> None:
+        self._window.desk.show_failure(error)
+        self._show(None, tr("The body could not be measured."))
 
     def _show(self, found: tuple[Measure, Measure] | None, why: str = "") -> None:
         """Show what was measured, or why nothing is."""

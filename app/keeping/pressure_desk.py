@@ -57,6 +57,8 @@ class PressureDesk(QObject):
                 tr("Working out the pressure"),
                 lambda progress: press_list(frame.stages, frame.control_points),
                 lambda found: self._take(frame, found),
+                self._window.desk.show_failure,
+                left=lambda: self._leave_off(frame),
             )
         return self._known.get(frame)
 
@@ -91,3 +93,7 @@ class PressureDesk(QObject):
     def _take(self, frame: Frame, found: object) -> None:
         self._known[frame] = cast(PressList, found)
         self.found.emit()
+
+    def _leave_off(self, frame: Frame) -> None:
+        self._asked.discard(frame)
+        self._window.desk.show_left(tr("Working out the pressure"))

@@ -1,0 +1,113 @@
+"""Work that the user stops, or that fails: it says so where its figures were awaited, and comes again."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from window_tools import PATIENCE, Script, run_main, settled, undrawn
+
+from app.asking.jobs import Job
+from app.desks import report_desk
+from app.keeping import measures_desk, own_measures_desk, pressure_desk
+from app.main_window import MainWindow
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+@pytest.fixture
+def gate(monkeypatch: pytest.MonkeyPatch) -> threading.Event:
+    """Nothing is measured, pressed or put on a sheet until it is open."""
+    opened = threading.Event()
+
+    def behind(work: Callable[..., Any]) -> Callable[..., Any]:
+        def waits(*asked: Any) -> Any:
+            opened.wait(PATIENCE)
+            return work(*asked)
+
+        return waits
+
+    for module, name in (
+        (measures_desk, "before_after"),
+        (own_measures_desk, "own_before_after"),
+        (pressure_desk, "press_list"),
+        (report_desk, "sheet_of"),
+    ):
+        monkeypatch.setattr(module, name, behind(getattr(module, name)))
+    return opened
+
+
+def stop(window: MainWindow, words: str) -> None:
+    """Leave a job as the status bar does."""
+    job: Job = next(each for each in window.jobs.at_work() if each.words == words)
+    window.jobs.leave(job)
+
+
+def test_what_is_stopped_says_so_and_is_worked_out_when_it_is_looked_at_again(gate: threading.Event) -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.report_desk.open()
+        stop(window, "Making the sheet")
+        state = window.report_desk.page.state
+        assert state.text() == "Stopped: the sheet is made when you open it again."
+        window.report_desk.leave()
+        window.inspector.open("garment")
+        stop(window, "Working out the pressure")
+        assert window.notices.notice().sentence == "Stopped: Working out the pressure"
+        window.desk.go_to("result")
+        stop(window, "Measuring the body")
+        assert window.result._waiting.text().startswith("Stopped")
+        gate.set()
+        window.desk.go_to("lines")
+        window.inspector.open("garment")
+        yield lambda: window.pressure_desk.shown is not None
+        window.desk.go_to("result")
+        yield lambda: bool(window.result.measured) and not window.result.stale
+        window.report_desk.open()
+        yield window.report_desk.page.does["pdf"].isEnabled
+
+    run_main([], script)
+
+
+def test_a_measure_of_ones_own_that_is_stopped_is_measured_at_the_next_change(gate: threading.Event) -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.own_measures_desk.action.trigger()
+        stop(window, "Measuring the body")
+        form = window.result.editor
+        for name in ("bust_point_left", "front_centre"):
+            form.show_draft(form.draft.picked(name))
+        stop(window, "Measuring the body")
+        assert form.doubt.text().startswith("Stopped")
+        gate.set()
+        form.show_draft(form.draft)
+        window.own_measures_desk._follow()
+        yield lambda: bool(form.value.text())
+
+    run_main([], script)
+
+
+def test_what_fails_is_told_and_waits_no_longer(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: Any) -> None:
+        raise ValueError("no")
+
+    monkeypatch.setattr(measures_desk, "before_after", fail)
+    monkeypatch.setattr(pressure_desk, "press_list", fail)
+    monkeypatch.setattr(report_desk, "sheet_of", fail)
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.desk.go_to("result")
+        yield lambda: window.result._waiting.text() == "The body could not be measured."
+        window.notices.clear()
+        window.inspector.open("garment")
+        yield lambda: "inside Busk" in getattr(window.notices.notice(), "sentence", "")
+        window.report_desk.open()
+        yield lambda: window.report_desk.page.state.text() == "The sheet could not be made."
+
+    run_main([], script)
