@@ -57,6 +57,7 @@ def main() -> None:
     points, worn = run(stages).control_points, bands(stages, ())
     begun = time.perf_counter()
     studio = Studio(stages, points, worn, bake_occlusion(stages.body.mesh))
+    in_one_go(studio.set_up())
     print(f"soft shadows and setting up: {1e3 * (time.perf_counter() - begun):.0f} ms")
     plotter = pv.Plotter(off_screen=True, lighting="none")
     scene = Scene(plotter)

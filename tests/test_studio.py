@@ -26,6 +26,7 @@ def reshaped(built):
 @pytest.fixture
 def studio(reshaped):
     with Studio(*reshaped) as studio:
+        assert len(list(studio.set_up())) > 4, "a window answers between the parts"
         studio.stand_back(SIZE, "three-quarter")
         yield studio
 

@@ -25,6 +25,7 @@ def reshaped(built):
 
 def shots_of(reshaped, turntable, hear=lambda *_: None):
     with Studio(*reshaped, dark=turntable.dark) as studio:
+        in_one_go(studio.set_up())
         return in_one_go(turn_round(studio, turntable), hear)
 
 

@@ -15,7 +15,7 @@ from core import __version__
 from core.errors import UserError
 from core.export import FORMATS, kind_of, write_control_points, write_mesh
 from core.mesh import Mesh
-from core.progress import Pieces, Progress
+from core.progress import Pieces, Progress, part_of
 from core.report import write_turns
 from core.space import Space, space_of
 from core.writing_out.drawing import CURVE_FORMATS, STRIP_FORMATS, drawing_kind, write_curves, write_strips
@@ -181,7 +181,7 @@ def _turns(path: str, outcome: Outcome, manner: Manner) -> Ready:
 def _picture(path: str, outcome: Outcome, manner: Manner) -> Ready:
     def draw() -> Pieces[Any]:
         with _studio(outcome, manner) as studio:
-            yield 0.0  # to set it up took long enough
+            yield from part_of(studio.set_up(), 0.0, 0.0)
             if isinstance(manner.view, str):
                 studio.stand_back(manner.size, manner.view)
             else:
@@ -208,7 +208,7 @@ def _turntable(path: str, outcome: Outcome, manner: Manner) -> Ready:
         from app.printing.turntable import turn_round  # noqa: PLC0415 (brings VTK along)
 
         with _studio(outcome, manner) as studio:
-            yield 0.0
+            yield from part_of(studio.set_up(), 0.0, 0.0)
             return (yield from turn_round(studio, turntable))
 
     def write(at: Path, drawn: Any, hear: Progress) -> list[Path]:

@@ -12,7 +12,7 @@ from app.printing.studio import Picture, Studio, on_nothing
 from app.reporting.handout import SHOT_SIZES, SHOTS
 from app.seeing.camera import View
 from core.mesh import Floats
-from core.progress import Pieces
+from core.progress import Pieces, part_of
 from core.report import Shown
 
 DOTS = 300.0 / 25.4
@@ -29,6 +29,7 @@ def shots(shown: Shown, occlusion: Floats) -> Pieces[dict[str, QImage]]:
     stages = shown.stages
     unworn = {line.name for line in stages.model.lines} - stages.design.worn()
     with Studio(stages, shown.control_points, bands(stages, unworn), occlusion) as studio:
+        yield from part_of(studio.set_up(), 0.0, 0.0)
         scene, sizes = studio.scene, {side: _pixels(SHOT_SIZES[side]) for side in _SIDES}
         scene.set_visible("floor", False)
         views = _views(studio, sizes)
