@@ -60,6 +60,28 @@ def test_nothing_of_a_former_document_is_kept_or_shown() -> None:
     assert run_main(["resources/samples/mannequin.ply"], script) == 0
 
 
+def test_no_piece_of_a_former_document_is_listed() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.inspector.open("garment")
+        window.session.commit_line("mid-bust", "Mid-bust", 0.9)
+        yield settled(window)
+        assert window.garment.view.worn
+        listed = []
+        window.session.opened.connect(lambda *_: window.session.frame_ready.connect(look))
+
+        def look(*_: object) -> None:
+            """Hear what is listed with each frame of the next document, after the desks."""
+            listed.append(window.garment.view.worn)
+
+        window.session.open(str(Path("resources/samples/mannequin.ply").absolute()))
+        yield lambda: bool(listed) and settled(window)()
+        assert not any(listed)
+
+    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+
+
 def test_a_typed_name_is_saved_and_asked_about(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "dora.busk"
     asked = []

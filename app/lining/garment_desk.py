@@ -43,6 +43,10 @@ class GarmentDesk(QObject):
         if self._panel.isVisible():
             self.refresh()
 
+    def forget(self) -> None:
+        """Let go of the list of a document that has gone: its rows are none of the next one's."""
+        self._shown = None
+
     def refresh(self) -> None:
         """Bring the list up to date."""
         frame = self._frame
