@@ -16,7 +16,9 @@ def test_of_a_run_that_ran_away_there_is_no_sheet_and_no_light() -> None:
         undrawn(window)
         yield settled(window)
         window.session.edit(
-            lambda design: design.with_line("mid-bust", 0.7).with_elastic("mid-bust", find_elastic("plush 12")),
+            lambda design: design.with_line("mid-bust", 0.7).with_elastic(
+                "mid-bust", find_elastic("plush 12")
+            ),
             "worn",
         )
         window.inspector.open("garment")
