@@ -37,6 +37,12 @@ def sheet(worn: Solution) -> Sheet:
     return sheet_of(worn, worn.records, HEADING)
 
 
+def test_a_customer_is_no_formula_in_the_table(sheet: Sheet) -> None:
+    named = replace(sheet, heading=replace(HEADING, customer="=1+1"))
+    rows = list(csv.DictReader(io.StringIO(sheet_csv(named))))
+    assert next(row["after"] for row in rows if row["key"] == "customer") == "'=1+1"
+
+
 def test_the_sheet_holds_what_others_work_out(worn: Solution, sheet: Sheet) -> None:
     points = worn.control_points
     assert sheet.measures == tuple(measure_rows(*before_after(worn.stages, points)))
