@@ -39,6 +39,7 @@ def fine_picture(panes: Panes, finer: float) -> QImage:
         for handle in handles:
             handle.hide()
         for viewport in panes.viewports:
+            viewport.paint_at_once()
             sheets.append(_Sheet(viewport, finer))  # one by one: those that were made are taken away
         panes.render(image, QPoint())
     finally:

@@ -113,11 +113,15 @@ class Viewport(QWidget):
     def paint_later(self) -> None:
         """Let what the hand has done meanwhile go first: a large body takes its time to make and to paint."""
         self.setUpdatesEnabled(False)
-        QTimer.singleShot(1, self, lambda: self.setUpdatesEnabled(True))
+        QTimer.singleShot(1, self, self.paint_at_once)
+
+    def paint_at_once(self) -> None:
+        """Wait for the hand no longer: a picture of what is not painted yet would be empty."""
+        self.setUpdatesEnabled(True)
 
     def picture(self, labels: bool = True) -> QImage:
         """Return what is seen now at its best, with its labels or without, in device pixels."""
-        self.setUpdatesEnabled(True)
+        self.paint_at_once()
         self.request_draw()
         self._rest.stop()
         self._smoothing.use("ssaa")
