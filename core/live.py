@@ -29,8 +29,9 @@ while the last frame has not been fetched.
 """
 
 _HAND_RESTS = 0.2
-"""Seconds after the last request for which it waits until the last frame is fetched and shown; turns always do
-while who shows one holds them.
+"""Seconds after the last request for which it waits until the last frame is fetched and shown.
+
+Turns always wait while who shows a frame holds them.
 """
 
 _NEXT_MOVE = 0.016

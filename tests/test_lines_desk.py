@@ -77,7 +77,12 @@ def linked(window: MainWindow) -> Script:
     assert [each.name for each in session.design.own_lines] == ["strap left"], "of a side set apart only it"
     window.actions_.undo.trigger()
     yield lambda: "strap right" in window.lines.rows and window.is_settled()
-    left = window.lines.rows["strap left"]
+    yield from linked_again(window, ratio)
+
+
+def linked_again(window: MainWindow, ratio: float) -> Script:
+    """Both sides take the length of the left one, and go together."""
+    session, left = window.session, window.lines.rows["strap left"]
     window.lines.select("mid-bust")
     assert left._link.isVisible()
     assert not window.lines.rows["mid-bust"]._link.isVisible()
