@@ -1,12 +1,12 @@
 """``busk export``: every file that it writes, through the real command, and its refusals."""
 
 import json
+from pathlib import Path
 from xml.etree import ElementTree
 
 import ezdxf
 import pytest
 import trimesh
-from conftest import SAMPLES
 from PIL import Image
 
 from app.cli import main
@@ -16,6 +16,7 @@ from core.document import Document
 from core.pipeline import build
 from core.project import ScanFile, save_project
 
+SAMPLES = Path(__file__).parents[1] / "resources" / "samples"
 SCAN = SAMPLES / "mannequin.ply"
 
 

@@ -4,13 +4,13 @@ import os
 import subprocess
 import sys
 from dataclasses import replace
+from pathlib import Path
 from xml.etree import ElementTree
 
 import ezdxf
 import numpy as np
 import pytest
 import pyvista as pv
-from conftest import SAMPLES
 from PySide6.QtSvg import QSvgRenderer
 
 from core.cutting import cut_list
@@ -26,6 +26,7 @@ from core.template import read_template
 from core.writing_out.drawing import SCALE_BAR, told, write_curves, write_strips
 from core.writing_out.worn import AS_WORN, Strip, strips, worn_curves
 
+SAMPLES = Path(__file__).parents[1] / "resources" / "samples"
 SVG = {"s": "http://www.w3.org/2000/svg"}
 ODD = (Strip("a/b", 'Sling <left> & "ours"', 312.345, 12.0), Strip("A_b", "斜めの帯", 87.5, 6.5))
 

@@ -15,7 +15,6 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 import pyvista as pv
-from conftest import SAMPLES
 
 from app.exporting.choices import Choices
 from app.exporting.outcome import Manner, Outcome
@@ -38,6 +37,7 @@ from core.template import read_template
 from core.writing_out.drawing import CURVE_FORMATS, STRIP_FORMATS
 from core.writing_out.measures_file import MEASURE_FORMATS
 
+SAMPLES = Path(__file__).parents[1] / "resources" / "samples"
 SVG = "{http://www.w3.org/2000/svg}"
 
 

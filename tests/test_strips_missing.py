@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SAMPLES
 
 from core.body import Body, read_scan
 from core.landmark import Landmarks
@@ -16,6 +15,8 @@ from core.mesh import Mesh
 from core.slicing.gaps import over_strips
 from core.slicing.outline import BINS
 from core.trunk import trunk_levels
+
+SAMPLES = Path(__file__).parents[1] / "resources" / "samples"
 
 
 def without(body: Body, axis: int, at: float, wide: float) -> Body:

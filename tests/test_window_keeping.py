@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import threading
 from dataclasses import replace
 from pathlib import Path
@@ -117,6 +118,7 @@ def test_a_broken_recovery_is_told_and_rescue_never_raises(monkeypatch: pytest.M
         assert window.rescue() == ""
 
     run_main([], script)
+    shutil.rmtree(recovery_folder())
 
 
 def test_saving_waits_for_no_disk_and_closing_waits_for_saving(

@@ -28,8 +28,8 @@ def differences_seen(window: MainWindow, document: Document) -> list[str]:
     design, found = document.design, [*_lines_seen(window, document.design)]
     for key, field in window.model.fields.items():
         if isinstance(field, AmountField):
-            value, scale = getattr(design, key), field._amount.scale
-            shown = "" if value is None else number(scale * value, field._amount.digits).replace(",", "")
+            value, scale = getattr(design, key), field.edit._amount.scale
+            shown = "" if value is None else number(scale * value, field.edit._amount.digits).replace(",", "")
             if field.edit.text() != shown:
                 found.append(f"{key}: {field.edit.text()!r} for {shown!r}")
         if window.model._present[key] != getattr(design, key):

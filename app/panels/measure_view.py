@@ -14,7 +14,7 @@ class MeasureView:
     ``reference`` says from where it is counted, ``tip`` how it is taken, ``iso`` what the standard calls it.
     An ``estimate`` may be off by ``plus_minus``; what it was taken from is ``sure`` to that share [1], if
     that is known. ``key`` is that of a measure of the body, ``own`` if it is the designer's; ``group`` is
-    its heading.
+    its heading. The change of an ``exact`` one is told elsewhere too: it is the same figure everywhere.
     """
 
     label: str
@@ -31,16 +31,19 @@ class MeasureView:
     iso: str = ""
     sure: float | None = None
     own: bool = False
+    exact: bool = False
 
     @property
     def change(self) -> float | None:
-        """By how much it grew as it is written, if that is known: the columns of a table agree."""
+        """By how much it grew, if that is known: as it is written, so that the columns of a table agree."""
         return self.change_at(digits_of(self.unit))
 
     def change_at(self, digits: int) -> float | None:
         """Return by how much it grew where so many decimals are written."""
         if self.after is None or self.before is None:
             return None
+        if self.exact:
+            return self.after - self.before
         return round(self.after, digits) - round(self.before, digits)
 
     @property

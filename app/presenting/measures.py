@@ -86,20 +86,20 @@ def _bust_rows(frame: Frame) -> Iterator[MeasureView]:
     low = float(frame.stages.body.mesh.vertices[:, 2].min())
     above, before = tr("above the lowest point of the scan"), tr("in front of the edge of the reshaped part")
     both, left, right = tr("Bust point"), tr("Bust point left"), tr("Bust point right")
-    yield MeasureView(tr("{what}, height").format(what=both), "mm", _up(rest) - low, _up(now) - low, above)
+    height, forward = tr("{what}, height"), tr("{what}, forward")
+    up, was_up = _up(now) - low, _up(rest) - low
+    yield MeasureView(height.format(what=both), "mm", was_up, up, above, exact=True)
     for side, was, then in (
         (left, rest.nipple_left_z, now.nipple_left_z),
         (right, rest.nipple_right_z, now.nipple_right_z),
     ):
-        yield MeasureView(tr("{what}, height").format(what=side), "mm", was - low, then - low, above)
-    yield MeasureView(tr("{what}, forward").format(what=both), "mm", _out(rest), _out(now), before)
+        yield MeasureView(height.format(what=side), "mm", was - low, then - low, above)
+    yield MeasureView(forward.format(what=both), "mm", _out(rest), _out(now), before, exact=True)
     foremost = tr("Foremost place of the skin")
-    yield MeasureView(
-        tr("{what}, height").format(what=foremost), "mm", rest.apex_z - low, now.apex_z - low, above
-    )
-    yield MeasureView(
-        tr("{what}, forward").format(what=foremost), "mm", rest.apex_protrusion, now.apex_protrusion, before
-    )
+    was, then = rest.apex_z - low, now.apex_z - low
+    yield MeasureView(height.format(what=foremost), "mm", was, then, above)
+    was, then = rest.apex_protrusion, now.apex_protrusion
+    yield MeasureView(forward.format(what=foremost), "mm", was, then, before)
 
 
 def _volume_rows(frame: Frame) -> Iterator[MeasureView]:
