@@ -143,6 +143,9 @@ def test_the_ends_of_a_strap_are_told_apart(solution):
     assert abs(first - last) > 50.0
     names = ["upper end", "lower end"] if first > last else ["lower end", "upper end"]
     assert [strap.marks[0], strap.marks[-1]] == list(zip((0.0, strap.length), names, strict=True))
+    stages = build(stages.design.with_elastic("strap left", find_elastic("strap 15")), stages)
+    strap = next(each for each in strips(stages, points, {}, {}) if each.name == "strap left")
+    assert strap.note.startswith("front part only, to cut from Strap")
 
 
 def test_an_svg_is_at_its_size_in_millimetres(tmp_path, flat):

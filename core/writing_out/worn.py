@@ -114,8 +114,9 @@ def _cut(worn: Strip, row: CutRow) -> Strip:
     marks = [(seam + at * shrunk, what) for at, what in worn.marks]
     if seam > 0.0:
         marks += [(at, SEAM) for at in (seam, row.cut_mm - seam) if all(abs(at - k) > 1e-6 for k, _ in marks)]
+    part = "front part only, to cut" if row.front_only else "to cut"
     note = (
-        f"to cut from {row.elastic}, {row.allowance_mm:g} mm of it for seams; "
+        f"{part} from {row.elastic}, {row.allowance_mm:g} mm of it for seams; "
         f"worn {worn.length:.1f} mm, stretched by {100.0 * row.elongation:.0f} %"
     )
     width = row.width_mm or worn.width
