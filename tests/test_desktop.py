@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import threading
 from collections import Counter
 from pathlib import Path
@@ -69,6 +70,7 @@ def test_help_finds_keys_commands_versions_and_licences() -> None:
         assert {"Backspace", "← →, - +", "← → ↑ ↓", "Home, End", "Page Up, Page Down", "Del"} <= said.keys()
         keys.accept()
         recovery_folder().mkdir(parents=True, exist_ok=True)
+        shutil.rmtree(backups_folder(), ignore_errors=True)
         window.help.show_machine()
         machine = sheet_of(window, DiagnosticsSheet)
         assert isinstance(machine, DiagnosticsSheet)

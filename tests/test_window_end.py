@@ -30,6 +30,7 @@ DRAWN = ("vtkRenderWindow", "vtkXOpenGLRenderWindow", "vtkRenderer", "vtkOpenGLR
 
 def left_over() -> Counter[str]:
     """Count what a window may leave: threads, timers at work, widgets, what was drawn, temporary files."""
+    gc.unfreeze()  # what other tests have left is seen before as well
     gc.collect()
     found = Counter(f"thread {thread.name}" for thread in threading.enumerate())
     for each in gc.get_objects():
