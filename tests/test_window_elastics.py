@@ -41,7 +41,7 @@ def test_tables_of_ones_own_are_brought_in_or_refused_and_taken_away(
         monkeypatch.setattr(elastics_desk, "ask_table", lambda *_: str(chosen[0]))
         monkeypatch.setattr(elastics_desk, "ask_save", lambda *_: str(empty))
         monkeypatch.setattr(elastics_desk, "ask", lambda *_: "delete")
-        window.garment.library_asked.emit()
+        window.garment.elastics_asked.emit()
         sheet = window.elastics_desk.sheet
         assert sheet is not None
         yield sheet.isVisible
@@ -200,7 +200,7 @@ def test_one_that_is_called_as_ours_gets_a_name_of_its_own_and_none_is_called_me
         yield settled(window)
         undrawn(window)
         monkeypatch.setattr(elastics_desk, "ask_table", lambda *_: str(table))
-        window.garment.library_asked.emit()
+        window.garment.elastics_asked.emit()
         sheet = window.elastics_desk.sheet
         assert sheet is not None
         yield sheet.isVisible

@@ -130,7 +130,7 @@ class ElasticChoice(QObject):
             action.triggered.connect(lambda _=False, reach=reach: setattr(self, "reach", reach))
             self._menu.addAction(action)
         self._menu.addSeparator()
-        self._menu.addAction(tr("Elastics…"), self._window.garment.library_asked.emit)
+        self._menu.addAction(tr("Elastics…"), self._window.garment.elastics_asked.emit)
         pull_down(self._menu, under)
 
     def _shown_variant(self) -> str:

@@ -46,7 +46,7 @@ class ElasticsDesk(QObject):
         do.add("lines", tr("Elastics…"), tip=said, do=self.show)
         said = tr("See how long to cut each worn line, of what, and how far it is stretched")
         do.add("lines", tr("Cut list"), tip=said, do=self._show_cuts, of_document=True)
-        window.garment.library_asked.connect(self.show)
+        window.garment.elastics_asked.connect(self.show)
         self.sheet: ElasticsSheet | None = None
 
     def show(self) -> None:

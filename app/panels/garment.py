@@ -24,7 +24,7 @@ class GarmentPanel(QWidget):
     ``opened`` when it comes to be seen, and what it shows has to be new. ``selected`` names a line,
     ``elastic_asked`` one and the widget under which its elastic is chosen, ``all_asked`` that for all worn
     lines, ``stretched`` a line and how far its elastic shall be stretched [1]. ``copy_asked`` and
-    ``table_asked`` are for the list as text, ``library_asked`` for the elastics there are.
+    ``table_asked`` are for the list as text, ``elastics_asked`` for the elastics there are.
     """
 
     opened = Signal()
@@ -35,7 +35,7 @@ class GarmentPanel(QWidget):
     lines_asked = Signal()
     copy_asked = Signal()
     table_asked = Signal()
-    library_asked = Signal()
+    elastics_asked = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -192,7 +192,7 @@ class GarmentPanel(QWidget):
                     self.copy_asked,
                 ),
                 (tr("CSV…"), tr("Write the cut list to a file (CSV)"), self.table_asked),
-                (tr("Elastics…"), tr("See, bring in and hand on elastics"), self.library_asked),
+                (tr("Elastics…"), tr("See, bring in and hand on elastics"), self.elastics_asked),
             ),
             top=4,
         )
