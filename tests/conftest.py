@@ -5,6 +5,7 @@ from __future__ import annotations
 import atexit
 import gc
 import os
+import shutil
 import subprocess
 import tempfile
 import threading
@@ -62,6 +63,16 @@ def old_things_are_no_garbage() -> None:
     """What lives on between two files, mostly libraries, is not looked through after each test."""
     gc.collect()
     gc.freeze()
+
+
+@pytest.fixture(scope="module", autouse=True)
+def nothing_inherited() -> Iterator[None]:
+    """A file of tests finds no work, backups or tables of another: which ran before it is left to chance."""
+    yield
+    for folder in ("STATE", "DATA"):
+        for each in (Path(os.environ[f"XDG_{folder}_HOME"]) / "Busk").glob("*"):
+            if each.is_dir() and each.name != "log":
+                shutil.rmtree(each)
 
 
 @pytest.fixture(autouse=True)
