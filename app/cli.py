@@ -75,6 +75,18 @@ def design_of(path: str, options: argparse.Namespace) -> Design:
     return design
 
 
+def _form(options: argparse.Namespace) -> str:
+    return "csv" if options.csv else "json" if options.json else ""
+
+
+def _told(text: str, settled: bool, warnings: Iterable[str]) -> int:
+    """Print a text unless it went to a file, and return how the command ends."""
+    if text:
+        print(text, flush=True)
+    _warn(warnings)
+    return SETTLED if settled else NOT_SETTLED
+
+
 def _warn(sentences: Iterable[str]) -> None:
     for sentence in sentences:
         print(f"busk: {sentence}", file=sys.stderr)
@@ -162,11 +174,7 @@ def measure(options: argparse.Namespace) -> int:
     for own in map(own_measure, options.own or []):
         design = design.with_own_measure(own)
     found = run_measure(design, solved=is_project(options.input))
-    text = measured_text(found, "csv" if options.csv else "json" if options.json else "", options.out)
-    if text:
-        print(text, flush=True)
-    _warn(found.warnings)
-    return SETTLED if found.settled else NOT_SETTLED
+    return _told(measured_text(found, _form(options), options.out), found.settled, found.warnings)
 
 
 def cut(options: argparse.Namespace) -> int:
@@ -175,11 +183,7 @@ def cut(options: argparse.Namespace) -> int:
 
     design = design_of(options.input, options)
     found = run_cut(design, options.line or [], options.elastic or [], options.as_worn)
-    text = cut_text(found, "csv" if options.csv else "json" if options.json else "", options.out)
-    if text:
-        print(text, flush=True)
-    _warn(found.warnings)
-    return SETTLED if found.settled else NOT_SETTLED
+    return _told(cut_text(found, _form(options), options.out), found.settled, found.warnings)
 
 
 def press(options: argparse.Namespace) -> int:
@@ -188,11 +192,7 @@ def press(options: argparse.Namespace) -> int:
 
     design = design_of(options.input, options)
     found = run_press(design, options.line or [], options.elastic or [])
-    text = press_text(found, "csv" if options.csv else "json" if options.json else "", options.out)
-    if text:
-        print(text, flush=True)
-    _warn(found.warnings)
-    return SETTLED if found.settled else NOT_SETTLED
+    return _told(press_text(found, _form(options), options.out), found.settled, found.warnings)
 
 
 def report(options: argparse.Namespace) -> int:
