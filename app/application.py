@@ -20,6 +20,7 @@ from PySide6.QtCore import QLibraryInfo, Qt, QTranslator
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QApplication
 
+from app.dress.icons import program_icon
 from app.dress.theme import apply_theme, load_fonts
 from app.dress.wishes import wish
 from app.wording.words import use_language
@@ -45,6 +46,9 @@ def application(language: str | None = None, dark: bool | None = None) -> QAppli
         existing.setOrganizationName("Busk")
         existing.setApplicationName("Busk")
         existing.setApplicationVersion(__version__)
+        # How a desktop knows to which menu entry, and so to which picture, a window belongs.
+        existing.setDesktopFileName("busk")
+        existing.setWindowIcon(program_icon())
     use_words(existing, language or wish("language"))
     load_fonts()
     apply_theme(existing, chosen_dark(wish("theme")) if dark is None else dark)

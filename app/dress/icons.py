@@ -14,6 +14,9 @@ SCALES = (1.0, 1.5, 2.0, 3.0)
 
 DISABLED_OPACITY = 0.38
 
+OF_WINDOW = (16, 24, 32, 48, 64, 128, 256)
+"""Widths of the picture of the program that window managers and task bars choose from [pixels]."""
+
 
 def icon(name: str, color: str, size: int, on_color: str | None = None) -> QIcon:
     """Return the drawing ``name`` in ``color``, ``size`` logical pixels wide, sharp at any screen scale.
@@ -27,6 +30,14 @@ def icon(name: str, color: str, size: int, on_color: str | None = None) -> QIcon
             result.addPixmap(pixmap(name, ink, size, scale), QIcon.Mode.Normal, state)
             faint = pixmap(name, ink, size, scale, DISABLED_OPACITY)
             result.addPixmap(faint, QIcon.Mode.Disabled, state)
+    return result
+
+
+def program_icon() -> QIcon:
+    """Return the picture of the program itself, in its own colours."""
+    result = QIcon()
+    for size in OF_WINDOW:
+        result.addPixmap(pixmap("busk", "", size))
     return result
 
 
