@@ -37,7 +37,7 @@ def program_icon() -> QIcon:
     """Return the picture of the program itself, in its own colours."""
     result = QIcon()
     for size in OF_WINDOW:
-        result.addPixmap(pixmap("busk", "", size))
+        result.addPixmap(pixmap("program/busk", "", size))
     return result
 
 
