@@ -1,16 +1,19 @@
 # Two commands do it all: `make run` opens the program, `make test` checks it. Both set up first what they need.
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help run test setup setup-test lint types bench lock docs-pictures clean
+.PHONY: help run test setup setup-test lint types bench lock docs docs-pictures clean
 export PYTHON
 
 python := .venv/bin/python
+# What the user guide is built of: where something is newer than site/, make run builds the guide again.
+GUIDE := $(shell find docs -type f) CHANGELOG.md THIRD_PARTY.md core/__init__.py app/wording/tokens.py packaging/guide.py
 uv = $(or $(wildcard .venv/bin/uv),$(shell command -v uv))
 
 help:  ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1|/p' Makefile | while IFS='|' read -r name what; do printf '  make %-14s %s\n' "$$name" "$$what"; done
 
 run: setup  ## open the program on the sample body; without a display, do the same session into out/
+	@$(MAKE) --no-print-directory --silent site/index.html || echo "busk: the user guide could not be built; the program opens without it." >&2
 	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ] || [ "$$(uname)" = Darwin ]; then .venv/bin/busk; \
 	else .venv/bin/busk demo --out out; fi
 
@@ -39,6 +42,12 @@ lock:  ## pin every dependency again (needs uv, which nothing else needs)
 	@[ -n "$(uv)" ] || { echo "make lock needs uv: python3 -m pip install uv"; exit 1; }
 	$(uv) pip compile --quiet --universal --fork-strategy fewest --python-version 3.11 --generate-hashes \
 		--no-emit-index-url --custom-compile-command "make lock" --extra dev --extra fast --output-file requirements.lock pyproject.toml
+
+docs: setup  ## build the user guide into site/, without the network
+	@$(python) packaging/guide.py
+
+site/index.html: $(GUIDE)
+	@$(python) packaging/guide.py
 
 docs-pictures: setup-test  ## draw the pictures of the documentation again
 	@$(python) packaging/docs_pictures.py
