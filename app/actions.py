@@ -141,6 +141,11 @@ class Actions(Menus):
         self.reset_layout = self.add("window", tr("Reset layout"), tip=said)
 
     def _fill_help(self) -> None:
+        said = tr("In the browser, at the page that fits what you are doing")
+        self.guide = self.add("help", tr("User guide"), _KEYS.HelpContents, said)
+        said = tr("From a scan to lengths of elastic, click by click")
+        self.first_steps = self.add("help", tr("First customer in ten minutes"), tip=said)
+        self.rule("help")
         self.about = self.add("help", tr("About Busk"))
         self.about.setMenuRole(QAction.MenuRole.AboutRole)
         self.end("help", 1)

@@ -134,6 +134,7 @@ def _connect_start(window: MainWindow) -> None:
     start.page.open_asked.connect(desk.open)
     start.page.sample_asked.connect(desk.open_sample)
     start.page.tour_asked.connect(start.take_tour)
+    start.page.guide_asked.connect(window.help.show_first_steps)
     start.page.project_chosen.connect(desk.open_file)
     start.page.locate_asked.connect(start.locate)
     start.page.forget_asked.connect(start.forget)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import QSettings, QUrl
-from PySide6.QtGui import QDesktopServices
+from PySide6.QtCore import QSettings
 
 from app.application import log_folder
+from app.helping.outside import open_outside
 from app.panels.notice import NoticeBar
 from app.wording.words import tr
 from core.backups import backups_folder
@@ -34,6 +34,6 @@ def shown_folder(folder: Path) -> str:
 
 def show_folder(folder: Path, notices: NoticeBar) -> None:
     """Show a folder as the desktop does; where that does not go, say where it is."""
-    if not (folder.is_dir() and QDesktopServices.openUrl(QUrl.fromLocalFile(str(folder)))):
+    if not (folder.is_dir() and open_outside(folder)):
         said = tr("The folder cannot be opened here."), tr("It is {folder}.").format(folder=folder)
         notices.show_notice("info", *said)

@@ -9,6 +9,7 @@ from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QWhatsThis, QWidget
 
 from app.helping.folders import folders, show_folder
+from app.helping.guide import first_page, fitting_page, show_page
 from app.helping.keys import keys_of_parts
 from app.helping.machine import machine_facts
 from app.helping.whats_this import explain
@@ -41,6 +42,8 @@ class HelpDesk(QObject):
         add(
             "help", tr("Diagnostics"), tip=tr("Versions, graphics and folders, to copy"), do=self.show_machine
         )
+        window.actions_.guide.triggered.connect(self.show_guide)
+        window.actions_.first_steps.triggered.connect(self.show_first_steps)
         window.actions_.about.triggered.connect(self.show_about)
         menu = QAction(tr("Help"), window)
         menu.setToolTip(tr("Keys, tour, What's This and more"))
@@ -60,6 +63,18 @@ class HelpDesk(QObject):
         keyed = [command for command in self.commands() if command.keys]
         keys = [*keyed, *keys_of_parts()]
         CommandSheet(self._window, tr("Keyboard shortcuts"), keys, to_give=False).open()
+
+    def show_guide(self) -> None:
+        """Show the page of the guide that fits what is being done."""
+        window = self._window
+        shown: dict[QWidget | None, str] = {window.report_desk.page: "report", window.start_desk.page: ""}
+        panels: dict[QWidget | None, str] = {window.garment: "garment", window.model: "model"}
+        at = panels.get(window.inspector.panel(), window.rail.current())
+        show_page(fitting_page(shown.get(window.pages.currentWidget(), at)), window.notices)
+
+    def show_first_steps(self) -> None:
+        """Show the page for somebody who is here for the first time."""
+        show_page(first_page(), self._window.notices)
 
     def show_machine(self) -> None:
         """Show what the program is made of, what draws for it, and where it writes."""

@@ -50,6 +50,8 @@ SYNONYMS = {
     "Result": "measure measurement lift raise bust girth cup size volume report table "
     "寸法 計測 リフト バスト カップ サイズ 体積 レポート",
     "Live plot": "chart graph curve vibration グラフ 振動",
+    "User guide": "manual handbook help documentation F1 マニュアル 説明書 ヘルプ 手引き",
+    "First customer in ten minutes": "tutorial manual begin beginner steps マニュアル 入門 はじめて 手順",
     "Tour": "tutorial lesson introduction begin チュートリアル 入門",
     "Keyboard shortcuts": "keys hotkeys キー ショートカット",
     "Diagnostics": "version system graphics bug report support バージョン 不具合 報告",
