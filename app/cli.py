@@ -9,14 +9,16 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import scipy.linalg  # noqa: F401  its BLAS must be there to be held to one thread
 from threadpoolctl import threadpool_limits
 
 from app.commands.cli_parser import command_options, window_options
-from app.commands.settings import dressed, made_of, settings_of
-from core.design import Design, ScanSource, cannot_hold
+from app.commands.settings import dressed, settings_of
+from app.commands.surroundings import is_seen_in_window, path_of, settle_in, tell
+from core.design import Design, ScanSource
 from core.design_measures import own_measure
 from core.errors import UserError
 from core.own_lines import own_line
@@ -25,7 +27,6 @@ from core.project import is_project, open_project
 from core.template import read_template
 
 SETTLED, PIPE_CLOSED, BAD_INPUT, NOT_SETTLED = 0, 1, 2, 3
-RAN_AWAY = "The turns ran away: what is written is no body. Set line_stiffness lower, or --volume exact."
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -33,12 +34,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     It is 0 for settled or done, 3 for not settled or folded, 2 for bad input, with one sentence on stderr.
     """
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    settle_in()
     try:
-        code = _run(list(sys.argv[1:] if arguments is None else arguments))
+        code = _run(words)
         print(end="", flush=True)
         return code
     except UserError as error:
-        print(f"busk: {error}", file=sys.stderr)
+        tell(error, of_window=not (words and words[0] in COMMANDS))
         return BAD_INPUT
     except BrokenPipeError:
         # Who reads the answer has enough of it (busk detect ... | head): no error of ours.
@@ -51,13 +54,14 @@ def _run(words: list[str]) -> int:
         with threadpool_limits(1):  # two threads of BLAS wait for each other, and spin, over small products
             return COMMANDS[words[0]](command_options(words[0], words[1:]))
     options = window_options(words)
-    if options.file is not None and not Path(options.file).exists():
-        raise UserError(f"There is no file {options.file}, and no such command.", "See 'busk --help'.")
+    file = None if options.file is None else path_of(options.file)
+    if file is not None and not os.path.exists(file) and not is_seen_in_window(file):
+        raise UserError(f"There is no file {file}, and no such command.", "See 'busk --help'.")
     # Thousands of modules come now and stay: looking for garbage among them costs a tenth of the start.
     gc.disable()
     from app.window import run_window
 
-    return run_window(options.file, options.safe_mode)
+    return run_window(file, options.safe_mode)
 
 
 def design_of(path: str, options: argparse.Namespace) -> Design:
@@ -94,40 +98,15 @@ def _warn(sentences: Iterable[str]) -> None:
 
 def solve(options: argparse.Namespace) -> int:
     """Solve a design with no window and write what came out."""
-    from core.doubts import doubts
-    from core.pipeline import build
-    from core.report import shape_warnings, still_lines, write_solution
-    from core.solution import run
+    from app.commands.solved import run_solve
 
     design = design_of(options.input, options)
     design = replace(design, volume=options.volume or design.volume)
-    stages = build(design)
-    design = made_of(dressed(design, stages.model.lines, options.line or []), options.elastic or [])
-    solution = run(build(design, stages), options.turns)
-    lost = ("diverging", "settling") if design.volume == "exact" else ("diverging",)
-    if design.line_hold == "held" and solution.verdict.motion in lost:
-        raise cannot_hold(design)
-    out = _folder(options.out)
-    figures = write_solution(solution, out)
-    ran_away = [RAN_AWAY] * (solution.verdict.motion == "diverging")
-    unclear = doubts(stages.body, stages.landmarks)
-    _warn([*unclear, *still_lines(solution.stages), *shape_warnings(solution), *ran_away])
-    for name, line in figures["lines"].items():
-        if line["worn"]:
-            own = line["whole_band_rest_mm"] == line["rest_mm"]
-            print(
-                f"{name}: set {line['set_mm']:.1f} mm{'' if own else ' of the front part'} "
-                f"({line['set_percent']:.1f} %), reached {line['reached_mm']:.1f} mm"
-                + ("" if own else f"; whole band {line['whole_band_reached_mm']:.1f} mm")
-            )
-    volume, verdict, count = figures["volume"], solution.verdict, solution.last.turn
-    step = "turn" if design.volume != "exact" else "Newton step"
-    kept = "body_change" if design.volume == "exact" and design.dense_volume else "error"
-    print(
-        f"{verdict.words} after {count} {step}{'s' if count != 1 else ''}, volume error "
-        f"{volume[f'{kept}_percent']:+z.4f} % ({volume[f'{kept}_ml']:+z.2f} ml); written to {out}"
-    )
-    return SETTLED if verdict.motion == "settled" and verdict.state != "folded" else NOT_SETTLED
+    place = partial(_folder, options.out)
+    found = run_solve(design, options.line or [], options.elastic or [], options.turns, place)
+    _warn(found.warnings)
+    print(*found.lines, sep="\n")
+    return SETTLED if found.settled else NOT_SETTLED
 
 
 def limits(options: argparse.Namespace) -> int:
@@ -266,7 +245,7 @@ def self_test(options: argparse.Namespace) -> int:
     """Check the installed program on the sample, one line a part."""
     from app.commands.self_test import run_self_test
 
-    return run_self_test()
+    return run_self_test(_folder(options.out) if options.out is not None else None)
 
 
 def _folder(name: str) -> Path:

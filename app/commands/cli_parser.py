@@ -31,7 +31,7 @@ COMMANDS = {
     "figures": "make the figures of the paper again, with their tables and a page",
     "sweep": "try every volume control on the samples and the sphere, with a table",
     "accuracy": "measure how well landmarks and girths are found, on a folder of bodies with known answers",
-    "self-test": "check this installation",
+    "self-test": "check this installation, one line a part; --out keeps what was made for it",
 }
 """Every command with what it does, in a few words."""
 
@@ -119,9 +119,9 @@ def _parser(command: str) -> argparse.ArgumentParser:
         parser.add_argument("--quick", action="store_true", help="a few cases only")
     if command == "figures":
         parser.add_argument("--only", action="append", metavar="N", help="this figure alone; may be repeated")
-    if command in ("solve", "picture", "demo", "figures", "sweep", "accuracy"):
-        needed = command not in ("demo", "accuracy")
-        default = None if command == "accuracy" else "out"
+    if command in ("solve", "picture", "demo", "figures", "sweep", "accuracy", "self-test"):
+        needed = command not in ("demo", "accuracy", "self-test")
+        default = None if command in ("accuracy", "self-test") else "out"
         parser.add_argument("--out", required=needed, default=default, metavar="PLACE")
     return parser
 

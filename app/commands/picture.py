@@ -63,9 +63,9 @@ def draw_window(
 
 @contextmanager
 def settled_window(
-    design: Design, *, dark: bool = False, language: str = "en", size: tuple[int, int] = (1600, 1000)
+    what: str | Design, *, dark: bool = False, language: str = "en", size: tuple[int, int] = (1600, 1000)
 ) -> Iterator[MainWindow]:
-    """Give a window on a design that is solved to the end and fully drawn; it is closed afterwards.
+    """Give a window on a file or a design, solved to the end and fully drawn; it is closed afterwards.
 
     A scan that cannot go on is shown as far as it came, and stays in ``window.scan_desk.stuck``.
     """
@@ -74,7 +74,7 @@ def settled_window(
     from app.window import open_window
 
     app = application(language=language, dark=dark)
-    window = open_window(design)
+    window = open_window(what)
     failures: list[Exception] = []
     window.session.failed.connect(failures.append)
     window.view.viewport.motion = False

@@ -4,88 +4,64 @@ from __future__ import annotations
 
 import tempfile
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import TypeVar
 
-import numpy as np
+from app.checking import figures, letters, papers, program, screen
+from app.checking.apart import apart
+from app.checking.bench import Bench
+from app.checking.parts import Part, try_parts
 
-from app.commands.picture import draw_picture
-from app.wording.samples import sample_design
-from core.design import Design
-from core.document import Document
-from core.errors import UserError
-from core.live import Failure, Frame, LiveSolver
-from core.project import open_project, save_project
+FAILED = 1
+"""The exit code if a part is not well."""
 
-_PATIENCE = 120.0
+LINES = "self-test.txt"
+"""The file in the folder of ``--out`` that holds the lines: without a console they have no other place."""
 
-T = TypeVar("T")
+_SAMPLE = ("landmarks", "solver")
 
-
-def run_self_test() -> int:
-    """Open the sample, move a line, wait, save, reopen, compare, draw; print a line a part."""
-    with _solver() as solver, tempfile.TemporaryDirectory(prefix="busk-") as folder:
-        design = sample_design()
-        opened = _part("opens the sample", lambda: _settled(solver, design))
-        moved_design = design.with_line("mid-bust", 0.93)
-        moved = _part("moves a line and settles", lambda: _settled(solver, moved_design))
-        _check(moved.verdict.words == "settled", f"the solution is {moved.verdict.words}")
-        _check(abs(moved.error_ml) < 1.0, f"the volume is off by {moved.error_ml:.2f} ml")
-        _check(bool(np.abs(moved.points - opened.points).max() > 1.0), "the body did not follow the line")
-        path = Path(folder) / "self-test.busk"
-        _part("saves", lambda: save_project(path, Document.of(moved_design), moved.stages.scan, None))
-        again_design = _part("reopens", lambda: open_project(path).design)
-        again = _part("solves again", lambda: _fresh_answer(again_design))
-        apart = float(np.abs(again.points - moved.points).max())
-        # Both runs have settled, on different ways: one from rest, one from the sample's length.
-        _check(apart < 0.3, f"the reopened body differs by {apart:.3f} mm")
-        _part("draws a picture", lambda: _picture(moved_design, Path(folder) / "picture.png"))
-    print("all is well")
-    return 0
-
-
-def _fresh_answer(design: Design) -> Frame:
-    with _solver() as solver:
-        return _settled(solver, design)
+PARTS: tuple[Part[Bench], ...] = (
+    Part("versions", program.versions),
+    Part("shipped files", program.shipped_files),
+    Part("guide", program.guide),
+    Part("scan formats", figures.scan_formats),
+    Part("landmarks", figures.landmarks),
+    Part("solver", figures.solver, ("landmarks",)),
+    Part("compiled loops", figures.compiled_loops, ("landmarks",)),
+    Part("projects", figures.projects, _SAMPLE),
+    Part("damaged project", figures.damaged_projects, ("projects",)),
+    Part("files to hand on", papers.exports, _SAMPLE),
+    Part("3D drawing", papers.drawing, _SAMPLE),
+    Part("turntable", papers.turntable, (*_SAMPLE, "3D drawing")),
+    Part("Qt", screen.toolkit),
+    Part("Latin type", letters.latin, ("Qt",)),
+    Part("Japanese type", letters.japanese, ("Qt",)),
+    Part("report", papers.report, ("Qt", *_SAMPLE, "3D drawing")),
+    Part("window", screen.window, ("Qt", "projects")),
+    Part("slider", screen.slider, ("window",)),
+    Part("file dialog", screen.file_dialog, ("window",)),
+    Part("closing", screen.closing, ("window",)),
+)
+"""What is tried, in order: what may take the whole program with it, graphics and windows, comes late."""
 
 
-def _picture(design: Design, path: Path) -> None:
-    draw_picture(design, path, size=(320, 240))
-    _check(path.stat().st_size > 2000, "the picture is empty")
+def run_self_test(out: Path | None = None) -> int:
+    """Try every part, print a line for each, and return the exit code.
 
+    ``out`` keeps what was made: pictures, sheets, a project, and the lines themselves.
+    """
+    begun = time.perf_counter()
+    with tempfile.TemporaryDirectory(prefix="busk-") as own:
+        folder = (out or Path(own) / "made").resolve()
+        folder.mkdir(parents=True, exist_ok=True)
+        with open(folder / LINES, "w", encoding="utf-8") as lines, apart(Path(own).resolve()):
 
-def _settled(solver: LiveSolver, design: Design) -> Frame:
-    """Return the last frame of a design, when no more turns are made."""
-    revision = solver.submit(design, fresh=True)
-    patience = time.monotonic() + _PATIENCE
-    while time.monotonic() < patience:
-        answer = solver.latest()
-        if isinstance(answer, Failure):
-            raise answer.error
-        if answer is not None and answer.revision == revision and not answer.at_work:
-            return answer
-        time.sleep(0.005)
-    raise UserError("The solver gives no answer.", "Report this with the version and the machine.")
+            def say(text: str) -> None:
+                print(text, end="", file=lines, flush=True)
+                print(text, end="", flush=True)
 
-
-@contextmanager
-def _solver() -> Iterator[LiveSolver]:
-    solver = LiveSolver()
-    try:
-        yield solver
-    finally:
-        solver.stop()
-
-
-def _part(what: str, work: Callable[[], T]) -> T:
-    start = time.perf_counter()
-    result = work()
-    print(f"  {what}: {time.perf_counter() - start:.2f} s")
-    return result
-
-
-def _check(holds: bool, sentence: str) -> None:
-    if not holds:
-        raise UserError(f"Self-test: {sentence}.", "Report this with the version and the machine.")
+            bench = Bench(folder)
+            with bench.held:
+                lost = try_parts(PARTS, bench, say)
+            said = f"not well: {', '.join(lost)}" if lost else "all is well"
+            say(f"{said}  ({time.perf_counter() - begun:.0f} s)\n")
+    return FAILED if lost else 0

@@ -1,0 +1,1 @@
+"""The program that tests itself: what is tried, part by part, by `busk self-test`."""

@@ -1,0 +1,70 @@
+"""The bench of a self-test: a folder, the sample solved once, and the window while it is open."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.wording.samples import sample_design
+from core.design import Design
+from core.document import Document
+
+if TYPE_CHECKING:
+    from app.exporting.outcome import Outcome
+    from app.main_window import MainWindow
+    from core.pipeline import Stages
+    from core.solution import Solution
+
+MOVED = "mid-bust"
+"""The line that is worn on the bench, and moved in the window."""
+
+
+class Bench:
+    """What the parts of a self-test share; what is worked out for one is there for the next."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.held = ExitStack()
+        self.window: MainWindow | None = None
+
+    @cached_property
+    def design(self) -> Design:
+        """A design on the sample, one line of which is worn."""
+        return sample_design().with_line(MOVED, 0.93)
+
+    @cached_property
+    def stages(self) -> Stages:
+        """All that comes before solving."""
+        from core.pipeline import build  # noqa: PLC0415 (what cannot be imported is told by the part it is for)
+
+        return build(self.design)
+
+    @cached_property
+    def solution(self) -> Solution:
+        """The design, solved by the adaptive control."""
+        from core.solution import run  # noqa: PLC0415
+
+        return run(self.stages)
+
+    @cached_property
+    def outcome(self) -> Outcome:
+        """What files are written of."""
+        from app.exporting.outcome import Outcome  # noqa: PLC0415
+
+        return Outcome(self.solution.stages, self.solution.control_points, self.solution.records)
+
+    @cached_property
+    def project(self) -> Path:
+        """The design as a project file."""
+        from core.project import save_project  # noqa: PLC0415
+
+        path = self.folder / "self-test \N{LATIN SMALL LETTER E WITH ACUTE} 試し.busk"
+        save_project(path, Document.of(self.design), self.stages.scan, None)
+        return path
+
+    def shown(self) -> MainWindow:
+        """The window; it must be open."""
+        assert self.window is not None, "the window is not open"
+        return self.window

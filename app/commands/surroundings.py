@@ -1,0 +1,65 @@
+"""What a program finds round itself: streams that may be missing or narrow, a terminal or a desktop."""
+
+from __future__ import annotations
+
+import io
+import os
+import sys
+from pathlib import Path
+
+import platformdirs
+
+from app.wording.display import has_display
+from core.errors import UserError
+
+
+def settle_in() -> None:
+    """Make streams safe to write to, and give libraries a lasting place for what they find out."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:  # a Windows program without a console
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115 - as long as we run
+        elif isinstance(stream, io.TextIOWrapper) and stream.errors == "strict":
+            # A console of another code page lacks some of our letters: better one is lost than all.
+            stream.reconfigure(errors="replace")
+    if getattr(sys, "frozen", False):
+        # The packager lets it look for all type of the system at each start anew.
+        kept = platformdirs.user_cache_path("Busk", appauthor=False) / "matplotlib"
+        os.environ["MPLCONFIGDIR"] = str(kept)
+
+
+def has_terminal() -> bool:
+    """Tell whether somebody at a terminal has called; else it was a desktop, or another program."""
+    return any(stream is not None and stream.isatty() for stream in (sys.stdin, sys.stdout, sys.stderr))
+
+
+def is_seen_in_window(file: str) -> bool:
+    """Tell whether the window should say that a file is not there: who double-clicks sees no terminal."""
+    named = bool(Path(file).suffix) or any(mark in file for mark in (os.sep, os.altsep) if mark)
+    return named and has_display() and not has_terminal()
+
+
+def path_of(text: str) -> str:
+    """Return the path of a file that may have been handed over as a URL, as some file managers do."""
+    if not text.lower().startswith("file:"):
+        return text
+    from PySide6.QtCore import QUrl  # noqa: PLC0415 (a window follows, and it brings Qt along)
+
+    url = QUrl(text)
+    if url.host().lower() == "localhost":
+        url.setHost("")
+    return url.toLocalFile() or text
+
+
+def tell(error: UserError, of_window: bool) -> None:
+    """Say what is wrong: in the terminal, and in a box where a window was wanted and no stream is there."""
+    print(f"busk: {error}", file=sys.stderr)
+    if not (of_window and sys.__stderr__ is None and has_display()):
+        return
+    from PySide6.QtWidgets import QApplication, QMessageBox  # noqa: PLC0415
+
+    app = QApplication.instance() or QApplication(sys.argv[:1])
+    box = QMessageBox(QMessageBox.Icon.Warning, "Busk", error.message)
+    box.setInformativeText(error.hint)
+    box.exec()
+    del app
