@@ -74,7 +74,7 @@ OUTSIDE = {
     "lining": QT | {"numpy"},
     "roof": NUMBERS
     | {"PySide6", "pyvista", "pyvistaqt", "platformdirs", "threadpoolctl", "PySide6.QtCore", "PySide6.QtGui"}
-    | {"PySide6.QtWidgets", "PySide6.QtPrintSupport", "PySide6.QtSvg"},
+    | {"PySide6.QtWidgets", "PySide6.QtPrintSupport", "PySide6.QtSvg", "PIL", "ezdxf", "vtkmodules"},
 }
 PANELS = ("lines", "landmarks", "model", "rail", "result", "scan", "status", "top_bar", "view_tools")
 STRANGERS = (
