@@ -8,16 +8,16 @@ import os
 import platform
 import sys
 import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
 import platformdirs
 import PySide6
-from PySide6.QtCore import QLibraryInfo, Qt, QTranslator
-from PySide6.QtGui import QGuiApplication
+from PySide6.QtCore import QEvent, QLibraryInfo, Qt, QTimer, QTranslator
+from PySide6.QtGui import QFileOpenEvent, QGuiApplication
 from PySide6.QtWidgets import QApplication
 
 from app.dress.icons import program_icon
@@ -31,6 +31,52 @@ from core.errors import UserError
 os.environ.setdefault("QT_API", "pyside6")
 os.environ.setdefault("PYQTGRAPH_QT_LIB", "PySide6")
 
+_AGAIN = 200
+"""Milliseconds after which it is looked again whether a question is still open."""
+
+
+class Application(QApplication):
+    """The application: it hears of files that the desktop wants to have opened, at any time.
+
+    macOS starts a program without a word and tells the file that was double-clicked by an event, perhaps
+    before there is a window; it is kept until ``hand_files_to`` names who opens it.
+    """
+
+    def __init__(self, arguments: Sequence[str]) -> None:
+        super().__init__(list(arguments))
+        self._open: Callable[[str], object] | None = None
+        self._asked = ""
+
+    def event(self, event: QEvent) -> bool:
+        """Hear of a file."""
+        if not isinstance(event, QFileOpenEvent):
+            return super().event(event)
+        self._asked = event.file() or self._asked
+        # Whoever opens it may ask about unsaved changes: not in the middle of an event of the system.
+        QTimer.singleShot(0, self, self._hand_on)
+        return True
+
+    def hand_files_to(self, open_file: Callable[[str], object] | None) -> None:
+        """Have files opened by ``open_file``, also the one that was asked for before."""
+        self._open = open_file
+        self._hand_on()
+
+    def _hand_on(self) -> None:
+        if not self._asked or self._open is None:
+            return
+        if self.activeModalWidget() is not None:  # a question is open: one after the other
+            QTimer.singleShot(_AGAIN, self, self._hand_on)
+            return
+        file, self._asked = self._asked, ""
+        self._open(file)
+
+
+def hand_files_to(open_file: Callable[[str], object] | None) -> None:
+    """Have files that the desktop wants opened at any time opened by ``open_file``, or kept if by nobody."""
+    app = QApplication.instance()
+    if isinstance(app, Application):
+        app.hand_files_to(open_file)
+
 
 def application(language: str | None = None, dark: bool | None = None) -> QApplication:
     """Return the application, made if there is none.
@@ -42,7 +88,8 @@ def application(language: str | None = None, dark: bool | None = None) -> QAppli
     existing = QApplication.instance()
     if not isinstance(existing, QApplication):
         QApplication.setHighDpiScaleFactorRoundingPolicy(Qt.HighDpiScaleFactorRoundingPolicy.PassThrough)
-        existing = QApplication(sys.argv[:1])
+        _name_to_windows()
+        existing = Application(sys.argv[:1])
         existing.setOrganizationName("Busk")
         existing.setApplicationName("Busk")
         existing.setApplicationVersion(__version__)
@@ -129,6 +176,15 @@ def chosen_dark(theme: str) -> bool:
     if theme == "system":
         return QGuiApplication.styleHints().colorScheme() == Qt.ColorScheme.Dark
     return theme == "dark"
+
+
+def _name_to_windows() -> None:
+    """Tell Windows that windows are those of Busk, whatever has started it: one button, our picture."""
+    if sys.platform == "win32":
+        import ctypes  # noqa: PLC0415 (only there it has this)
+
+        with suppress(AttributeError, OSError):
+            ctypes.windll.shell32.SetCurrentProcessExplicitAppUserModelID("Busk.Busk")
 
 
 def _refuse_bad_pair() -> None:

@@ -136,6 +136,14 @@ def built() -> Callable[[str], Stages]:
     return stages
 
 
+@pytest.fixture(scope="session")
+def qapp_cls() -> type[QApplication]:
+    """The application of the tests is that of the program."""
+    from app.application import Application
+
+    return Application
+
+
 @pytest.fixture
 def empty_house(qapp: QApplication) -> Iterator[None]:
     """Nothing of a window lives on after a test: no thread of ours, no window; its settings are fresh."""
