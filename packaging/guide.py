@@ -15,7 +15,7 @@ ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
 SITE = ROOT / "site"
 
-PARTS = ("sphinx", "furo", "sphinx-basic-ng", "pygments")
+PARTS = ("sphinx", "snowballstemmer", "furo", "sphinx-basic-ng", "pygments", "accessible-pygments")
 """What parts of the guide's look and search are: their licences go with it."""
 
 _LOADED = re.compile(
