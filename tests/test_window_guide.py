@@ -109,3 +109,12 @@ def test_a_window_that_speaks_japanese_opens_the_japanese_part() -> None:
 
 def test_the_built_guide_is_looked_for_beside_the_resources() -> None:
     assert guide.guide_folder() == Path(__file__).parent.parent / "site"
+
+
+def test_of_a_guide_that_lies_elsewhere_its_own_place_is_asked_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "doc").mkdir()
+    (tmp_path / "site").symlink_to(tmp_path / "doc")
+    monkeypatch.setattr(guide.resources, "files", lambda _: tmp_path / "resources")
+    assert guide.guide_folder() == (tmp_path / "doc").resolve()
