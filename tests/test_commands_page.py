@@ -23,9 +23,11 @@ from page_commands import (
 
 from app.cli import SETTLED
 from app.commands.cli_parser import COMMANDS, _parser, command_options, window_options
+from app.commands.self_test import PARTS
 from core.errors import UserError
 
 COMMANDS_PAGE = ROOT / "docs" / "commands.md"
+REFRESH = "if the page is to follow: python benchmarks/commands_page.py [PAGE ...]"
 ELSEWHERE = ("docs/export.md",)
 """Pages whose commands another test runs."""
 
@@ -68,7 +70,7 @@ def test_a_page_says_what_its_commands_print(
         if example.said is None:
             assert code == SETTLED, f"{example}\n{printed}"
         else:
-            assert agrees(example.said, printed), f"{example}\n{printed}"
+            assert agrees(example.said, printed), f"{example}\n{REFRESH}\n{printed}"
 
 
 def test_the_page_shows_what_each_command_prints() -> None:
@@ -80,8 +82,17 @@ def test_the_page_shows_what_each_command_prints() -> None:
 def test_the_page_has_every_option_in_the_words_of_the_program() -> None:
     page = COMMANDS_PAGE.read_text("utf-8")
     for option, of, told in options():
-        assert re.search(rf"^\| {re.escape(option)} \| {of} \|\s?{re.escape(told)} ?\|$", page, re.M), option
+        assert re.search(rf"^\| {re.escape(option)} \| {of} \|\s?{re.escape(told)} ?\|$", page, re.M), (
+            f"{option}: {REFRESH}"
+        )
     assert page.count("\n| `--") == len(list(options()))
+
+
+def test_the_page_names_every_part_of_the_self_test() -> None:
+    said = next(each.said for each in examples_of(COMMANDS_PAGE) if each.commands == ("busk self-test",))
+    first, *lines, last = (said or "").splitlines()
+    assert [re.split(r"  +", line.strip())[0] for line in lines] == [part.name for part in PARTS[1:]], REFRESH
+    assert (first, last.partition("  ")[0]) == ("...", "all is well")
 
 
 @pytest.mark.parametrize("path", PAGES, ids=names)
