@@ -7,7 +7,7 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
-from app.application import application, log_kept
+from app.application import application, hand_files_to, log_kept
 from app.dress.waiting import Waiting
 from app.keeping.recent import file_at_start, is_first_start
 from app.showing.graphics import begin_graphics, graphics_work
@@ -44,7 +44,9 @@ def run_window(file: str | None = None, safe: bool = False) -> int:
         window.recovery_desk.look()
         if first:
             window.start_desk.tour.begin_when_settled()
+        hand_files_to(window.desk.open_file)
         code = app.exec()
+        hand_files_to(None)
         graphics_work()
     # What the window leaves is taken away here, in the thread that it belongs to.
     gc.collect()
