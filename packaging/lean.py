@@ -81,7 +81,8 @@ TRANSLATIONS = ("*/translations/qtbase_ja.qm", "*/translations/qtbase_en.qm")
 UNTOUCHED = ("numpy", "scipy", "PIL", "pillow", "PySide6", "shiboken6")
 
 # Python packages that an import somewhere names and that Busk never comes to: the network, consoles,
-# development.
+# development. QtTest has to stay: where it is missing, pyqtgraph keeps the error of its import for good, and
+# with it everything that was on the stack then, among it a painter of the window.
 NO_MODULES = [
     "requests", "urllib3", "certifi", "idna", "charset_normalizer", "_ssl", "PySide6.QtNetwork",
     "PySide6.QtTest", "PySide6.QtDBus", "readline", "tkinter", "IPython", "PyQt5", "PyQt6", "PySide2",
