@@ -8,6 +8,7 @@ stays exactly if something that stays is linked to it. ``packaging/README.md`` s
 from __future__ import annotations
 
 import fnmatch
+import json
 import os
 import re
 import subprocess
@@ -85,7 +86,7 @@ UNTOUCHED = ("numpy", "scipy", "PIL", "pillow", "PySide6", "shiboken6")
 # with it everything that was on the stack then, among it a painter of the window.
 NO_MODULES = [
     "requests", "urllib3", "certifi", "idna", "charset_normalizer", "_ssl", "PySide6.QtNetwork",
-    "PySide6.QtTest", "PySide6.QtDBus", "readline", "tkinter", "IPython", "PyQt5", "PyQt6", "PySide2",
+    "PySide6.QtDBus", "readline", "tkinter", "IPython", "PyQt5", "PyQt6", "PySide2",
     "pytest", "hypothesis", "mypy", "librt", "yaml", "sphinx", "docutils", "babel", "jinja2", "pygments",
     "rich", "cyclopts", "setuptools", "pip", "jedi", "lib2to3", "pydoc_data", "PIL._avif",
 ]  # fmt: skip
@@ -197,3 +198,16 @@ def strip(program: Path) -> None:
     for path in sorted(inside.rglob("*.so*")):
         if path.is_file() and not path.is_symlink() and may_be_stripped(path.relative_to(inside).as_posix()):
             subprocess.run(["strip", "--strip-unneeded", str(path)], check=True)
+
+
+def write_origins(to: Path, *entries: Iterable[Entry]) -> None:
+    """Write where everything in the program came from, ``[[place, source], ...]``: the bill is made of that."""
+    origins = sorted(
+        {
+            (_parts(place), str(source))
+            for part in entries
+            for place, source, kind in part
+            if kind != "SYMLINK"
+        }
+    )
+    to.write_text(json.dumps(origins, indent=0), "utf-8")
