@@ -92,7 +92,9 @@ def _parser(command: str) -> argparse.ArgumentParser:
         _add_files(parser)
     _add_design(parser, command)
     if command == "solve":
-        parser.add_argument("--volume", choices=CONTROLS)
+        parser.add_argument(
+            "--volume", choices=CONTROLS, help="what keeps the volume; else as the project says, or adaptive"
+        )
         parser.add_argument(
             "--turns", type=_turns, metavar="N", help="exactly N turns; else until settled, at most 300"
         )
@@ -112,9 +114,11 @@ def _parser(command: str) -> argparse.ArgumentParser:
             "--view", default="three-quarter", help="front, left, right, back, three-quarter, top, side"
         )
         parser.add_argument("--window", action="store_true", help="the whole window, not just the body")
-        parser.add_argument("--dark", action="store_true")
-        parser.add_argument("--language", choices=("en", "ja"), default="en")
-        parser.add_argument("--size", type=_size, default=(1600, 1000), metavar="WIDTHxHEIGHT")
+        parser.add_argument("--dark", action="store_true", help="a picture on dark ground")
+        parser.add_argument("--language", choices=("en", "ja"), default="en", help="that of the window")
+        parser.add_argument(
+            "--size", type=_size, default=(1600, 1000), metavar="WIDTHxHEIGHT", help="of a picture"
+        )
     if command == "sweep":
         parser.add_argument("--quick", action="store_true", help="a few cases only")
     if command == "figures":
@@ -122,7 +126,8 @@ def _parser(command: str) -> argparse.ArgumentParser:
     if command in ("solve", "picture", "demo", "figures", "sweep", "accuracy", "self-test"):
         needed = command not in ("demo", "accuracy", "self-test")
         default = None if command in ("accuracy", "self-test") else "out"
-        parser.add_argument("--out", required=needed, default=default, metavar="PLACE")
+        help_ = "the picture: .png" if command == "picture" else "the folder that is written to"
+        parser.add_argument("--out", required=needed, default=default, metavar="PLACE", help=help_)
     return parser
 
 
@@ -164,7 +169,7 @@ def _add_sheet(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", required=True, metavar="FILE", help="the sheet: .pdf")
     parser.add_argument("--json", default="", metavar="FILE", help="all of it as data: .json")
     parser.add_argument("--csv", default="", metavar="FILE", help="all its figures as one long table: .csv")
-    parser.add_argument("--language", choices=("en", "ja"), default="en")
+    parser.add_argument("--language", choices=("en", "ja"), default="en", help="that of the sheet")
     parser.add_argument("--customer", metavar="TEXT", help="whose it is, else as the project says")
     parser.add_argument(
         "--system", default="jp", metavar="KEY", help="the sizes that come first: jp, eu, uk, us, fr, it, au"
