@@ -1,7 +1,7 @@
 # Two commands do it all: `make run` opens the program, `make test` checks it. Both set up first what they need.
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help run test setup setup-test lint types bench lock docs docs-pictures clean
+.PHONY: help run test setup setup-test lint types bench lock docs docs-pictures package-test clean
 export PYTHON
 
 python := .venv/bin/python
@@ -51,6 +51,9 @@ site/index.html: $(GUIDE)
 
 docs-pictures: setup-test  ## draw the pictures of the documentation again
 	@$(python) packaging/docs_pictures.py
+
+package-test: setup  ## install what make package made in a minimal Debian (as root; else unpack it), use it, remove it
+	@sh packaging/linux/try_install.sh
 
 clean:  ## remove caches, builds and out/ (the environment .venv stays)
 	rm -rf out build dist site busk.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis

@@ -69,7 +69,7 @@ def checksums(stage: Path) -> str:
     """Return the list by which ``dpkg --verify`` finds a file that was changed."""
     files = sorted(path for path in stage.rglob("*") if path.is_file() and not path.is_symlink())
     return "".join(
-        f"{hashlib.file_digest(path.open('rb'), 'md5').hexdigest()}  {path.relative_to(stage)}\n"
+        f"{hashlib.md5(path.read_bytes()).hexdigest()}  {path.relative_to(stage)}\n"
         for path in files
         if "DEBIAN" not in path.parts
     )

@@ -24,6 +24,9 @@ OTHERS = {
 # Debian 13 and Ubuntu 24.04 know these under a new name; Debian 12 under the old one.
 RENAMED = {"libglib2.0-0", "libcups2"}
 
+# Done without where it is not there: numba's loops run on another pool of threads.
+OPTIONAL = {"libtbb.so.12"}
+
 # No library is linked to it: the keyboards that libxkbcommon, inside the program, reads when a window opens.
 READ_BY_NAME = ("xkb-data",)
 
@@ -44,7 +47,7 @@ def read_libraries(program: Path) -> tuple[set[str], str]:
 def depends(outside: set[str], libc: str) -> str:
     """Return the field ``Depends`` for libraries from outside; raises LookupError for an unknown one."""
     packages = set(READ_BY_NAME)
-    for name in outside:
+    for name in outside - OPTIONAL:
         package = {**OF_THE_SYSTEM, **OTHERS}.get(name)
         if package:
             packages.add(f"{package}t64 | {package}" if package in RENAMED else package)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from man_page import man_page
 from PySide6.QtCore import QRectF
-from PySide6.QtGui import QGuiApplication, QImage, QPainter
+from PySide6.QtGui import QImage, QPainter
 from PySide6.QtSvg import QSvgRenderer
 
 HERE = Path(__file__).parent
@@ -72,8 +72,6 @@ def drawn(drawing: Path, size: int) -> QImage:
 
 
 def _add_icons(hicolor: Path) -> None:
-    os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
-    _app = QGuiApplication.instance() or QGuiApplication([])
     for drawing, kind, name in (("busk", "apps", "busk"), ("busk-project", "mimetypes", PROJECT_TYPE)):
         source = DRAWINGS / f"{drawing}.svg"
         _copied(source, hicolor / "scalable" / kind / f"{name}.svg")

@@ -1,0 +1,11 @@
+"""Writes a project of the sample body for an installed Busk to open: ``python sample_project.py FILE``."""
+
+import sys
+from pathlib import Path
+
+from app.wording.samples import sample_design, sample_path
+from core.document import Document
+from core.project import ScanFile, save_project
+
+scan = sample_path("mannequin")
+save_project(Path(sys.argv[1]), Document.of(sample_design()), ScanFile(scan.name, scan.read_bytes()), None)
