@@ -1,0 +1,108 @@
+"""The list of the pictures of the window in README and guide: what each shows, in which size and language."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+
+import scenes
+from scenes import (
+    Scene,
+    bra,
+    cut_bra,
+    eased_bra,
+    for_somebody,
+    made_of_elastics,
+    own_scan,
+    sheet,
+    step,
+    tab,
+    vibrating,
+)
+
+from app.wording.samples import sample_design
+from core.design import Design
+
+
+@dataclass(frozen=True)
+class Shot:
+    """A picture by its name under ``docs/pictures``; a ``small`` one is written in 256 colours."""
+
+    name: str
+    design: Callable[[], Design]
+    scene: Scene
+    options: Mapping[str, object] = field(default_factory=dict)
+    small: bool = False
+
+
+SMALL, LARGE = (1280, 800), (1600, 1000)
+DARK = {"dark": True, "language": "ja", "size": SMALL}
+
+
+def _mannequin() -> Design:
+    return sample_design()
+
+
+def _person() -> Design:
+    return sample_design("person")
+
+
+def runs() -> Iterator[Design]:
+    """Give a design whose run settles, one that strains, one that folds and one that vibrates."""
+    yield _mannequin().with_line("mid-bust", 0.95)
+    yield _mannequin().with_line("mid-bust", 0.89)
+    yield _mannequin().with_line("mid-bust", 0.6)
+    yield vibrating()
+
+
+# Of the first customer, in both languages.
+FIRST: tuple[tuple[str, Callable[[], Design], Scene], ...] = (
+    ("first-scan", own_scan, step("scan")),
+    ("first-landmarks", own_scan, scenes.pin_selected),
+    ("first-lines", bra, tab("lines", "strap left")),
+    ("first-garment", cut_bra, tab("garment", "mid-bust")),
+    ("first-pressure", cut_bra, scenes.pressed),
+    ("first-report", eased_bra, scenes.reported),
+)
+
+# Of each screen, in both languages.
+SCREENS: tuple[tuple[str, Callable[[], Design], Scene], ...] = (
+    ("tour", _mannequin, scenes.touring),
+    ("start", _mannequin, scenes.start_page),
+    *((name, _person, step(name)) for name in ("scan", "landmarks", "lines", "result")),
+    ("ask", _person, scenes.asking),
+    ("path", _mannequin, scenes.drawing),
+    ("garment", made_of_elastics, tab("garment")),
+    ("wipe", _mannequin, scenes.wiped),
+    ("pressure", made_of_elastics, scenes.pressed),
+    ("variants", _mannequin, scenes.variants),
+    ("model", scenes.sliding, scenes.model_page),
+    ("report", for_somebody, scenes.reported),
+    ("export", made_of_elastics, sheet(scenes.exporting("lines"))),
+    ("elastics", made_of_elastics, sheet(lambda window: window.elastics_desk.show())),
+    ("preferences", _mannequin, sheet(scenes.preferring)),
+    ("commands", _mannequin, sheet(scenes.searched)),
+    ("keys", _mannequin, sheet(lambda window: window.help.show_keys())),
+)
+
+# Of README and of pages in one language.
+ONCE = (
+    Shot("window", _mannequin, scenes.nothing, {"size": LARGE}),
+    Shot("map", _mannequin, scenes.mapped, {"size": LARGE}),
+    Shot("vibrating", vibrating, scenes.with_control_mesh, {"dark": True, "size": SMALL}),
+    Shot("report-dark-ja", for_somebody, scenes.reported, DARK),
+    Shot("lines-dark-ja", _person, step("lines"), DARK, small=True),
+    Shot("export-dark-ja", made_of_elastics, sheet(scenes.exporting("turntable")), DARK),
+)
+
+
+def _all() -> Iterator[Shot]:
+    yield from ONCE
+    for name, design, scene in (*FIRST, *SCREENS):
+        english = Shot(name, design, scene, {"size": SMALL}, small=True)
+        yield english
+        yield replace(english, name=f"ja/{name}", options={"size": SMALL, "language": "ja"})
+    yield Shot("ja/map", _mannequin, scenes.mapped, {"size": LARGE, "language": "ja"}, small=True)
+
+
+SHOTS = tuple(_all())

@@ -1,0 +1,259 @@
+"""What the pictures of the documentation show: designs, and how a window is brought to what is seen.
+
+Imported by the scripts that draw once Qt draws off-screen and the folders of the program are their own.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from PySide6.QtWidgets import QApplication, QDialog, QWidget
+
+from app.commands.picture import wait_until
+from app.dress.wishes import wish_for
+from app.main_window import MainWindow
+from app.panels.commands import CommandSheet
+from app.wording.samples import sample_design, sample_path
+from app.wording.words import language, tr
+from core.design import Design, ScanSource
+from core.elastics import find_elastic
+from core.presets import built_in, with_preset
+
+Scene = Callable[[MainWindow], QWidget | None]
+"""Brings a window to what is shown; returns the part that the picture is of, None for all of it."""
+
+HOUSE = TemporaryDirectory()
+"""Holds the projects and scans that pictures show the names of."""
+
+
+def use_own_folders() -> None:
+    """Let the program write into folders that are gone afterwards: what was open here is private."""
+    for kind in ("CONFIG", "DATA", "STATE", "CACHE"):
+        os.environ[f"XDG_{kind}_HOME"] = str(Path(HOUSE.name) / kind.lower())
+
+
+def wait_for(ready: Callable[[], bool]) -> None:
+    """Let events pass until something is so."""
+    wait_until(ready, QApplication.processEvents)
+
+
+# -- designs
+
+
+def own_scan() -> Design:
+    """Return a customer's scan as it is opened: nothing is told of it, no line is set."""
+    path = Path(HOUSE.name) / "customer 0412.ply"
+    if not path.exists():
+        shutil.copy(sample_path("person"), path)
+    return Design(ScanSource(str(path)))
+
+
+def bra() -> Design:
+    """Return the lines of a bra on a customer's scan, the straps shorter than the preset has them."""
+    design = with_preset(own_scan(), next(each for each in built_in() if each.title == "Bra"))
+    for name in ("strap left", "strap right"):
+        design = design.with_line(name, 0.94)
+    return design
+
+
+def cut_bra(mid_bust: float = 0.72, straps: float = 0.7) -> Design:
+    """Return a bra that is all of one elastic, by default so short that the body stays much as it was."""
+    design, elastic = bra(), find_elastic("strap 15")
+    lengths = {"mid-bust": mid_bust, "under-bust": 1.0 / 1.2, "strap left": straps, "strap right": straps}
+    for name, ratio in lengths.items():
+        design = design.with_line(name, ratio).with_elastic(name, elastic)
+    return replace(design, customer="Customer 0412")
+
+
+def eased_bra() -> Design:
+    """Return the same bra, longer: it presses less."""
+    return cut_bra(mid_bust=0.85, straps=0.88)
+
+
+def sliding() -> Design:
+    """Return a line that slides over a firm chest."""
+    design = replace(sample_design("person"), line_contact="sliding", firm_chest=0.1)
+    return design.with_line("mid-bust", 0.93)
+
+
+def vibrating() -> Design:
+    """Return a line far too short under the conventional force."""
+    return replace(sample_design().with_line("mid-bust", 0.62), volume="conventional")
+
+
+def made_of_elastics() -> Design:
+    """Return three lines that are made of elastics."""
+    design = sample_design()
+    for name, elastic in (("full-bust", "picot 10"), ("mid-bust", "picot 10"), ("under-bust", "plush 15")):
+        design = design.with_line(name, 0.78).with_elastic(name, find_elastic(elastic))
+    return design
+
+
+def for_somebody() -> Design:
+    """Return the same with the name of a customer."""
+    return replace(made_of_elastics(), customer="Customer 0412")
+
+
+# -- scenes
+
+
+def nothing(window: MainWindow) -> None:
+    """Leave the window as it opens."""
+
+
+def step(name: str) -> Scene:
+    """Go to one of the steps."""
+
+    def there(window: MainWindow) -> None:
+        window.desk.go_to(name)
+
+    return there
+
+
+def tab(name: str, line: str = "") -> Scene:
+    """Open a tab beside the lines, with a line selected or as it is."""
+
+    def there(window: MainWindow) -> None:
+        window.desk.go_to("lines")
+        window.inspector.open(name)
+        if line:
+            window.desk.select_line(line)
+        if name == "garment":
+            wait_for(lambda: window.pressure_desk.shown is not None)
+
+    return there
+
+
+def with_control_mesh(window: MainWindow) -> None:
+    """Show the control mesh."""
+    window.view.set_layer("control-mesh", True)
+
+
+def wiped(window: MainWindow) -> None:
+    """Wipe between before and after, seen from the left."""
+    window.desk.go_to("result")
+    window.view.viewport.set_view("left")
+    window.view.compare_by("wipe")
+
+
+def mapped(window: MainWindow) -> None:
+    """Show a map with the section plane."""
+    window.desk.go_to("result")
+    window.map_desk.choose("displacement")
+    window.section_desk.set_on(True)
+
+
+def pressed(window: MainWindow) -> None:
+    """Look at the place that is pressed most."""
+    window.desk.go_to("result")
+    window.inspector.open("garment")
+    wait_for(lambda: window.pressure_desk.shown is not None)
+    view = window.view.viewport
+    view.frame_points(view.scene.bands.spine("mid-bust")[0])
+    window.pressure_desk.card.place.click()
+    window.desk.select_line("")
+
+
+def pin_selected(window: MainWindow) -> None:
+    """Select a landmark, seen from the front."""
+    window.desk.go_to("landmarks")
+    window.view.viewport.set_view("front")
+    window.landmarks.rows["bust_point_left"].click()
+
+
+def variants(window: MainWindow) -> None:
+    """Put two variants side by side."""
+    window.variant_desk.choose("B")
+    window.session.commit_line("mid-bust", "Mid-bust", 0.9)
+    wait_for(window.is_settled)
+    window.variant_desk.show_side_by_side()
+    window.inspector.open("history")
+
+
+def start_page(window: MainWindow) -> None:
+    """Show the page with two projects that were saved before."""
+    for name, ratio in (("Customer 0398", 0.97), ("Customer 0412", 0.92)):
+        window.session.commit_line("mid-bust", "Mid-bust", ratio)
+        wait_for(window.is_settled)
+        window.session.save(str(Path(HOUSE.name) / f"{name}.busk"), window.desk._preview())
+        window.session.finish_saving()
+    window.start_desk.show_page()
+
+
+def drawing(window: MainWindow) -> None:
+    """Lead a strap through other control points."""
+    window.line_maker.add("straps")
+    wait_for(window.is_settled)
+    window.line_routing.begin("strap left")
+
+
+def model_page(window: MainWindow) -> None:
+    """Open the page of all choices of the model."""
+    window.desk.show_model()
+
+
+def asking(window: MainWindow) -> None:
+    """Ask which way the front is."""
+    window.desk.go_to("scan")
+    window.scan_desk.ask()
+    wait_for(window.view.question.isVisible)
+
+
+def reported(window: MainWindow) -> None:
+    """Show the sheet to work from."""
+    window.report_desk.open()
+    wait_for(window.report_desk.page.does["pdf"].isEnabled)
+
+
+def touring(window: MainWindow) -> None:
+    """Begin the tour."""
+    window.start_desk.take_tour()
+    wait_for(lambda: window.is_settled() and window.start_desk.tour.mark.isVisible())
+
+
+def verdict(window: MainWindow) -> QWidget:
+    """Show the strip under the view alone."""
+    return window.strip
+
+
+def preferring(window: MainWindow) -> None:
+    """Open the preferences, the language of the window chosen."""
+    wish_for("language", language())
+    window.preferences.show()
+
+
+def sheet(show: Callable[[MainWindow], object]) -> Scene:
+    """Open a sheet over the window, and show it alone."""
+
+    def there(window: MainWindow) -> QWidget:
+        before = set(window.findChildren(QDialog))
+        show(window)
+        opened = (each for each in window.findChildren(QDialog) if each not in before and each.isVisible())
+        return next(opened)
+
+    return there
+
+
+def searched(window: MainWindow) -> None:
+    """Search the commands by a word of the trade."""
+    window.help.find_command()
+    found = next(each for each in window.findChildren(CommandSheet) if each.isVisible())
+    found.search.setText(tr("Mid-bust") if language() == "ja" else "lift")
+
+
+def exporting(what: str) -> Callable[[MainWindow], None]:
+    """Open the sheet of the export with one of its kinds chosen."""
+
+    def there(window: MainWindow) -> None:
+        desk = window.export_desk
+        desk.show()
+        assert desk.sheet is not None
+        desk.sheet.items[what].click()
+        wait_for(lambda: not window.jobs.at_work())
+
+    return there

@@ -1,0 +1,81 @@
+"""What the guide quotes from the screen stands there, in both languages; its Japanese keeps to docs/words.md."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from pathlib import Path
+
+import pytest
+from test_word_list import refused
+from test_words import asked_words
+
+from app.lining.elastic_menu import kind_title
+from app.wording.samples import SAMPLES
+from app.wording.words import read_words, say, speaking, tr
+from core.elastics import built_in as elastics
+from core.presets import built_in as presets
+
+DOCS = Path(__file__).parent.parent / "docs"
+PAGES = ("first.md", "screens.md")
+PAIRS = [(language, name) for language in ("en", "ja") for name in PAGES]
+
+
+def page_of(language: str, name: str) -> str:
+    return (DOCS / ("" if language == "en" else language) / name).read_text("utf-8")
+
+
+def quoted(text: str) -> list[str]:
+    """What stands in bold, which on these pages is what stands on the screen."""
+    return re.findall(r"\*\*(.+?)\*\*", text)
+
+
+@cache
+def on_the_screen(language: str) -> set[str]:
+    """The words of the window, the names of presets, of kinds of elastic and of samples."""
+    table = read_words("ja")
+    words = {word if language == "en" else table[word] for word in asked_words()}
+    with speaking(language):
+        names = {say(each.title) for each in presets()} | {kind_title(each) for each in elastics()}
+        names |= {tr(title) for title in SAMPLES.values()}
+    # A label may be set in lines of its own.
+    return {word.replace("\n", "") for word in words | names}
+
+
+@pytest.mark.parametrize(("language", "name"), PAIRS)
+def test_what_is_quoted_from_the_screen_stands_there(language: str, name: str) -> None:
+    found, there = quoted(page_of(language, name)), on_the_screen(language)
+    assert len(found) > 20
+    assert [each for each in found if each not in there] == []
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_both_languages_quote_the_same(name: str) -> None:
+    """A step or a label that one of the pages lacks is seen here; order and repetition are free."""
+    table = read_words("ja")
+    with speaking("ja"):
+        names = {each.title: say(each.title) for each in presets()}
+        kinds = {each.name: kind_title(each) for each in elastics()}
+    with speaking("en"):
+        kinds = {kind_title(each): kinds[each.name] for each in elastics()}
+    table = table | names | kinds
+    english = {table[each] for each in quoted(page_of("en", name))}
+    assert english ^ set(quoted(page_of("ja", name))) == set()
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_both_languages_show_the_same_pictures_in_the_same_order(name: str) -> None:
+    shown = [
+        [Path(place).name for place in re.findall(r"!\[.*?\]\((.+?)\)", page_of(language, name))]
+        for language in ("en", "ja")
+    ]
+    same = [each for each in shown[0] if each != "vibrating.png"]
+    assert same == shown[1]
+
+
+@pytest.mark.parametrize("name", [*PAGES, "index.md"])
+def test_the_japanese_guide_keeps_to_the_list_of_words(name: str) -> None:
+    text = page_of("ja", name)
+    wrong = {english: re.findall(pattern, text) for english, pattern in refused()}
+    assert {english: found for english, found in wrong.items() if found} == {}
+    assert not re.search(r"[ぁ-んァ-ヶ一-龥][,?!]", text), "commas and question marks are full-width"
