@@ -1,7 +1,7 @@
 # Two commands do it all: `make run` opens the program, `make test` checks it. Both set up first what they need.
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help run test setup setup-test lint types bench lock docs docs-pictures package-test clean
+.PHONY: help run test setup setup-test lint types bench lock docs docs-pictures package-test check-windows clean
 export PYTHON
 
 python := .venv/bin/python
@@ -54,6 +54,9 @@ docs-pictures: setup-test  ## draw the pictures of the documentation again
 
 package-test: setup  ## install what make package made in a minimal Debian (as root; else unpack it), use it, remove it
 	@sh packaging/linux/try_install.sh
+
+check-windows: setup  ## compile the installer for Windows on a stand-in (needs nsis, p7zip-full), try it in wine64 if there
+	@$(python) packaging/windows/try_installer.py
 
 clean:  ## remove caches, builds and out/ (the environment .venv stays)
 	rm -rf out build dist site busk.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis
