@@ -6,6 +6,8 @@ import re
 import sys
 from pathlib import Path
 
+from docutils import nodes
+
 DOCS = Path(__file__).parent
 sys.path.insert(0, str(DOCS.parent))
 
@@ -109,6 +111,16 @@ def as_guide(app: object, page: str, source: list[str]) -> None:
     source[0] = f"{text}\n{listed_pages(text)}" if page == "index" else text
 
 
+def caption_pictures(app: object, page: nodes.document) -> None:
+    """Let what a picture that stands by itself shows be read under it too."""
+    for number, picture in enumerate(list(page.findall(nodes.image)), start=1):
+        around = picture.parent
+        alone = isinstance(around, nodes.paragraph) and len(around) == 1
+        if alone and picture.get("alt") and not isinstance(around.parent, nodes.entry):
+            caption = nodes.caption("", picture["alt"])
+            around.replace_self(nodes.figure("", picture, caption, ids=[f"picture-{number}"]))
+
+
 def other_language(app: object, page: str, template: str, context: dict[str, object], tree: object) -> None:
     """Tell the template where the page, or the first one, stands in the other language."""
     there = DOCS if japanese else DOCS / "ja"
@@ -120,4 +132,5 @@ def other_language(app: object, page: str, template: str, context: dict[str, obj
 def setup(app) -> None:
     """Ask to be called."""
     app.connect("source-read", as_guide)
+    app.connect("doctree-read", caption_pictures)
     app.connect("html-page-context", other_language)
