@@ -104,6 +104,12 @@ def test_what_else_is_called_is_there(path: Path) -> None:
     assert all((ROOT / script).is_file() for script in scripts)
 
 
+@pytest.mark.parametrize("path", PAGES, ids=names)
+def test_every_link_and_picture_leads_to_a_file(path: Path) -> None:
+    links = re.findall(r"\]\(([^)#:\s]+)(?:#[^)]*)?\)", path.read_text("utf-8"))
+    assert [link for link in links if not (path.parent / link).exists()] == []
+
+
 def test_a_renamed_option_and_another_figure_do_not_pass() -> None:
     with pytest.raises(UserError, match="--line-length"):
         parsed("busk solve scan.ply --line-length mid-bust=97% --out result")
