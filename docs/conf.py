@@ -96,18 +96,12 @@ def as_guide(app: object, page: str, source: list[str]) -> None:
     """Lead links to where things are in the guide, and give its first page the table of contents."""
     text = source[0]
     for outside, inside in OUTSIDE.items():
-        text = text.replace(f"]({'../' if japanese else ''}{outside}", f"]({inside}")
+        text = text.replace(f"]({outside}", f"]({inside}")
     # From one language to the other: to pages that this run of Sphinx does not know.
     text = re.sub(r"\]\((\.\./\w+|ja/\w+)\.md\)", r"](page:\1.html)", text)
     text = re.sub(r"\]\((\.\./\w+|ja/\w+)\.md#", r"](heading:\1.html#", text)
     # A page that is named by its file is named by its title.
     text = re.sub(r"\[\w+\.md\](?=\(\w+\.md\))", "[]", text)
-    if page == "index":  # FIXME
-        here = DOCS / "ja" if japanese else DOCS
-        missing = [
-            page for page in re.findall(r"\]\((\w+)\.md\)", text) if not (here / f"{page}.md").is_file()
-        ]
-        text = re.sub(rf"\[([^]]*)\]\((?:{'|'.join(missing)})\.md\)", r"\1", text)
     source[0] = f"{text}\n{listed_pages(text)}" if page == "index" else text
 
 
