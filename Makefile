@@ -1,7 +1,7 @@
 # Two commands do it all: `make run` opens the program, `make test` checks it. Both set up first what they need.
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help run test setup setup-test lint types bench lock docs docs-pictures package-test check-windows clean
+.PHONY: help run test setup setup-test lint types bench lock docs docs-pictures package package-numbers setup-package package-test check-windows clean
 export PYTHON
 
 python := .venv/bin/python
@@ -51,6 +51,15 @@ site/index.html: $(GUIDE)
 
 docs-pictures: setup-test  ## draw the pictures of the documentation again
 	@$(python) packaging/docs_pictures.py
+
+package: setup-package  ## build the program that is installed: Debian package, portable archive, bill, checksums in dist/
+	@$(python) packaging/package.py
+
+package-numbers: setup  ## hold every number of the frozen program to those of the source
+	@$(python) packaging/compare_numbers.py
+
+setup-package:
+	@sh packaging/setup.sh package
 
 package-test: setup  ## install what make package made in a minimal Debian (as root; else unpack it), use it, remove it
 	@sh packaging/linux/try_install.sh

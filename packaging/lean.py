@@ -201,7 +201,7 @@ def strip(program: Path) -> None:
 
 
 def write_origins(to: Path, *entries: Iterable[Entry]) -> None:
-    """Write where everything in the program came from, ``[[place, source], ...]``: the bill is made of that."""
+    """Write where everything came from, ``[[place, source], ...]``: the bill is made of that."""
     origins = sorted(
         {
             (_parts(place), str(source))

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Prepares this checkout: `packaging/setup.sh run` for the program, `packaging/setup.sh test` for its tests as well.
+# Prepares this checkout: `packaging/setup.sh run` for the program, `test` for its tests, `package` for building it.
 # It can be repeated at any time: what is ready is left alone, what an interrupted run left half done is done again.
 set -eu
 cd "$(dirname "$0")/.."
@@ -7,6 +7,7 @@ cd "$(dirname "$0")/.."
 WINDOW_LIBRARIES="libegl1 libgl1 libglib2.0-0 libdbus-1-3 libfontconfig1 libxkbcommon0
     libxkbcommon-x11-0 libxcb-cursor0 libxcb-icccm4 libxcb-keysyms1 libxcb-shape0"
 VIRTUAL_DISPLAY="xvfb xauth"
+BUILDING="binutils zstd dpkg"
 
 say() { printf 'busk: %s\n' "$@" >&2; }
 fail() { say "$@"; exit 1; }
@@ -29,7 +30,11 @@ is_installed() {
 }
 
 wanted_packages() {
-    echo $WINDOW_LIBRARIES $([ "$level" = test ] && echo "$VIRTUAL_DISPLAY")
+    echo $WINDOW_LIBRARIES
+    case "$level" in
+        test) echo $VIRTUAL_DISPLAY ;;
+        package) echo $BUILDING ;;
+    esac
 }
 
 missing_packages() {
