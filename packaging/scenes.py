@@ -19,7 +19,7 @@ from app.dress.wishes import wish_for
 from app.main_window import MainWindow
 from app.panels.commands import CommandSheet
 from app.wording.samples import sample_design, sample_path
-from app.wording.words import language, tr
+from app.wording.words import language
 from core.design import Design, ScanSource
 from core.elastics import find_elastic
 from core.presets import built_in, with_preset
@@ -243,7 +243,7 @@ def searched(window: MainWindow) -> None:
     """Search the commands by a word of the trade."""
     window.help.find_command()
     found = next(each for each in window.findChildren(CommandSheet) if each.isVisible())
-    found.search.setText(tr("Mid-bust") if language() == "ja" else "lift")
+    found.search.setText("カップ" if language() == "ja" else "lift")
 
 
 def exporting(what: str) -> Callable[[MainWindow], None]:

@@ -1,4 +1,4 @@
-"""What the guide quotes from the screen stands there, in both languages; its Japanese keeps to docs/words.md."""
+"""What the guide quotes from the screen stands there, in both languages; it keeps to docs/words.md."""
 
 from __future__ import annotations
 

@@ -1,0 +1,152 @@
+"""The walk of docs/first.md through the real window: from a scan file to the sheet and the saved project."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from garment_tools import at_rest, cut_rows, made_of, pick
+from pdf_tools import Pdf
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+from test_window_scan import pull
+from window_tools import Script, drag, run_main, settled, undrawn
+
+from app.main_window import MainWindow
+from app.presenting.bust import bust_move
+from core.project import open_project
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+@pytest.fixture(autouse=True)
+def own_house(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, person: Path) -> None:
+    """A customer's scan, and answers to the dialogs of files."""
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+    shutil.copy(person, tmp_path / "anna.ply")
+    monkeypatch.setattr("app.desks.desk.ask_open", lambda *_: str(tmp_path / "anna.ply"))
+    monkeypatch.setattr("app.desks.desk.ask_save", lambda *_: str(tmp_path / "anna.busk"))
+    monkeypatch.setattr("app.desks.report_desk.ask_save", lambda *_: str(tmp_path / "anna.pdf"))
+
+
+def test_the_first_customer_as_the_guide_tells_it(tmp_path: Path) -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        yield from opened(window)
+        yield from corrected(window)
+        yield from dressed(window)
+        yield from cut(window)
+        yield from eased(window)
+        yield from printed(window, tmp_path)
+        yield from kept(window, tmp_path)
+
+    assert run_main([], script) == 0
+
+
+def opened(window: MainWindow) -> Script:
+    """Steps 1 to 3: the tour is there and skipped, the scan is opened and understood."""
+    mark = window.start_desk.tour.mark
+    yield mark.isVisible
+    QTest.keyClick(mark, Qt.Key.Key_Escape)
+    assert not mark.isVisible()
+    window.actions_.open.trigger()
+    yield lambda: window.session.design is not None and "anna" in window.session.design.scan.path
+    yield settled(window)
+    window.rail.items["scan"].click()
+    frame = window.session.frame
+    assert frame is not None
+    assert frame.stages.body.pose.unit == "mm"
+    assert frame.stages.body.pose.front == "-y"
+    assert frame.stages.design.worn() == set(), "a scan is opened with no line set"
+
+
+def corrected(window: MainWindow) -> Script:
+    """Steps 4 and 5: a pin is dragged, seen from the front."""
+    window.rail.items["landmarks"].click()
+    window.view.viewport.set_view("front")
+    assert window.session.frame is not None
+    before = window.session.frame.stages.landmarks.position("bust_point_left")
+    pull(window, "bust_point_left", QPoint(0, -6))
+    yield settled(window)
+    assert window.session.frame is not None
+    landmarks = window.session.frame.stages.landmarks
+    assert landmarks.points["bust_point_left"].by_hand
+    assert 2.0 < float(np.linalg.norm(landmarks.position("bust_point_left") - before)) < 25.0
+
+
+def dressed(window: MainWindow) -> Script:
+    """Steps 6 to 10: a preset is worn, the straps are dragged, the body comes to rest higher."""
+    window.rail.items["lines"].click()
+    window.preset_desk.fill()
+    menu = window.actions_.menus["presets"]
+    next(each for each in menu.actions() if each.text() == "Bra").trigger()
+    yield settled(window)
+    assert set(window.session.design.worn()) == {"mid-bust", "strap left", "strap right"}
+    assert window.session.frame is not None
+    lift = bust_move(window.session.frame).mean.up
+    drag(window, "strap left", -30)
+    yield settled(window)
+    assert window.session.design.ratio("strap left") == window.session.design.ratio("strap right") < 0.96
+    assert bust_move(window.session.frame).mean.up > lift + 1.0
+    assert window.strip.chip.accessibleName().startswith("Settled")
+    for shown in (1.0, 0.0):
+        window.actions_.flip.trigger()
+        assert window.view.compare.isVisible(), shown
+
+
+def cut(window: MainWindow) -> Script:
+    """Steps 11 and 12: one elastic for all lines, and how long to cut it."""
+    window.inspector.open("garment")
+    yield at_rest(window)
+    assert window.garment.offer.isVisible()
+    window.garment.offer.asked.emit()
+    pick(window, "Strap", "15 mm")
+    yield made_of(window, "mid-bust", "under-bust", "strap left", "strap right")
+    for line, row in cut_rows(window).items():
+        assert row.cut_mm
+        assert window.garment.rows[line].cut.text() == f"{row.cut_mm:,.0f}"
+
+
+def eased(window: MainWindow) -> Script:
+    """Steps 13 and 14: it is tight; the lines are made longer, and it is not."""
+    desk = window.pressure_desk
+    yield lambda: desk.shown is not None and at_rest(window)()
+    assert max(row.max_kpa or 0.0 for row in desk.shown.rows) > 4.0
+    for line, ratio in (("mid-bust", 0.85), ("strap left", 0.88)):
+        window.lines_desk.commit_length(line, ratio)
+    yield lambda: at_rest(window)() and max(row.max_kpa or 0.0 for row in desk.shown.rows) < 4.0
+
+
+def printed(window: MainWindow, folder: Path) -> Script:
+    """Steps 15 to 17: the customer is named, the sheet saved."""
+    desk = window.report_desk
+    window.top.primary.click()
+    desk.page.customer.setFocus()
+    QTest.keyClicks(desk.page.customer, "Anna 0412")
+    QTest.keyClick(desk.page.customer, Qt.Key.Key_Return)
+    yield desk.page.does["pdf"].isEnabled
+    desk.page.does["pdf"].click()
+    text = Pdf(folder / "anna.pdf").text()
+    assert "Anna 0412" in text
+    for row in cut_rows(window).values():
+        assert f"{row.cut_mm:,.0f}" in text
+    QTest.keyClick(window, Qt.Key.Key_Escape)
+    assert not desk.is_open
+
+
+def kept(window: MainWindow, folder: Path) -> Script:
+    """Step 18: the project is saved and opened again as it was left."""
+    window.actions_.save.trigger()
+    assert window.session.finish_saving()
+    design = window.session.design
+    assert open_project(folder / "anna.busk").customer == "Anna 0412"
+    there = []
+    window.session.opened.connect(there.append)
+    window.session.open(str(folder / "anna.busk"))
+    yield lambda: bool(there) and settled(window)()
+    assert window.session.design.lines == design.lines
+    assert window.session.design.placed == design.placed
+    assert window.session.document.customer == "Anna 0412"
