@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import configparser
 import importlib
+import io
+import json
 import os
 import re
 import shutil
 import subprocess
 import sys
+import tarfile
 import xml.etree.ElementTree as ET
 import zipfile
 from pathlib import Path
@@ -155,6 +158,9 @@ def stand_in(folder: Path) -> Path:
     (folder / "_internal" / "data.txt").write_text("data")
     (folder / "_internal" / "data.txt").chmod(0o600)
     (folder / "_internal" / "link").symlink_to("data.txt")
+    (folder / "_internal" / "licences").mkdir()
+    part = {"name": "numpy", "version": "2.4", "licenses": [{"expression": "BSD-3-Clause"}]}
+    (folder / "_internal" / "licences" / "bill.json").write_text(json.dumps({"components": [part]}))
     return folder
 
 
@@ -183,6 +189,11 @@ def test_the_package_holds_the_program_and_all_that_desktops_need(
         "/usr/share/doc/busk/copyright",
         "/usr/share/doc/busk/changelog.gz",
     } <= set(rows)
+    out = subprocess.run(["dpkg-deb", "--fsys-tarfile", made], capture_output=True, check=True).stdout
+    with tarfile.open(fileobj=io.BytesIO(out)) as tar:
+        owned = tar.extractfile("./usr/share/doc/busk/copyright")
+        assert owned is not None
+        assert b"\n  numpy 2.4: BSD-3-Clause\n" in owned.read()
     fields = subprocess.run(["dpkg-deb", "--field", made], capture_output=True, text=True, check=True).stdout
     assert "Version: 9.8.7" in fields
     assert re.search(r"^Depends: libc6 \(>= 2\.\d+\), xkb-data$", fields, re.M)

@@ -25,14 +25,18 @@ PROJECT_TYPE = "application-x-busk"
 COPYRIGHT = """\
 Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
 Upstream-Name: Busk
-Comment: The full texts of all licences named here are in {licences}.
 
 Files: *
-Copyright: the authors of Busk
-License: Apache-2.0
+Copyright: the authors of Busk, and those of the parts that it brings along
+License: Apache-2.0 and those of its parts
 
-License: Apache-2.0
- On Debian systems, the whole text is in /usr/share/common-licenses/Apache-2.0.
+License: Apache-2.0 and those of its parts
+ Busk itself is under the Apache License 2.0; on Debian systems its text is in
+ /usr/share/common-licenses/Apache-2.0.
+ .
+ The parts that it brings along, each with its licence; copyright and text of
+ each stand in /usr/lib/busk/_internal/licences:
+ .
 """
 
 
@@ -83,17 +87,12 @@ def _add_icons(hicolor: Path) -> None:
 
 
 def copyright_text(program: Path) -> str:
-    """Return who owns what, from the bill of materials inside the program where there is one."""
-    text = COPYRIGHT.format(licences="/usr/lib/busk/_internal/licences")
-    for item in bill(program):
-        text += f"\nFiles: usr/lib/busk/_internal/{item['name']}*\nCopyright: see the licence text\n"
-    return text
-
-
-def bill(program: Path) -> list[dict[str, str]]:
-    """Return what is shipped, as the bill inside the program lists it."""
-    files = sorted((program / "_internal/licences").glob("*bill*.json"))
-    return json.loads(files[0].read_text(encoding="utf-8")) if files else []
+    """Return who owns what, as the bill of materials inside the program lists it."""
+    bill = program / "_internal/licences/bill.json"
+    parts = json.loads(bill.read_text(encoding="utf-8"))["components"] if bill.is_file() else []
+    return COPYRIGHT + "".join(
+        f"  {part['name']} {part.get('version', '')}: {part['licenses'][0]['expression']}\n" for part in parts
+    )
 
 
 def _copied(source: Path, target: Path) -> None:
