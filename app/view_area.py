@@ -15,7 +15,7 @@ from app.panels.busy import BusyCard
 from app.panels.question import QuestionCard
 from app.panels.view_tools import CompareTools, ViewTools
 from app.seeing.occlusion import bake_occlusion
-from app.showing.fine_picture import fine_picture
+from app.showing.canvas import load_libraries
 from app.showing.floating import Floating
 from app.showing.panes import Panes
 from app.showing.viewport import Viewport
@@ -75,6 +75,11 @@ class ViewArea(QWidget):
     def tool_actions(self) -> dict[str, QAction]:
         """The actions of all tools, for the menus."""
         return self.compare.actions_by_name | self.tools.actions_by_name
+
+    def prepare(self) -> None:
+        """Load the 3D libraries in a passing thread and make the scene, before there is anything to show."""
+        words = tr("Getting the 3D view ready")
+        self._jobs.run(words, lambda _: load_libraries(), lambda _: self.viewport.make())
 
     # -- what is shown
 
@@ -140,8 +145,7 @@ class ViewArea(QWidget):
     def set_material(self, material: str) -> None:
         """Paint the body as one of ``app.seeing.material.MATERIALS``."""
         for body in self.beside.bodies:
-            body.viewport.scene.set_material(material)
-            body.viewport.request_draw()
+            body.viewport.set_material(material)
 
     def frame_selection(self) -> None:
         """Come close to the selected landmark, if it is shown, else to the selected line."""
@@ -196,6 +200,8 @@ class ViewArea(QWidget):
 
         Of what floats over it only that is in the picture which explains it, such as the legend of a map.
         """
+        from app.showing.fine_picture import fine_picture  # noqa: PLC0415 (brings VTK along)
+
         picture = fine_picture(self.panes, finer)
         painter = QPainter(picture)
         for panel in self._explaining:
@@ -218,7 +224,7 @@ class ViewArea(QWidget):
 
     def _show_view(self) -> None:
         """Mark the tool of the view that the camera is in; on its way there it stays marked."""
-        name = self.viewport.scene.view.name
+        name = self.viewport.view.name
         if name is not None or not self.viewport.gliding:
             self.tools.set_view(name)
 

@@ -1,14 +1,15 @@
-"""From the command to the open window; what takes long to import is imported while the body is being read."""
+"""From the command to the open window: first it is painted, then come the body and the 3D libraries."""
 
 from __future__ import annotations
 
 import gc
 import os
 import sys
+from functools import partial
 from typing import TYPE_CHECKING
 
 from app.application import application, hand_files_to, log_kept
-from app.dress.waiting import Waiting
+from app.dress.first_paint import when_painted
 from app.keeping.recent import file_at_start, is_first_start
 from app.showing.graphics import begin_graphics, graphics_work
 from app.wording.display import has_display
@@ -31,20 +32,20 @@ def run_window(file: str | None = None, safe: bool = False) -> int:
             "Use 'busk demo --out out' for the same session in pictures, or 'busk --help' for the commands.",
         )
     app = application()
-    # Before anything that takes long: whoever has asked for a window sees that it comes.
-    waiting = Waiting.shown()
     with log_kept():
         why = begin_graphics(safe)
         first = file is None and is_first_start()
-        window = open_window(file if file is not None else _at_start())
+        what = file if file is not None else _at_start()
+        window = make_window()
         window.tell_graphics(why)
+        if what is None:
+            window.start_desk.show_page()
         window.layout_.restore()
+        when_painted(window, partial(_go_on, window, what))
         window.show()
-        waiting.close()
         window.recovery_desk.look()
         if first:
             window.start_desk.tour.begin_when_settled()
-        hand_files_to(window.desk.open_file)
         code = app.exec()
         hand_files_to(None)
         graphics_work()
@@ -58,21 +59,34 @@ def _at_start() -> str | Design | None:
     return sample_design() if is_first_start() else file_at_start() or None
 
 
+def _go_on(window: MainWindow, what: str | Design | None) -> None:
+    """Do what takes long, now that the window is there: read the body, load the 3D libraries."""
+    _open(window, what)
+    hand_files_to(window.desk.open_file)
+    window.view.prepare()
+
+
 def open_window(what: str | Design | None) -> MainWindow:
-    """Return a window that is opening a file or a design, or shows the start page."""
+    """Return a window, not shown yet, that is opening a file or a design, or has the start page."""
+    window = make_window()
+    if what is None:
+        window.start_desk.show_page()
+    _open(window, what)
+    return window
+
+
+def make_window() -> MainWindow:
+    """Return a window on nothing."""
     # While the solver is at work, the window gets the interpreter lock sooner than after Python's usual 5 ms.
     sys.setswitchinterval(0.001)
     from app.asking.session import Session
-
-    # The solver's thread reads the body while this one imports the 3D libraries.
-    session = Session()
-    if isinstance(what, Design):
-        session.open_design(what)
-    elif what is not None:
-        session.open(what)
     from app.main_window import MainWindow
 
-    window = MainWindow(session)
-    if what is None:
-        window.start_desk.show_page()
-    return window
+    return MainWindow(Session())
+
+
+def _open(window: MainWindow, what: str | Design | None) -> None:
+    if isinstance(what, Design):
+        window.session.open_design(what)
+    elif what is not None:
+        window.session.open(what)

@@ -1,67 +1,102 @@
-"""The start of the window: processor seconds until something is seen of it, and until all of it is.
+"""The start of the window: how long until it is painted, and until the body is seen in it.
 
 Run: QT_QPA_PLATFORM=xcb xvfb-run -a -s "-screen 0 2600x1500x24" python benchmarks/bench_start.py [ROUNDS]
-on a display of your own without xvfb-run. Each start is a process of its own, with the settings of the user;
-the first one fills the caches and is not counted. Seconds are those of the processor, of all its threads.
+         [--program COMMAND ...]
+on a display of your own without xvfb-run, with nothing else on it. The program is only looked at from
+outside, so that an installed one can be timed as well: --program /usr/bin/busk. Each start is a process
+of its own with fresh settings; the first one fills the caches and is not counted. Three times are told
+of each moment: seconds on the clock, seconds of the processor in the window's thread, and in all threads.
 """
 
 from __future__ import annotations
 
+import argparse
+import os
 import statistics
 import subprocess
 import sys
+import tempfile
+import time
+from pathlib import Path
 
-STARTED = """
-import sys, time
-from PySide6.QtCore import QEvent, QObject, QTimer
-from PySide6.QtWidgets import QApplication
-from app.cli import main
+from PySide6.QtCore import QRect
+from PySide6.QtGui import QGuiApplication, QImage
 
-told = {}
+ROOT = Path(__file__).parent.parent
+BODY = ROOT / "resources" / "samples" / "mannequin.ply"
+MOMENTS = {"the window is painted": 8, "the body is seen": 90}
+"""Each moment by how many colours there are then in two rows across the screen; shading has many."""
 
-def tell(what):
-    told.setdefault(what, time.process_time())
+AT = (0.30, 0.55)
+"""Where these rows are, as parts of the height."""
 
-class Watch(QObject):
-    def eventFilter(self, watched, event):
-        if event.type() == QEvent.Type.Paint and watched.isWindow():
-            tell("window" if type(watched).__name__ == "MainWindow" else "place")
-        return False
-
-def look():
-    window = next((w for w in QApplication.topLevelWidgets() if type(w).__name__ == "MainWindow"), None)
-    if window is None or not window.is_settled():
-        return
-    tell("settled")
-    print(*(told.get(what, float("nan")) for what in ("place", "window", "settled")), flush=True)
-    window.session.undo_stack.setClean()
-    window.close()
-
-import app.window
-real = app.window.application
-def application(*asked):
-    qt = real(*asked)
-    qt.watch, qt.clock = Watch(), QTimer(interval=5)
-    qt.installEventFilter(qt.watch)
-    qt.clock.timeout.connect(look)
-    qt.clock.start()
-    return qt
-app.window.application = application
-main(["resources/samples/mannequin.ply"])
-"""
+PATIENCE = 60.0
+"""Seconds after which a start has failed."""
 
 
 def main() -> None:
-    rounds = int(sys.argv[1]) if len(sys.argv) > 1 else 5
-    starts = [_start() for _ in range(rounds + 1)][1:]
-    names = ("its place is painted", "the window is painted", "the body is solved and shown")
-    for name, seconds in zip(names, zip(*starts, strict=True), strict=True):
-        print(f"{name}: {statistics.median(seconds):.2f} s ({min(seconds):.2f} to {max(seconds):.2f})")
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("rounds", nargs="?", type=int, default=5)
+    parser.add_argument("--program", nargs="+", default=[sys.executable, "-m", "app"], metavar="COMMAND")
+    asked = parser.parse_args()
+    app = QGuiApplication(sys.argv[:1])
+    starts = [_start(asked.program) for _ in range(asked.rounds + 1)][1:]
+    print(f"{'':24}{'clock':>18}{'window thread':>18}{'all threads':>18}")
+    for moment in MOMENTS:
+        cells = []
+        for seconds in zip(*(start[moment] for start in starts), strict=True):
+            cells.append(f"{statistics.median(seconds):.2f} ({min(seconds):.2f}-{max(seconds):.2f})")
+        print(f"{moment:24}" + "".join(f"{cell:>18}" for cell in cells))
+    app.quit()
 
 
-def _start() -> list[float]:
-    told = subprocess.run([sys.executable, "-c", STARTED], capture_output=True, text=True, check=True)
-    return [float(each) for each in told.stdout.split()]
+def _start(program: list[str]) -> dict[str, tuple[float, float, float]]:
+    """Return what each moment of one start has taken: on the clock, in the first thread, in all."""
+    told: dict[str, tuple[float, float, float]] = {}
+    with tempfile.TemporaryDirectory() as house:
+        # A start that is ended from outside leaves traces, which the next one would speak of.
+        own = {f"XDG_{kind}_HOME": f"{house}/{kind.lower()}" for kind in ("CONFIG", "DATA", "STATE")}
+        begun = time.monotonic()
+        process = subprocess.Popen(
+            [*program, str(BODY)], cwd=ROOT, env={**os.environ, **own}, stderr=subprocess.DEVNULL
+        )
+        try:
+            while len(told) < len(MOMENTS):
+                if process.poll() is not None or time.monotonic() > begun + PATIENCE:
+                    raise SystemExit(f"{program[0]} has not shown a body")
+                colours, now = _colours(), time.monotonic() - begun
+                for moment, least in MOMENTS.items():
+                    if colours >= least and moment not in told:
+                        told[moment] = (now, *_processor(process.pid))
+                time.sleep(0.02)
+        finally:
+            process.kill()
+            process.wait()
+        while _colours() > 1:
+            time.sleep(0.02)
+    return told
+
+
+def _colours() -> int:
+    """Return how many colours there are in rows across the screen."""
+    screen = QGuiApplication.primaryScreen()
+    whole, seen = screen.geometry(), set()
+    for part in AT:
+        row = QRect(whole.x(), whole.y() + round(part * whole.height()), whole.width(), 1)
+        image = screen.grabWindow(0, row.x(), row.y(), row.width(), 1).toImage()
+        image = image.convertToFormat(QImage.Format.Format_RGB32)
+        seen |= set(memoryview(image.constBits()).cast("I"))
+    return len(seen)
+
+
+def _processor(process: int) -> tuple[float, float]:
+    """Return the seconds of the processor that a process has had so far: its first thread, all of them."""
+    return _spent(f"/proc/{process}/task/{process}/stat"), _spent(f"/proc/{process}/stat")
+
+
+def _spent(file: str) -> float:
+    fields = Path(file).read_text("utf-8").rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 if __name__ == "__main__":

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
-from scipy.interpolate import CubicSpline
 from scipy.ndimage import convolve1d
 from scipy.spatial import cKDTree
 
@@ -77,6 +76,8 @@ def centre_line(path: Points, surface: Surface, back: Points = NO_BACK, width: f
     Both have shape (k, 3) [mm]; the back goes from the end of the path to its beginning. A band of some
     ``width`` [mm] is laid as straight as it can lie on the skin with the path still under it.
     """
+    from scipy.interpolate import CubicSpline  # noqa: PLC0415 (a fifth of a second that no start needs)
+
     path = path[np.r_[True, np.linalg.norm(np.diff(path, axis=0), axis=1) > 1e-6]]
     whole = np.concatenate([path, back[1:]])
     closed = len(whole) > 3 and bool(np.linalg.norm(whole[-1] - whole[0]) < 1e-6)

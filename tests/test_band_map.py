@@ -10,9 +10,9 @@ import pytest
 import pyvista as pv
 
 from app.presenting.frame import bands
+from app.seeing.look import rgb
 from app.seeing.paint import Ramp
 from app.seeing.scene import Scene
-from app.seeing.stage import rgb
 from app.viewing.band_map import BandPainter, BandValues, pressures_on, pulls_on
 from core.elastics import find_elastic
 from core.maps import pulls

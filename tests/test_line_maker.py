@@ -50,7 +50,7 @@ def test_slings_are_listed_drawn_shortened_and_removed() -> None:
         assert row.view.own
         assert 0.94 * row.view.rest_mm < (row.view.reached_mm or 0.0) < 0.97 * row.view.rest_mm
         assert frame.marks.nipple_left_z > frame.stages.rest_marks.nipple_left_z + 1.0
-        assert window.view.viewport._label[1] == "Sling left 94.0 %"
+        assert window.view.viewport._labels.band[1] == "Sling left 94.0 %"
         row.details._tools["remove"].click()
         yield lambda: "sling left" not in window.lines.rows and window.is_settled()
         assert not {"sling left", "sling right"} & set(bands.names)

@@ -115,7 +115,7 @@ def treated(window: MainWindow) -> Script:
     assert last(window) == "Straps renamed"
     assert session.design.traits_of("strap right").title == "Lift tape"
     window.desk.select_line("strap right")
-    assert window.view.viewport._label[1].startswith("Lift tape, right 9")
+    assert window.view.viewport._labels.band[1].startswith("Lift tape, right 9")
     row.details._palette.chosen.emit("#C2571A")
     yield lambda: bands.colour("strap right") == "#C2571A"
     assert last(window) == "Lift tape: another colour"

@@ -13,7 +13,7 @@ from app.panels.profile import STEPS, ProfilePanel
 from app.panels.typed_field import read_figure
 from app.presenting.bust import BustMove, BustStep
 from app.presenting.maps import MAPS, automatic_range, map_kinds, ramp_of, section_words, sides_words
-from app.seeing.stage import rgb
+from app.seeing.look import rgb
 from app.showing.profile_plot import Drawn, ProfilePlot, grid_step
 
 

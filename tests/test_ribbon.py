@@ -11,7 +11,8 @@ from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
 from app.presenting.frame import bands
-from app.seeing.bands import Band, Bands, RibbonActor
+from app.seeing.band import Band
+from app.seeing.bands import Bands, RibbonActor
 from app.seeing.ribbon import CASING, Ribbon, Surface, build_casing, build_ribbon
 from app.seeing.sight import Sight
 from core.centre_line import NO_BACK, centre_line

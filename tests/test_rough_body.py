@@ -14,7 +14,7 @@ from app.dress.theme import apply_theme
 from app.presenting.frame import bands
 from app.seeing import piece as piece_module
 from app.seeing import ribbon as ribbon_module
-from app.seeing.bands import Band
+from app.seeing.band import Band
 from app.seeing.piece import CELL, pieces_of
 from app.seeing.ready import make_ready
 from app.seeing.scene import Scene

@@ -16,7 +16,7 @@ import app.helping.safe_mode
 from app.asking.session import Session
 from app.helping.safe_mode import SafeMode
 from app.main_window import MainWindow
-from app.showing.canvas import PaintedCanvas
+from app.showing.canvas import Canvas
 from app.showing.graphics import begin_graphics, graphics_work, spare_graphics
 from core.starts import failed_starts, starts_folder
 
@@ -26,7 +26,7 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 def test_the_safe_mode_draws_without_the_graphics_driver_and_says_so() -> None:
     def asked(window: MainWindow) -> Script:
         yield settled(window)
-        assert window.view.findChildren(PaintedCanvas)
+        assert [canvas.painted for canvas in window.view.findChildren(Canvas)] == [True]
         notice = window.notices.notice()
         assert notice is not None
         assert notice.sentence.startswith("Safe mode")

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from app.seeing.bands import Band
+from app.seeing.band import Band
 from app.seeing.camera import VIEWS
+from app.seeing.look import LOOKS, rgb
 from app.seeing.ribbon import Surface, build_casing, build_ribbon
 from app.seeing.scene import Scene
 from app.seeing.sight import Sight
 from app.seeing.skin import split_plates
-from app.seeing.stage import LOOKS, rgb
 from core.centre_line import centre_line
 from core.mesh import Mesh
 

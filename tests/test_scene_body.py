@@ -9,10 +9,10 @@ import pytest
 import pyvista as pv
 
 from app.seeing.body import BodyActor
+from app.seeing.look import LOOKS, rgb
 from app.seeing.occlusion import bake_occlusion
 from app.seeing.paint import clay_colours
 from app.seeing.skin import plate_faces, skin_of, split_plates
-from app.seeing.stage import LOOKS, rgb
 from core.mesh import Mesh
 
 SAMPLES = Path(__file__).parents[1] / "resources" / "samples"

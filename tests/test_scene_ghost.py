@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+from app.seeing.look import LOOKS, rgb
 from app.seeing.scene import Scene
-from app.seeing.stage import LOOKS, rgb
 from core.mesh import Mesh
 
 WIDTH, HEIGHT, RADIUS = 300, 240, 150.0

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+from app.seeing.look import LOOKS, rgb
 from app.seeing.paint import FOLDS, Ramp
 from app.seeing.scene import Scene
-from app.seeing.stage import LOOKS, rgb
 from core.profile import Plane, Slicer
 from core.studies.sphere import sphere
 

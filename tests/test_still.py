@@ -11,7 +11,7 @@ import pyvista as pv
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 
-from app.seeing.bands import Band
+from app.seeing.band import Band
 from app.seeing.scene import Scene
 from app.seeing.still import StillPicture
 from core.mesh import Mesh

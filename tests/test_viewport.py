@@ -16,7 +16,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.dress.theme import apply_theme
-from app.seeing.bands import Band
+from app.seeing.band import Band
 from app.showing.overlay import Pin
 from app.showing.pointer import NOTCH, TURN
 from app.showing.viewport import Viewport

@@ -75,8 +75,8 @@ def a_pull_is_live_and_one_undo_step(window: MainWindow) -> Script:
     pull(window, start, QPoint(0, -30))
     yield lambda: np.abs(points(window) - at_start).max() > 0.5
     assert stack.count() == 0
-    yield lambda: f"{100 * ratio - 3:.1f} %" in window.view.viewport._label[1]
-    assert "mm" in window.view.viewport._label[2]
+    yield lambda: f"{100 * ratio - 3:.1f} %" in window.view.viewport._labels.band[1]
+    assert "mm" in window.view.viewport._labels.band[2]
     yield lambda: window.lines.rows["mid-bust"].slider.ratio() == pytest.approx(ratio - 0.03)
     release(canvas_of(window), start + QPoint(0, -30))
     assert ratio_of(window) == pytest.approx(ratio - 30 * STEP)

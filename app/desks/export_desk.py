@@ -20,7 +20,6 @@ from app.keeping.dialogs import ask_save
 from app.keeping.last_folders import free_name, last_folder
 from app.panels.export_sheet import ExportSheet
 from app.presenting.verdict import is_result, state_of
-from app.printing.turntable import turntable_files
 from app.showing.verdict_chip import state_title
 from app.wording.export_choices import exports, format_title
 from app.wording.words import joined, say, tr
@@ -149,6 +148,8 @@ class ExportDesk(QObject):
 
     def _may_number(self, path: Path, manner: Manner) -> bool:
         """Ask before a series of pictures takes the place of another, which the dialog has not seen."""
+        from app.printing.turntable import turntable_files  # noqa: PLC0415 (brings VTK along)
+
         there = [each.name for each in turntable_files(path, manner.frames) if each != path and each.exists()]
         if not there:
             return True

@@ -22,7 +22,6 @@ from app.reporting.handout import Handout
 from app.reporting.pages import Pages, pages_of
 from app.reporting.paper import UNITS
 from app.reporting.pdf import write_pdf
-from app.reporting.pictures import shots
 from app.reporting.preview import ReportPage
 from app.seeing.occlusion import bake_occlusion
 from app.wording.words import language, say, tr
@@ -157,10 +156,11 @@ class ReportDesk(QObject):
             return sheet, whole, baked
 
         def draw(found: object) -> None:
+            from app.reporting.pictures import shots  # noqa: PLC0415 (brings VTK along)
+
             sheet, whole, baked = cast(tuple[Sheet, Frame, Floats], found)
             self._occlusion = (body, baked)
-            plain = Handout(sheet, {}, self._colours(frame))
-            finish, left = partial(done, plain), self._leave_off
+            finish, left = partial(done, Handout(sheet, {}, self._colours(frame))), self._leave_off
             drawing, pieces = tr("Drawing the pictures of the sheet"), shots(whole, baked)
             self._job = window.jobs.run_pieces(drawing, pieces, finish, lambda _: finish({}), left=left)
 

@@ -14,8 +14,8 @@ from app.dress.theme import tokens_of
 from app.panels.notice import REFUSED
 from app.panels.question import PICTURE, Answer
 from app.presenting.scan import scan_view
+from app.seeing.look import LOOKS
 from app.seeing.portrait import Picture
-from app.seeing.stage import LOOKS
 from app.seeing.ways import Way, pictures
 from app.wording.words import tr
 from core.body import Body

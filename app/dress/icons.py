@@ -18,11 +18,12 @@ OF_WINDOW = (16, 24, 32, 48, 64, 128, 256)
 """Widths of the picture of the program that window managers and task bars choose from [pixels]."""
 
 
+@lru_cache(maxsize=512)
 def icon(name: str, color: str, size: int, on_color: str | None = None) -> QIcon:
     """Return the drawing ``name`` in ``color``, ``size`` logical pixels wide, sharp at any screen scale.
 
     ``on_color`` is the colour while its button is on; a disabled button shows the drawing faint.
-    Raises FileNotFoundError for a drawing that does not exist.
+    Whoever gets it shares it. Raises FileNotFoundError for a drawing that does not exist.
     """
     result = QIcon()
     for state, ink in ((QIcon.State.Off, color), (QIcon.State.On, on_color or color)):

@@ -138,9 +138,10 @@ class ToolButton(QToolButton):
             self._repaint_icon()
 
     def _repaint_icon(self) -> None:
-        tokens = tokens_of(self)
+        tokens, shows = tokens_of(self), self.defaultAction() or self
         drawn = icon(self._drawing, tokens.text_quiet, self._size, on_color=tokens.accent)
-        (self.defaultAction() or self).setIcon(drawn)
+        if shows.icon().cacheKey() != drawn.cacheKey():
+            shows.setIcon(drawn)
 
 
 class Segment(QFrame):

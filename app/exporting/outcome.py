@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from app.seeing.band import band_width
 from app.seeing.camera import View
 from core.design import Design
 from core.measures import before_after, measure_rows
@@ -91,7 +92,6 @@ class Outcome:
     def looks(self) -> tuple[Mapping[str, str], Mapping[str, float]]:
         """Titles and widths [mm] of the lines as the window shows them."""
         from app.presenting.lines import line_title  # noqa: PLC0415 (brings Qt along)
-        from app.seeing.bands import band_width  # noqa: PLC0415 (brings VTK along)
 
         names = [line.name for line in self.stages.model.lines]
         titles = {name: line_title(name, self.design) for name in names}

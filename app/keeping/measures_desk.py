@@ -117,6 +117,8 @@ class MeasuresDesk(QObject):
         if self._tried is not None:
             rest, worn = (found.curves for found in self._tried)
         for body in self._window.view.beside.live:
+            if body.body is None:
+                continue
             trace = body.viewport.scene.measure
             if rest or worn or trace.shown:
                 trace.show_both(rest, worn)
@@ -124,7 +126,7 @@ class MeasuresDesk(QObject):
 
     def _look_at(self) -> None:
         viewport = self._window.view.viewport
-        if viewport.scene.measure.shown:
+        if viewport.shows_body and viewport.scene.measure.shown:
             viewport.frame_points(viewport.scene.measure.points)
 
     def _curves(self, found: Measures | None) -> tuple[Points, ...]:

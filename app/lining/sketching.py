@@ -10,7 +10,6 @@ from PySide6.QtCore import QObject, QPointF, Signal
 
 from app.panels.draw_card import DrawCard
 from app.seeing.ribbon import Surface
-from app.seeing.sketch import Sketch
 from app.showing.hand import Hand
 from core.body import Body
 from core.control_mesh import ControlMesh
@@ -19,6 +18,7 @@ from core.mesh import Points
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
+    from app.seeing.sketch import Sketch
 
 _PIECES = 8  # pieces that the path from one control point to the next is laid on the skin with
 
@@ -80,7 +80,10 @@ class Sketching(QObject):
         """Draw a curve (k, 3), a path (p, 3) in ``colour`` and points (n, 3) to hold; each may be empty."""
         self._drawn = curve, path, points, colour
         scene = self._window.view.viewport.scene
-        self._sketch = self._sketch or Sketch(scene.plotter)
+        if self._sketch is None:
+            from app.seeing.sketch import Sketch  # noqa: PLC0415 (brings VTK along)
+
+            self._sketch = Sketch(scene.plotter)
         there = [scene.carried(part) if len(part) else part for part in (curve, path, points)]
         self._sketch.show(there[0], there[1], there[2], colour)
         self._sketch.look_from(scene.view)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from app.presenting.lines import line_colours, line_title
 from app.presenting.verdict import state_of
-from app.seeing.bands import Band, band_width
+from app.seeing.band import Band, band_width
 from app.showing.verdict_chip import state_title
 from app.wording.words import number, tr
 from core.centre_line import NO_BACK

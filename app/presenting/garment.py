@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from app.panels.garment_view import CutView, GarmentView
 from app.presenting.lines import line_colours, line_title, titled
-from app.seeing.bands import band_width
+from app.seeing.band import band_width
 from app.wording.words import joined, number, say, tr
 from core.cutting import CutList, CutRow
 from core.design import Design

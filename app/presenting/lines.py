@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from app.panels.length_groove import Feasible
 from app.panels.line_view import LineView, SideView
-from app.seeing.bands import band_width
+from app.seeing.band import band_width
 from app.wording.tokens import LINE_COLORS
 from app.wording.words import listed, say, tr
 from core.design import Design

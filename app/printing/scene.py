@@ -8,10 +8,11 @@ import numpy as np
 import numpy.typing as npt
 import pyvista as pv
 
-from app.seeing.bands import Band
+from app.seeing.band import Band
 from app.seeing.camera import View
+from app.seeing.look import LOOKS
 from app.seeing.scene import Scene
-from app.seeing.stage import LOOKS, Stage
+from app.seeing.stage import Stage
 from app.wording.display import off_screen
 from app.wording.tokens import LINE_COLORS
 from core.mesh import Flags, Floats, Mesh, Points

@@ -18,11 +18,11 @@ from PIL import Image
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
-from app.seeing.bands import Band
+from app.seeing.band import Band
 from app.seeing.camera import LENS
+from app.seeing.look import LOOKS, rgb
 from app.seeing.material import CLAY
 from app.seeing.scene import Scene
-from app.seeing.stage import LOOKS, rgb
 from app.wording.display import off_screen
 from core.errors import UserError
 from core.mesh import Floats, Points

@@ -2,55 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 import pyvista as pv
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
+from app.seeing.band import Band, Rise
+from app.seeing.look import rgb
 from app.seeing.ribbon import Ribbon, Surface, rimmed
 from app.seeing.sight import Sight
 from app.seeing.smooth import smooth_actor
-from app.seeing.stage import rgb
-from core.centre_line import NO_BACK
-from core.design import Design
 from core.mesh import Flags, Floats, Points, unit
 from core.moving import moving_faces
-
-Rise = Callable[[Floats], Points]
-"""Returns how far a band is off the skin, (rows, 3) [mm], at places along its line, (rows,) 0 to 1."""
 
 _SHADE = (0.62, 0.62, 0.86)  # how dark the rim of a band is, from outside
 _SEAM = 0.72  # how dark the seam is where front part and back part meet
 _FAINT, _FAINT_CASING = 0.3, 0.2  # how much is seen of a faded band and of the casing round it
 _QUIET, _CLOTH = 0.45, "#F2ECE6"  # the back part keeps its length: its colour steps back towards plain cloth
-
-BAND_WIDTHS = {"full-bust": 10.0, "mid-bust": 12.0, "under-bust": 22.0}
-"""Usual width of the bands of the template's lines [mm]; what they are made of comes with the garment."""
-
-OWN_WIDTH = 12.0
-"""Usual width of the band of an own line [mm]."""
-
-
-def band_width(name: str, design: Design | None = None) -> float:
-    """Return the width of a line's band as it is drawn [mm]."""
-    own = design.traits_of(name).width if design else None
-    return BAND_WIDTHS.get(name, OWN_WIDTH) if own is None else own
-
-
-@dataclass(frozen=True, eq=False)
-class Band:
-    """What is drawn of one line: its path over the control points, (k, 3) [mm], colour and width [mm].
-
-    ``back``, shape (b, 3) [mm], goes on round the back to where the path begins; without it the band ends.
-    """
-
-    name: str
-    path: Points
-    colour: str
-    width: float = 12.0
-    back: Points = field(default_factory=lambda: NO_BACK)
 
 
 class RibbonActor:

@@ -9,15 +9,12 @@ import pyvista as pv
 from scipy import sparse
 
 from app.seeing.camera import View
+from app.seeing.look import Look
 from app.seeing.paint import Colours, clay_colours, map_colours
-from app.seeing.piece import CELL, Piece, Singles, pieces_of
+from app.seeing.piece import CELL, NONE, Piece, Singles, pieces_of
 from app.seeing.skin import skin_of
 from app.seeing.skin_part import DIFFUSE, SkinPart
-from app.seeing.stage import Look
 from core.mesh import Flags, Floats, Indices, Mesh, Points, area_vectors, incidence, unit
-
-NONE: Indices = np.empty(0, dtype=np.int64)
-"""No vertices."""
 
 _EVENLY = 0.18
 """How much of what the skin throws back comes from all sides in a map."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pyvista as pv
 
+from app.seeing.look import Look
 from app.seeing.ribbon import Surface
-from app.seeing.stage import Look
 from core.mesh import Flags, Floats, Mesh, Points
 
 LIFT = 1.3

@@ -6,6 +6,7 @@ import numpy as np
 
 from app.seeing.camera import View
 from core.mesh import Floats, Points
+from core.profile import Plane
 
 NOBODY = np.array([[-200.0, 200.0], [-130.0, 130.0], [0.0, 560.0]])
 """The box of a torso, where there is none."""
@@ -15,6 +16,7 @@ _ABOVE_BUST, _BELOW_BUST = 270.0, 350.0  # what a framed bust shows: from the ne
 _BUST_HEIGHT = 0.56  # of a torso cut at the hips, used until the landmarks are known
 
 _EDGE = 0.1  # what lies nearer to the edge of a picture than this part of it is hardly seen
+_SHEET = 24.0  # how far the sheet of a section reaches out of the body [mm]
 _CLOSEST = 90.0  # what is shown round a place, whatever its size [mm]
 
 
@@ -54,3 +56,9 @@ def depth_range(view: View, box: Floats) -> tuple[float, float]:
     radius = float(np.hypot(np.linalg.norm(box[:, 1] - box[:, 0]) / 2.0, 700.0))
     depth = float((view.eye - box.mean(axis=1)) @ view.axes[2])
     return max(depth - radius, 20.0), max(depth + radius, 40.0)
+
+
+def sheet_ends(plane: Plane, low: Floats, high: Floats) -> tuple[Floats, Floats]:
+    """Return the least and the largest flat coordinates, (2,) each, of a sheet through a box, (3,) [mm]."""
+    corners = plane.flat(np.stack([low - _SHEET, high + _SHEET]))
+    return corners.min(axis=0), corners.max(axis=0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from app.seeing.stage import LOOKS, Look
+from app.seeing.look import LOOKS, Look
 
 CLAY, PLASTER, GRAPHITE = MATERIALS = ("clay", "plaster", "graphite")
 """The materials; clay is the one of ``LOOKS``."""

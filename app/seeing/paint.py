@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from app.seeing.stage import Look, rgb
+from app.seeing.look import Look, rgb
 from core.mesh import Flags, Floats
 
 Colours = npt.NDArray[np.uint8]

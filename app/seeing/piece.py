@@ -14,6 +14,9 @@ from core.mesh import Faces, Flags, Indices
 
 Singles = npt.NDArray[np.float32]
 
+NONE: Indices = np.empty(0, dtype=np.int64)
+"""No vertices."""
+
 LARGE = 250_000
 """A piece of more faces that stands still has a rough copy."""
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from app.seeing.bands import band_width
-from app.seeing.body import NONE
-from app.seeing.piece import pieces_of
+from app.seeing.band import band_width
+from app.seeing.piece import NONE, pieces_of
 from app.seeing.ribbon import Surface
 from app.seeing.skin import PREPARING, skin_of
 from core.centre_line import NO_BACK

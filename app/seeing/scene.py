@@ -8,15 +8,18 @@ from dataclasses import replace
 import numpy as np
 import pyvista as pv
 
-from app.seeing.bands import Band, Bands
-from app.seeing.body import NONE, BodyActor, Ghost
+from app.seeing.band import Band
+from app.seeing.bands import Bands
+from app.seeing.body import BodyActor, Ghost
 from app.seeing.camera import View, aim
 from app.seeing.control import ControlActor
 from app.seeing.framing import NOBODY, depth_range, framing_bust
+from app.seeing.look import Look
 from app.seeing.material import CLAY, look_of
+from app.seeing.piece import NONE
 from app.seeing.ribbon import Surface
 from app.seeing.section import SectionSheet
-from app.seeing.stage import Look, Stage
+from app.seeing.stage import Stage
 from app.seeing.trace import MeasureTrace, Trace
 from core.mesh import Flags, Floats, Indices, Mesh, Points
 

@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pyvista as pv
 
+from app.seeing.framing import sheet_ends
 from core.mesh import Floats, Points
 from core.profile import Curve, Plane
 
@@ -20,7 +21,6 @@ SHEET, OUTLINE = 0.055, 0.55
 CURVE = 2.2
 """Width of the curve [px]."""
 
-_BEYOND = 24.0  # how far the sheet reaches out of the body [mm]
 _NEARER = -60.0  # about 2 mm: the curve is drawn over the skin that it lies on
 
 
@@ -70,12 +70,6 @@ class SectionSheet:
         """Repaint for one theme."""
         for actor in self._actors:
             actor.prop.color = COLOURS[dark]
-
-
-def sheet_ends(plane: Plane, low: Floats, high: Floats) -> tuple[Floats, Floats]:
-    """Return the least and the largest flat coordinates, (2,) each, of a sheet through a box, (3,) [mm]."""
-    corners = plane.flat(np.stack([low - _BEYOND, high + _BEYOND]))
-    return corners.min(axis=0), corners.max(axis=0)
 
 
 def _fill(

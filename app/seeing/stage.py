@@ -2,59 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkRenderingCore import vtkViewport
 
-
-@dataclass(frozen=True)
-class Look:
-    """Colours and strengths of the 3D view in one theme; they belong to no widget."""
-
-    centre: str
-    edge: str
-    clay: str
-    deep: str
-    plaster: str
-    ambient: float
-    lights: tuple[float, ...]
-    shadow: str
-    shadow_alpha: float
-    ghost: str
-    wire: str
-
-
-LOOKS: dict[bool, Look] = {
-    False: Look(
-        centre="#FBFAF9",
-        edge="#E3E0DC",
-        clay="#EDD8C9",
-        deep="#B57E66",
-        plaster="#D6D2CC",
-        ambient=0.25,
-        lights=(0.74, 0.32, 0.13, 0.34, 0.26),
-        shadow="#3A302A",
-        shadow_alpha=95.0,
-        ghost="#AEBBD0",
-        wire="#3F4650",
-    ),
-    True: Look(
-        centre="#2E3036",
-        edge="#16171A",
-        clay="#E2CBBC",
-        deep="#7A5244",
-        plaster="#BDBAB5",
-        ambient=0.16,
-        lights=(0.83, 0.22, 0.14, 0.57, 0.46),
-        shadow="#000000",
-        shadow_alpha=190.0,
-        ghost="#56657F",
-        wire="#10141A",
-    ),
-}
-"""The look by theme: ``LOOKS[dark]``."""
+from app.seeing.look import LOOKS, Look, rgb
 
 _LAMPS = (
     ((-0.55, 0.75, 1.0), "#FFF6EC"),  # key
@@ -69,11 +21,6 @@ FLOOR_SIZE = (1050.0, 780.0)
 
 FLOOR_DROP = 6.0
 """How far the floor lies under the body [mm]."""
-
-
-def rgb(colour: str) -> np.ndarray:
-    """Return ``"#rrggbb"`` as three numbers 0..255, shape (3,)."""
-    return np.array(list(bytes.fromhex(colour.lstrip("#"))), dtype=np.float64)
 
 
 class Stage:

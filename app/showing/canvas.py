@@ -1,49 +1,38 @@
 """The widget that VTK draws in: with a graphics card, without one, and with no display at all."""
 
+# ruff: noqa: N802 - Qt names its events
 from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable
 from functools import cache
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-import pyvista as pv
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QLineF, QPointF, Qt
 from PySide6.QtGui import (
+    QColor,
     QGuiApplication,
     QImage,
     QOffscreenSurface,
     QOpenGLContext,
     QPainter,
     QPaintEvent,
+    QRadialGradient,
     QResizeEvent,
 )
+from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from PySide6.QtWidgets import QWidget
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
-from vtkmodules.vtkRenderingCore import vtkProp
 
-from app.seeing.still import StillPicture
+from app.dress.theme import tokens_of
+from app.seeing.look import LOOKS
 from app.showing.graphics import is_safe_mode
 
+if TYPE_CHECKING:
+    import pyvista as pv
+
+    from app.showing.pictures import Pictures
+
 _GL_RENDERER = 0x1F01
-
-
-def make_canvas(parent: QWidget) -> tuple[QWidget, pv.BasePlotter]:
-    """Return a widget and the plotter whose scene it shows.
-
-    It is an interactor that takes no focus and no files; where no graphics card draws for Qt, it is a
-    ``PaintedCanvas``.
-    """
-    if is_safe_mode() or not has_graphics_card():
-        painted = PaintedCanvas(parent)
-        return painted, painted.plotter
-    from pyvistaqt import QtInteractor  # noqa: PLC0415 (a fifth of a second that not every start needs)
-
-    interactor = QtInteractor(parent, auto_update=False, multi_samples=0, lighting="none")
-    interactor.setAcceptDrops(False)
-    interactor.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-    return interactor, interactor
 
 
 @cache
@@ -66,65 +55,110 @@ def has_graphics_card() -> bool:
     return not any(software in name for software in ("llvmpipe", "softpipe", "swrast", "swiftshader"))
 
 
-def draw(canvas: QWidget) -> None:
-    """Have ``canvas`` draw its scene anew when the event loop next turns."""
-    if isinstance(canvas, PaintedCanvas):
-        canvas.forget()
-    canvas.update()
+def is_painted() -> bool:
+    """Tell whether the 3D view is to show pictures, with no OpenGL in the window."""
+    return is_safe_mode() or not has_graphics_card()
 
 
-class PaintedCanvas(QWidget):
-    """Pictures of an off-screen plotter, painted as any other widget's: they need no OpenGL from Qt.
+def load_libraries() -> None:
+    """Load all that a scene needs, in whatever thread: the window goes on meanwhile."""
+    import pyvista.plotting  # noqa: F401, PLC0415 (with matplotlib, which it needs)
 
-    While ``quick`` is set, what ``still`` returns is drawn again only if it has changed.
+    import app.seeing.scene  # noqa: PLC0415
+
+    if is_painted():
+        import app.showing.pictures  # noqa: F401, PLC0415
+    else:
+        import pyvistaqt  # noqa: F401, PLC0415
+
+
+class Canvas(QWidget):
+    """Shows a scene once there is one, until then the ground it will stand on; that takes no 3D library.
+
+    It is ``painted`` where no graphics card draws for Qt: then it shows pictures of a scene that is drawn
+    off-screen, and ``quick`` has them drawn in a hurry.
     """
-
-    still: Callable[[], Iterable[vtkProp]] = staticmethod(tuple)
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
         self.setMouseTracking(True)
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
-        self.plotter = pv.Plotter(off_screen=True, lighting="none")
-        self.plotter.ren_win.SetMultiSamples(0)
-        self.quick = False
-        self._picture = StillPicture(self.plotter)
+        self.painted = is_painted()
+        self._pictures: Pictures | None = None
+        self._interactor: Any = None
         self._image: QImage | None = None
+        if not self.painted:
+            # Qt makes a window for OpenGL only if there is such a widget in it from the first; to make it
+            # anew, when the scene comes, would be seen.
+            QOpenGLWidget(self).hide()
+
+    def make_plotter(self) -> pv.BasePlotter:
+        """Load the 3D libraries, if they are not, and return the plotter whose scene is shown from now on."""
+        if self.painted:
+            from app.showing.pictures import Pictures  # noqa: PLC0415 (brings VTK along)
+
+            self._pictures = Pictures()
+            return self._pictures.plotter
+        from pyvistaqt import QtInteractor  # noqa: PLC0415 (brings VTK along)
+
+        self._interactor = QtInteractor(self, auto_update=False, multi_samples=0, lighting="none")
+        self._interactor.setAcceptDrops(False)
+        self._interactor.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        # The canvas has the pointer, before and after.
+        self._interactor.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self._interactor.setGeometry(self.rect())
+        self._interactor.lower()
+        self._interactor.show()
+        return self._interactor
+
+    def draw_still(self, still: Callable[[], Iterable[Any]]) -> None:
+        """Let what ``still`` returns be drawn again, in a hurry, only if it has changed."""
+        if self._pictures is not None:
+            self._pictures.still = still
+
+    def hurry(self, quick: bool) -> None:
+        """Draw quickly from now on, or at one's best."""
+        if self._pictures is not None:
+            self._pictures.quick = quick
+
+    def draw(self) -> None:
+        """Draw the scene anew when the event loop next turns."""
+        self._image = None
+        (self._interactor or self).update()
 
     def let_go(self) -> None:
         """Give back what is kept of the graphics, before the plotter is closed."""
-        self._picture.forget()
-        del self.still
+        if self._pictures is not None:
+            self._pictures.let_go()
 
-    def forget(self) -> None:
-        """Have a new picture made at the next paint."""
-        self._image = None
-
-    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+    def resizeEvent(self, event: QResizeEvent) -> None:
         """Draw again at the new size."""
-        self.forget()
+        self._image = None
+        if self._interactor is not None:
+            self._interactor.setGeometry(self.rect())
 
-    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
-        """Show the picture, made anew only if the scene has changed."""
-        if self._image is None and not self.plotter._closed:
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Show the picture, made anew only if the scene has changed, or the ground."""
+        if self._image is None:
             self._image = self._render()
+        painter = QPainter(self)
         if self._image is not None:
-            painter = QPainter(self)
             painter.drawImage(self.rect(), self._image)
-            painter.end()
+        elif self._pictures is None:
+            self._paint_ground(painter)
+        painter.end()
 
-    def _render(self) -> QImage:
+    def _render(self) -> QImage | None:
+        if self._pictures is None:
+            return None
         ratio = self.devicePixelRatioF()
         width, height = (max(round(side * ratio), 1) for side in (self.width(), self.height()))
-        if list(self.plotter.window_size) != [width, height]:
-            self.plotter.window_size = [width, height]
-        window, pixels = self.plotter.ren_win, vtkUnsignedCharArray()
-        if self.quick:
-            self._picture.render(self.still())
-        else:
-            window.Render()
-        window.GetRGBACharPixelData(0, 0, width - 1, height - 1, 0, pixels)
-        rows = np.ascontiguousarray(vtk_to_numpy(pixels).reshape(height, width, 4)[::-1])
-        rows[..., 3] = 255
-        # QImage only borrows the pixels, so that it needs its own copy.
-        return QImage(rows.data, width, height, 4 * width, QImage.Format.Format_RGBX8888).copy()
+        return self._pictures.draw(width, height)
+
+    def _paint_ground(self, painter: QPainter) -> None:
+        """Paint the background of the scene to come."""
+        look, middle = LOOKS[tokens_of(self).dark], self.rect().toRectF().center()
+        ground = QRadialGradient(middle, QLineF(middle, QPointF()).length())
+        ground.setColorAt(0.0, QColor(look.centre))
+        ground.setColorAt(1.0, QColor(look.edge))
+        painter.fillRect(self.rect(), ground)

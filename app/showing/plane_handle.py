@@ -9,7 +9,7 @@ from PySide6.QtGui import QColor, QEnterEvent, QHideEvent, QMouseEvent, QPainter
 from PySide6.QtWidgets import QWidget
 
 from app.dress.theme import tokens_of
-from app.seeing.section import sheet_ends
+from app.seeing.framing import sheet_ends
 from app.showing.viewport import Viewport
 from app.wording.words import tr
 from core.mesh import Floats, Points

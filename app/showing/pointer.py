@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QObject, QPointF, Qt, Signal
 from PySide6.QtGui import QMouseEvent, QNativeGestureEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.seeing.camera import View
-from app.seeing.scene import Scene
 from app.showing.band_grip import BandGrip
 from app.showing.gestures import ORBIT, PAN, ZOOM, chosen_gestures
 from app.showing.overlay import Overlay
 from core.mesh import Floats
+
+if TYPE_CHECKING:
+    from app.seeing.scene import Scene
 
 TURN = 0.4
 """Degrees that the body turns for each pixel that the pointer is dragged."""
@@ -31,7 +34,7 @@ _CLICK = 3.0  # pixels that the pointer may stray within a click
 
 
 class Pointer(QObject):
-    """Reads the pointer over a canvas, before VTK's own camera style does.
+    """Reads the pointer over a canvas, from when it can ``look_at`` a scene on it.
 
     ``turned`` asks for a view from the same distance, ``shifted`` for one that frames something else, and
     ``centred`` for a glide to a new centre of turning; the other signals are the viewport's. Whoever lets
@@ -48,10 +51,9 @@ class Pointer(QObject):
     pin_released = Signal(str)
     pin_hovered = Signal(str)
 
-    def __init__(self, canvas: QWidget, scene: Scene, overlay: Overlay) -> None:
+    def __init__(self, canvas: QWidget, overlay: Overlay) -> None:
         super().__init__(canvas)
         self._canvas = canvas
-        self._scene = scene
         self._overlay = overlay
         self.band_grip = BandGrip(self)
         self._pressed = QPointF()
@@ -59,14 +61,18 @@ class Pointer(QObject):
         self._grip = self._drags = ""
         self._pin = ""
         self._hovered = self._hovered_pin = ""
-        canvas.installEventFilter(self)
+
+    def look_at(self, scene: Scene) -> None:
+        """Read the pointer over this scene from now on."""
+        self._scene = scene
+        self._canvas.installEventFilter(self)
 
     def let_go(self) -> None:
         """Read the pointer no longer."""
         self._canvas.removeEventFilter(self)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """Take the pointer before VTK's own camera style does."""
+        """Take the pointer over the canvas."""
         if watched is not self._canvas:
             return super().eventFilter(watched, event)
         kind = event.type()

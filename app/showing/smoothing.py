@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import math
 
-import pyvista as pv
-from PySide6.QtWidgets import QWidget
-
 from app.seeing.quick_light import QuickLight
 from app.seeing.scene import Scene
-from app.showing.canvas import PaintedCanvas
+from app.showing.canvas import Canvas
 
 FINEST = 2.5
 """Details of a large body that are smaller than so many pixels are not drawn without a graphics card."""
@@ -18,22 +15,22 @@ FINEST = 2.5
 class Smoothing:
     """Chooses filter, light and detail of one canvas."""
 
-    def __init__(self, canvas: QWidget, plotter: pv.BasePlotter, scene: Scene) -> None:
-        self._canvas, self._plotter, self._scene = canvas, plotter, scene
-        self._light, self._filter = QuickLight(plotter), ""
+    def __init__(self, canvas: Canvas, scene: Scene) -> None:
+        self._canvas, self._scene = canvas, scene
+        self._light, self._filter = QuickLight(scene.plotter), ""
 
     def use(self, kind: str) -> None:
         """Let outlines be smoothed by one of VTK's filters, or by none while things move."""
-        if isinstance(self._canvas, PaintedCanvas):
+        if self._canvas.painted:
             self._light.use(quickly=not kind)
-            self._canvas.quick = not kind
+            self._canvas.hurry(not kind)
             self._draw_down_to(FINEST * self._pixel if kind else math.inf)
         if kind != self._filter:
             self._filter = kind
             if kind:
-                self._plotter.enable_anti_aliasing(kind)
+                self._scene.plotter.enable_anti_aliasing(kind)
             else:
-                self._plotter.disable_anti_aliasing()
+                self._scene.plotter.disable_anti_aliasing()
 
     @property
     def _pixel(self) -> float:

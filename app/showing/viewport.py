@@ -4,34 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
-import numpy as np
-from PySide6.QtCore import (
-    QEasingCurve,
-    QEvent,
-    QObject,
-    QPointF,
-    QRectF,
-    Qt,
-    QTimer,
-    QVariantAnimation,
-    Signal,
-)
+from PySide6.QtCore import QEvent, QObject, QPointF, Qt, QTimer, Signal
 from PySide6.QtGui import QImage, QResizeEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.dress.theme import tokens_of
 from app.seeing.camera import View
 from app.seeing.framing import framing_points
-from app.seeing.scene import Scene
-from app.showing.canvas import PaintedCanvas, draw, make_canvas
-from app.showing.overlay import BandLabel, Overlay, Pin
+from app.seeing.material import CLAY
+from app.showing.canvas import Canvas
+from app.showing.glide import Glide
+from app.showing.labels import Labels
+from app.showing.overlay import Overlay, Pin
 from app.showing.pointer import Pointer
-from app.showing.smoothing import Smoothing
 from core.mesh import Floats, Points
 
-GLIDE = 220
-"""Duration of a move to another view [ms]."""
+if TYPE_CHECKING:
+    from app.seeing.scene import Scene
 
 REST = 250
 """Stillness after which the picture is drawn smooth [ms]."""
@@ -46,6 +37,8 @@ class Viewport(QWidget):
     ``pin_pressed``, ``pin_moved`` (name, place (3,) [mm] on the body at rest) and ``pin_released`` follow
     a dragged pin, ``pin_hovered`` the pointer (off all pins: an empty name). ``view_changed`` says that the
     camera has moved. Belongs to the thread of the window.
+
+    The scene is made when it is first asked for; until then ``view`` is where it will be seen from.
     """
 
     band_clicked = Signal(str)
@@ -60,27 +53,21 @@ class Viewport(QWidget):
         super().__init__(parent)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.motion = True
-        self._canvas, self._plotter = make_canvas(self)
+        self._view = View()  # until there is a scene
+        self._material = CLAY
+        self._canvas = Canvas(self)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self._canvas)
-        self.scene = Scene(self._plotter, tokens_of(self).dark, self.devicePixelRatioF())
-        if isinstance(self._canvas, PaintedCanvas):
-            self._canvas.still = self.scene.still
         self.overlay = Overlay(self._canvas)
-        self._pointer = Pointer(self._canvas, self.scene, self.overlay)
-        self._smoothing = Smoothing(self._canvas, self._plotter, self.scene)
+        self._labels = Labels(self.overlay)
+        self._pointer = Pointer(self._canvas, self.overlay)
+        self._scene: Scene | None = None
         self._rest = QTimer(self, singleShot=True, interval=REST)
         self._rest.timeout.connect(self._refine)
-        self._glide = QVariantAnimation(self)
-        self._glide.setDuration(GLIDE)
-        self._glide.setEasingCurve(QEasingCurve.Type.OutCubic)
-        self._glide.valueChanged.connect(self._glided)
-        self._glide_ends = (self.scene.view, self.scene.view)
+        self._glide = Glide(self)
+        self._glide.passed.connect(self._look_from)
         self._fit: Callable[[float], View] | None = None
-        self._label = ("", "", "")
-        self._pins: tuple[Pin, ...] = ()
-        self._selected_pin = ""
         self._open = True
         self._listen()
 
@@ -93,6 +80,34 @@ class Viewport(QWidget):
         for name in _HEARD:
             getattr(pointer, name).connect(getattr(self, name))
 
+    @property
+    def scene(self) -> Scene:
+        """All that is drawn in 3D."""
+        return self._scene or self._make_scene()
+
+    @property
+    def shows_body(self) -> bool:
+        """Whether there is a scene with a body."""
+        return self._scene is not None and self._scene.body is not None
+
+    def make(self) -> None:
+        """Make the scene now, if it is not there."""
+        self._scene = self.scene
+
+    def _make_scene(self) -> Scene:
+        from app.seeing.scene import Scene  # noqa: PLC0415 (brings VTK along)
+        from app.showing.smoothing import Smoothing  # noqa: PLC0415 (so does this)
+
+        plotter = self._canvas.make_plotter()
+        self._scene = scene = Scene(plotter, tokens_of(self).dark, self.devicePixelRatioF())
+        scene.look_from(self._view)
+        scene.set_material(self._material)
+        self._canvas.draw_still(scene.still)
+        self._smoothing = Smoothing(self._canvas, scene)
+        self._pointer.look_at(scene)
+        self.request_draw()
+        return scene
+
     def forward_to(self, other: Viewport) -> None:
         """Let what the pointer does here be heard as if it were done on another viewport."""
         for name in _HEARD:
@@ -102,13 +117,12 @@ class Viewport(QWidget):
 
     def request_draw(self) -> None:
         """Draw once when the event loop next turns, however often this is asked for."""
-        if not self._open:
+        if not self._open or self._scene is None:
             return
         self._smoothing.use("")
         self._rest.start()
-        self._place_pins()
-        self._place_label()
-        draw(self._canvas)
+        self._labels.place(self._scene)
+        self._canvas.draw()
 
     def paint_later(self) -> None:
         """Let what the hand has done meanwhile go first: a large body takes its time to make and to paint."""
@@ -122,10 +136,11 @@ class Viewport(QWidget):
     def picture(self, labels: bool = True) -> QImage:
         """Return what is seen now at its best, with its labels or without, in device pixels."""
         self.paint_at_once()
+        self.make()
         self.request_draw()
         self._rest.stop()
         self._smoothing.use("ssaa")
-        draw(self._canvas)
+        self._canvas.draw()
         self.overlay.setVisible(labels)
         image = self.grab().toImage()
         self.overlay.show()
@@ -134,8 +149,8 @@ class Viewport(QWidget):
     def _refine(self) -> None:
         """Draw once more without stairs at the outlines, which is too slow while things move."""
         # FXAA looks nearly as good for a third of the time, but VTK has none where it draws by EGL.
-        self._smoothing.use("ssaa" if self._plotter.ren_win.IsA("vtkEGLRenderWindow") else "fxaa")
-        draw(self._canvas)
+        self._smoothing.use("ssaa" if self.scene.plotter.ren_win.IsA("vtkEGLRenderWindow") else "fxaa")
+        self._canvas.draw()
 
     def close_view(self) -> None:
         """Give back all 3D objects; call it before the window goes. A second call does nothing."""
@@ -144,9 +159,9 @@ class Viewport(QWidget):
             self._glide.stop()
             self._rest.stop()
             self._pointer.let_go()
-            if isinstance(self._canvas, PaintedCanvas):
-                self._canvas.let_go()
-            self._plotter.close()
+            self._canvas.let_go()
+            if self._scene is not None:
+                self._scene.plotter.close()
 
     # -- what is shown over the view
 
@@ -162,34 +177,12 @@ class Viewport(QWidget):
 
     def label_band(self, name: str | None, text: str = "", detail: str = "") -> None:
         """Write beside a line, or take the label away, when it is drawn the next time."""
-        self._label = (name or "", text, detail)
-
-    def _place_label(self) -> None:
-        name, text, detail = self._label
-        label = None
-        if name in self.scene.bands.names and self.scene.is_visible("bands"):
-            spine, _ = self.scene.bands.spine(name)
-            colour = self.scene.bands.colour(name)
-            label = BandLabel(text, detail, colour, self.scene.band_anchor(name), spine)
-        self.overlay.set_band(label)
+        self._labels.set_band(name or "", text, detail)
 
     def set_pins(self, pins: Iterable[Pin], selected: str = "") -> None:
         """Show landmarks, at their places on the body at rest, as pins with labels, one of them selected."""
-        self._pins, self._selected_pin = tuple(pins), selected
+        self._labels.set_pins(pins, selected)
         self.request_draw()
-
-    def _place_pins(self) -> None:
-        """Let the pins ride on the skin, and tell those behind the body."""
-        pins = self._pins
-        if pins:
-            places = self.scene.carried(np.array([pin.position for pin in pins]))
-            pins = tuple(replace(pin, position=place) for pin, place in zip(pins, places, strict=True))
-        self.overlay.set_pins(pins, self._selected_pin)
-        self.overlay.follow(self.scene.view, [pin.name for pin in pins if self.scene.hidden(pin.position)])
-
-    def skin_in_the_middle(self) -> Floats | None:
-        """Return the place of the body at rest, shape (3,) [mm], in the middle of the picture, or None."""
-        return self._pointer.skin_at(QRectF(self._canvas.rect()).center())
 
     def watch_keys(self, watcher: QObject) -> None:
         """Let ``watcher`` filter the keys that are pressed while the view has the focus."""
@@ -198,32 +191,44 @@ class Viewport(QWidget):
 
     def skin_at(self, place: QPointF) -> Floats | None:
         """Return the place of the body at rest, shape (3,) [mm], that is seen at a pixel, or None."""
-        return self._pointer.skin_at(place)
+        return None if self._scene is None else self._pointer.skin_at(place)
 
     def set_dark(self, dark: bool) -> None:
         """Repaint for the light or the dark theme."""
-        self.scene.set_dark(dark)
+        if self._scene is not None:
+            self._scene.set_dark(dark)
+        self.request_draw()
+
+    def set_material(self, material: str) -> None:
+        """Paint the body as one of ``app.seeing.material.MATERIALS``."""
+        self._material = material
+        if self._scene is not None:
+            self._scene.set_material(material)
         self.request_draw()
 
     # -- the camera
 
     @property
+    def view(self) -> View:
+        """Where the scene is seen from."""
+        return self._view if self._scene is None else self._scene.view
+
+    @property
     def gliding(self) -> bool:
         """Whether the camera is on its way to another view."""
-        return self._glide.state() == QVariantAnimation.State.Running
+        return self._glide.running
 
     def set_view(self, name: str) -> None:
         """Glide to the side called ``name`` in ``app.seeing.camera.VIEWS``."""
-        self._go(self.scene.view.named(name))
+        self._go(self.view.named(name))
 
     def set_parallel(self, parallel: bool) -> None:
         """Switch between parallel and perspective projection."""
-        self.scene.set_parallel(parallel)
-        self._moved()
+        self._look_from(replace(self.view, parallel=parallel))
 
     def look_from(self, view: View) -> None:
         """See from where another viewport sees."""
-        here = self.scene.view
+        here = self.view
         if view != here:
             if (view.focus, view.distance) != (here.focus, here.distance):
                 self._fit = None
@@ -251,18 +256,16 @@ class Viewport(QWidget):
 
     def _go(self, view: View) -> None:
         self._glide.stop()
-        if not (self.motion and self.isVisible()):
-            self.scene.look_from(view)
-            self._moved()
-            return
-        self._glide_ends = (self.scene.view, view)
-        self._glide.setStartValue(0.0)
-        self._glide.setEndValue(1.0)
-        self._glide.start()
+        if self.motion and self.isVisible() and self._scene is not None:
+            self._glide.go(self.view, view)
+        else:
+            self._look_from(view)
 
-    def _glided(self, part: float) -> None:
-        start, end = self._glide_ends
-        self.scene.look_from(start.towards(end, part))
+    def _look_from(self, view: View) -> None:
+        if self._scene is None:
+            self._view = view
+        else:
+            self._scene.look_from(view)
         self._moved()
 
     def _moved(self) -> None:
@@ -271,8 +274,7 @@ class Viewport(QWidget):
 
     def _turn(self, view: View) -> None:
         self._glide.stop()
-        self.scene.look_from(view)
-        self._moved()
+        self._look_from(view)
 
     def _shift(self, view: View) -> None:
         self._fit = None

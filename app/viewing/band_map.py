@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 from weakref import WeakSet
 
 import numpy as np
 
-from app.seeing.bands import Bands, Rise
+from app.seeing.band import Rise
 from app.seeing.paint import Ramp
 from core.mesh import Floats, Points
 from core.pressure import LinePressure
+
+if TYPE_CHECKING:
+    from app.seeing.bands import Bands
 
 _NONE = np.empty(0)
 _DASH = 2  # rows of a dash where a band bridges a hollow

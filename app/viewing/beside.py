@@ -74,7 +74,7 @@ class Beside:
         body.viewport.look_from(main.viewport.scene.view)
         for layer in _LAYERS:
             body.viewport.scene.set_visible(layer, main.viewport.scene.is_visible(layer))
-        body.viewport.scene.set_material(main.viewport.scene.material)
+        body.viewport.set_material(main.viewport.scene.material)
         body.hidden_lines, body.selected_line = main.hidden_lines, main.selected_line
         body.show_frame(frame)
         body.viewport.forward_to(main.viewport)

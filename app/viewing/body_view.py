@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.presenting.frame import band_label, bands, drawn
-from app.seeing.body import NONE
+from app.seeing.piece import NONE
 from app.showing.viewport import Viewport
 from core.body import Body
 from core.control_mesh import ControlMesh
@@ -27,7 +27,7 @@ class BodyView:
         self.selected_line = "mid-bust"
         self._control: ControlMesh | None = None
         self._laid: Stages | None = None  # whose lines lie on the body
-        viewport.scene.measure.before(not after)
+        self._layers: dict[str, bool] = {}
 
     def show_frame(self, frame: Frame) -> None:
         """Bring the view up to date; of a body that is seen at rest only what is new is drawn again."""
@@ -54,9 +54,13 @@ class BodyView:
     def show_body(self, body: Body, moving: Indices = NONE) -> None:
         """Show a body on which nothing lies yet; ``moving`` are the vertices that will move, if known."""
         self.body, self.frame = body, None
-        self.viewport.scene.show_body(body.mesh, moving)
+        scene = self.viewport.scene
+        scene.show_body(body.mesh, moving)
+        scene.measure.before(not self.after)
         if not self.after:
-            self.viewport.scene.before(True)
+            scene.before(True)
+        for layer, shown in self._layers.items():
+            scene.set_visible(SCENE_PARTS[layer], shown)
 
     def shade(self, body: Body, occlusion: Floats) -> bool:
         """Darken the folds of ``body``, if it is the one shown; see ``bake_occlusion``."""
@@ -69,17 +73,19 @@ class BodyView:
     def set_after(self, after: bool) -> None:
         """Show the reshaped body, or the body at rest."""
         self.after = after
-        self.viewport.scene.measure.before(not after)
         if self.body is not None:
+            self.viewport.scene.measure.before(not after)
             self.viewport.scene.before(not after)
             self._show_label()
             self.viewport.request_draw()
 
     def set_layer(self, layer: str, shown: bool) -> None:
         """Show or hide one of ``SCENE_PARTS``."""
-        self.viewport.scene.set_visible(SCENE_PARTS[layer], shown)
-        self._show_label()
-        self.viewport.request_draw()
+        self._layers[layer] = shown
+        if self.body is not None:
+            self.viewport.scene.set_visible(SCENE_PARTS[layer], shown)
+            self._show_label()
+            self.viewport.request_draw()
 
     def hide_lines(self, names: frozenset[str]) -> None:
         """Show the bands of all lines but these."""
@@ -95,6 +101,8 @@ class BodyView:
     def select_line(self, name: str) -> None:
         """Put a casing round one line."""
         self.selected_line = name
+        if self.body is None:
+            return
         names = {line.name for line in self._laid.model.lines} if self._laid is not None else set()
         shown = name in names - self.hidden_lines
         self._show_label()

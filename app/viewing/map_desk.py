@@ -12,11 +12,9 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from app.panels.legend import Legend
 from app.presenting.body_now import BodyNow
 from app.presenting.maps import LINE_MAPS, MAPS, automatic_range, bridge_words, map_kinds, ramp_of
-from app.seeing.body import BodyActor
 from app.seeing.framing import framing_place
 from app.seeing.material import look_of
 from app.seeing.paint import Ramp
-from app.seeing.scene import Scene
 from app.showing.value_flags import ValueFlag, ValueFlags
 from app.viewing.band_map import BandPainter, BandValues
 from app.viewing.body_view import BodyView
@@ -28,6 +26,8 @@ from core.mesh import Floats
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
+    from app.seeing.body import BodyActor
+    from app.seeing.scene import Scene
 
 
 @dataclass(frozen=True)

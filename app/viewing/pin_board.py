@@ -70,7 +70,7 @@ class PinBoard:
 
     def put(self, name: str) -> None:
         """Put the pin of a landmark that was not found in the middle of the view, to be carried away."""
-        place = self._viewports[0].skin_in_the_middle()
+        place = self._viewports[0].skin_at(self._viewports[0].rect().toRectF().center())
         if place is not None:
             self._selected, self._carried = name, {name: place}
             self._show()
@@ -103,7 +103,7 @@ class PinBoard:
             pins[name] = Pin(name, landmark_title(name), place, "accent", tr("by hand"))
         chosen = found.get(self._hovered or self._selected) if not self._carried else None
         for viewport in self._viewports:
-            if viewport.scene.body is not None:
+            if viewport.shows_body:
                 viewport.scene.show_trace(chosen.evidence if chosen else np.empty((0, 3)))
             viewport.set_pins(pins.values(), self._selected)
 
@@ -114,7 +114,7 @@ class PinBoard:
             for name, mark in self._landmarks.items()
         ]
         for viewport in self._viewports:
-            if viewport.scene.body is not None:
+            if viewport.shows_body:
                 viewport.scene.show_trace(np.empty((0, 3)))
             viewport.set_pins(pins if viewport is self._viewports[0] else (), chosen[-1] if chosen else "")
 

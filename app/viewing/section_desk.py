@@ -173,8 +173,9 @@ class SectionDesk(QObject):
             self._cut(frame)
             self._draw()
         for body in () if shown else self._view.beside.live:
-            body.viewport.scene.section.set_visible(False)
-            self._handle(body.viewport).hide()
+            if body.body is not None:
+                body.viewport.scene.section.set_visible(False)
+                self._handle(body.viewport).hide()
 
     def _cut(self, frame: Frame) -> None:
         if self._now is None or not self._now.is_of(frame):

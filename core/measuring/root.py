@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from core.finding.under_breast import CREASE, ESTIMATED, NO_CREASE
 from core.landmark import SIDES, Landmark, Landmarks
@@ -154,6 +153,8 @@ def _joined(samples: Points, middle: Points, leftward: bool) -> tuple[Points, in
 
     The angle runs from the inner end (0) below the breast to the outer end (pi) and over the top.
     """
+    from scipy.interpolate import PchipInterpolator  # noqa: PLC0415 (a fifth of a second that no start needs)
+
     way = samples[:, :2] - middle
     across = -way[:, 0] if leftward else way[:, 0]
     angle = np.arctan2(-way[:, 1], across) % (2.0 * np.pi)

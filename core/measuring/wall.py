@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import RBFInterpolator
 from scipy.spatial import cKDTree
 
 from core.measuring.chart import Chart
 from core.mesh import Floats, Points
+
+if TYPE_CHECKING:
+    from scipy.interpolate import RBFInterpolator
 
 COLLAR = 22.0
 """The wall is laid through the skin up to so far round the root [mm]."""
@@ -53,6 +56,8 @@ def wall_of(chart: Chart, chest: Points, loop: Points) -> Wall | None:
     round it arches as a chest does, where a flat fan would cut through the ribs. Source: ours.
     """
     away = np.asarray(cKDTree(loop[:, :2]).query(chest[:, :2], distance_upper_bound=COLLAR)[0])
+    from scipy.interpolate import RBFInterpolator  # noqa: PLC0415 (a fifth of a second that no start needs)
+
     places = _thinned(chest[away < COLLAR])
     if len(places) < FEWEST:
         return None

@@ -1,0 +1,38 @@
+"""What can wait until a window is seen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import QEvent, QObject, QTimer
+from PySide6.QtWidgets import QWidget
+
+_PATIENCE = 1000
+"""Milliseconds after which it is done although nothing was painted: a window may open minimised."""
+
+
+def when_painted(window: QWidget, do: Callable[[], None]) -> None:
+    """Call ``do`` once, from the event loop, when ``window`` has been painted for the first time."""
+    _FirstPaint(window, do)
+
+
+class _FirstPaint(QObject):
+    def __init__(self, window: QWidget, do: Callable[[], None]) -> None:
+        super().__init__(window)
+        self._window, self._do = window, do
+        self._due = QTimer(self, interval=_PATIENCE, singleShot=True)
+        self._due.timeout.connect(self._call)
+        self._due.start()
+        window.installEventFilter(self)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+        if event.type() == QEvent.Type.Paint:
+            # The rest of the window is painted in the same go; what is due comes after it.
+            self._window.removeEventFilter(self)
+            self._due.start(0)
+        return False
+
+    def _call(self) -> None:
+        self._window.removeEventFilter(self)
+        self._do()
+        self.deleteLater()

@@ -1,0 +1,39 @@
+"""What a band is: the line that it is drawn of, its colour and how wide it is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from core.centre_line import NO_BACK
+from core.design import Design
+from core.mesh import Floats, Points
+
+Rise = Callable[[Floats], Points]
+"""Returns how far a band is off the skin, (rows, 3) [mm], at places along its line, (rows,) 0 to 1."""
+
+BAND_WIDTHS = {"full-bust": 10.0, "mid-bust": 12.0, "under-bust": 22.0}
+"""Usual width of the bands of the template's lines [mm]; what they are made of comes with the garment."""
+
+OWN_WIDTH = 12.0
+"""Usual width of the band of an own line [mm]."""
+
+
+def band_width(name: str, design: Design | None = None) -> float:
+    """Return the width of a line's band as it is drawn [mm]."""
+    own = design.traits_of(name).width if design else None
+    return BAND_WIDTHS.get(name, OWN_WIDTH) if own is None else own
+
+
+@dataclass(frozen=True, eq=False)
+class Band:
+    """What is drawn of one line: its path over the control points, (k, 3) [mm], colour and width [mm].
+
+    ``back``, shape (b, 3) [mm], goes on round the back to where the path begins; without it the band ends.
+    """
+
+    name: str
+    path: Points
+    colour: str
+    width: float = 12.0
+    back: Points = field(default_factory=lambda: NO_BACK)
