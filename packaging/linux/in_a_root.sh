@@ -3,8 +3,17 @@ base=$PWD/build/roots/$suite.base root=$PWD/build/roots/$suite
 archives=$PWD/build/roots/archives
 user=designer home=/home/designer
 
+# end_inside NAME: ends what runs inside the root, and nothing else, by its name or, for '', all of it.
+end_inside() {
+    for process in /proc/[0-9]*; do
+        [ "$(readlink "$process/root")" = "$root" ] || continue
+        case $(cat "$process/comm" 2>/dev/null) in *"$1"*) kill "${process#/proc/}" 2>/dev/null ;; esac
+    done
+    sleep 2
+}
+
 leave() {
-    [ -n "${display:-}" ] && kill "$display" 2>/dev/null && wait "$display" 2>/dev/null
+    [ -d "$root/proc/1" ] && end_inside ''
     for place in proc dev/shm var/cache/apt/archives; do
         mountpoint -q "$root/$place" && umount "$root/$place"
     done
@@ -27,7 +36,7 @@ make_base() {
 
 make_root() {
     leave
-    rm -rf "$root"; mkdir -p "$archives"
+    rm -rf --one-file-system "$root"; mkdir -p "$archives"
     cp -a "$base" "$root"
     mount -t proc proc "$root/proc" && mount -t tmpfs tmpfs "$root/dev/shm" &&
         mount --bind "$archives" "$root/var/cache/apt/archives" || { say "Cannot mount here: try --prefix."; exit 2; }

@@ -33,6 +33,15 @@ without_a_display() {
 helpers="xvfb xauth xdotool x11-utils scrot xdg-utils libglib2.0-bin shared-mime-info desktop-file-utils
     hicolor-icon-theme man-db"
 
+has_display() {
+    for _ in $(seq 60); do
+        [ -S "$root/tmp/.X11-unix/X77" ] && kill -0 "$display" && return 0
+        sleep 0.5
+    done
+    cat "$work/xvfb.log"
+    return 1
+}
+
 see() { in_root su - $user -c "DISPLAY=$screen scrot -o /tmp/shot.png" && cp "$root/tmp/shot.png" "$dist/$1"; }
 
 # waits_for NAME: until a window of that name is there, at most a minute.
@@ -48,20 +57,20 @@ waits_for() {
 # opens HOW NAME PICTURE: starts Busk, waits for the window's name, lets it settle, takes a picture, closes it.
 opens() {
     as_user "$1" >"$work/window.log" 2>&1 &
-    waits_for "$2" || { cat "$work/window.log"; kill_busk; return 1; }
+    waits_for "$2" || { cat "$work/window.log"; end_inside busk; return 1; }
     sleep 12
     see "$3" && as_user "xprop -name '$2' WM_CLASS _GTK_APPLICATION_ID" | tr '\n' ' '
-    kill_busk
+    end_inside busk
 }
-kill_busk() { in_root su - $user -c 'kill $(cat /proc/[0-9]*/stat | awk "\$2 == \"(busk)\" {print \$1}")' 2>/dev/null; sleep 2; }
 
 on_a_display() {
     say "helpers are added (a display, what desktops bring): only now, so that they cannot stand in for a dependency"
     # shellcheck disable=SC2086  # one word a package
     apt install $helpers || { say "helpers cannot be installed"; tail -n 5 "$work/apt.log"; exit 2; }
     listing >"$work/at first"
-    in_root Xvfb :77 -screen 0 1600x1000x24 -nolisten tcp >/dev/null 2>&1 &
+    chroot "$root" Xvfb :77 -screen 0 1600x1000x24 -noreset -nolisten tcp >"$work/xvfb.log" 2>&1 &
     display=$! screen=:77
+    check "a virtual display is there" has_display
     check "an older version installs" apt install /root/older.deb
     check "is known as 0.0.1" installed 0.0.1
     check "the upgrade over it installs" apt install /root/busk.deb
