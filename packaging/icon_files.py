@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import io
-import os
 from pathlib import Path
 
 from PIL import Image
 from PySide6.QtCore import QBuffer, QRectF, Qt
-from PySide6.QtGui import QGuiApplication, QImage, QPainter
+from PySide6.QtGui import QImage, QPainter
 from PySide6.QtSvg import QSvgRenderer
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -23,8 +22,6 @@ ICNS_SIZES = (16, 32, 64, 128, 256, 512, 1024)
 
 def drawn(name: str, size: int) -> Image.Image:
     """Return a drawing as a picture of ``size`` by ``size`` pixels."""
-    os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
-    application = QGuiApplication.instance() or QGuiApplication([])  # pictures need one to be drawn
     renderer = QSvgRenderer(str(DRAWINGS / f"{name}.svg"))
     if not renderer.isValid():
         raise SystemExit(f"There is no drawing {name}.svg in {DRAWINGS}.")
@@ -35,7 +32,6 @@ def drawn(name: str, size: int) -> Image.Image:
     painter.end()
     buffer = QBuffer()
     image.save(buffer, "PNG")
-    del application
     return Image.open(io.BytesIO(buffer.data().data())).convert("RGBA")
 
 
