@@ -16,6 +16,7 @@ from PySide6.QtWidgets import QApplication, QDialog, QWidget
 
 from app.commands.picture import wait_until
 from app.dress.wishes import wish_for
+from app.keeping.recent import forget_file, recent_files
 from app.main_window import MainWindow
 from app.panels.commands import CommandSheet
 from app.wording.samples import sample_design, sample_path
@@ -169,16 +170,18 @@ def pin_selected(window: MainWindow) -> None:
 def variants(window: MainWindow) -> None:
     """Put two variants side by side."""
     window.variant_desk.choose("B")
-    window.session.commit_line("mid-bust", "Mid-bust", 0.9)
+    window.lines_desk.commit_length("mid-bust", 0.9)
     wait_for(window.is_settled)
     window.variant_desk.show_side_by_side()
     window.inspector.open("history")
 
 
 def start_page(window: MainWindow) -> None:
-    """Show the page with two projects that were saved before."""
+    """Show the page with two projects that were saved before, and nothing else."""
+    for path in recent_files():
+        forget_file(path)
     for name, ratio in (("Customer 0398", 0.97), ("Customer 0412", 0.92)):
-        window.session.commit_line("mid-bust", "Mid-bust", ratio)
+        window.lines_desk.commit_length("mid-bust", ratio)
         wait_for(window.is_settled)
         window.session.save(str(Path(HOUSE.name) / f"{name}.busk"), window.desk._preview())
         window.session.finish_saving()
