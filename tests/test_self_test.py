@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 from collections.abc import Callable
 from pathlib import Path
 
@@ -14,7 +15,7 @@ import numpy as np
 import platformdirs
 import pytest
 from PIL import Image
-from PySide6.QtCore import QSettings
+from PySide6.QtCore import QSettings, qWarning
 from PySide6.QtWidgets import QApplication
 
 import app.reporting.pdf
@@ -22,6 +23,7 @@ import core.presets
 from app.checking import figures, letters, papers, program
 from app.checking.apart import PASSING, apart
 from app.checking.bench import Bench
+from app.checking.hearing import hearing
 from app.checking.parts import Part, PartError, try_parts
 from app.commands.self_test import LINES, PARTS
 from app.dress.theme import load_fonts
@@ -89,6 +91,25 @@ def test_a_part_that_fails_hides_none_of_the_others() -> None:
     assert heard[0].split() == ["first"], (
         "a part is named before it is tried: it may take the program with it"
     )
+
+
+def test_what_is_only_printed_is_heard(qapp: QApplication, bench: Bench) -> None:
+    """A fault in another thread, and a complaint of Qt, would pass unseen else."""
+
+    def tear() -> None:
+        raise ValueError("torn")
+
+    hook = sys.excepthook
+    with hearing() as bench.heard:
+        bench.check_silence()
+        thread = threading.Thread(target=tear)
+        thread.start()
+        thread.join()
+        qWarning("a painter is still at work")
+        with pytest.raises(PartError, match="ValueError: torn; Qt says: a painter is still at work"):
+            bench.check_silence()
+        bench.check_silence()
+    assert sys.excepthook is hook
 
 
 def test_every_part_needs_only_parts_before_it() -> None:

@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.checking.parts import check
 from app.wording.samples import sample_design
 from core.design import Design
 from core.document import Document
@@ -28,6 +29,7 @@ class Bench:
         self.folder = folder
         self.held = ExitStack()
         self.window: MainWindow | None = None
+        self.heard: list[str] = []
 
     @cached_property
     def design(self) -> Design:
@@ -63,6 +65,11 @@ class Bench:
         path = self.folder / "self-test \N{LATIN SMALL LETTER E WITH ACUTE} 試し.busk"
         save_project(path, Document.of(self.design), self.stages.scan, None)
         return path
+
+    def check_silence(self) -> None:
+        """Raise PartError if something was heard since the last time."""
+        heard, self.heard[:] = list(self.heard), []
+        check(not heard, "; ".join(dict.fromkeys(heard)))
 
     def shown(self) -> MainWindow:
         """The window; it must be open."""

@@ -31,6 +31,8 @@ def versions(bench: Bench) -> str:
     from PySide6.QtCore import qVersion  # noqa: PLC0415
     from vtkmodules.vtkCommonCore import vtkVersion  # noqa: PLC0415
 
+    from app.helping.machine import LIBRARIES  # noqa: PLC0415
+
     made_of = {
         "Busk": __version__,
         "Python": platform.python_version(),
@@ -39,10 +41,17 @@ def versions(bench: Bench) -> str:
         "numpy": numpy.__version__,
         "scipy": scipy.__version__,
     }
-    for name in ("PySide6-Essentials", "vtk", "pyvista"):
-        metadata.version(name)  # the sheet of diagnostics reads them there
+    untold = [name for name in LIBRARIES if name != "numba" and not _is_told(name)]
+    check(not untold, f"the versions of {', '.join(untold)} are not known: Help could not tell them")
     told = ", ".join(f"{name} {version}" for name, version in made_of.items())
     return f"{told}; {'packaged' if is_frozen() else 'from source'}, {platform.platform()}, in {_home()}"
+
+
+def _is_told(name: str) -> bool:
+    try:
+        return bool(metadata.version(name))
+    except metadata.PackageNotFoundError:
+        return False
 
 
 def shipped_files(bench: Bench) -> str:

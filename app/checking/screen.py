@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.checking.bench import MOVED, Bench
+from app.checking.hearing import hearing
 from app.checking.parts import PartError, check
 from app.wording.display import off_screen
 from app.wording.samples import sample_path
@@ -29,6 +30,7 @@ def toolkit(bench: Bench) -> str:
     from app.application import application  # noqa: PLC0415
 
     app = application(language="en", dark=False)
+    bench.heard = bench.held.enter_context(hearing())
     return f"{QGuiApplication.platformName()}, {app.devicePixelRatio():g} pixels to one"
 
 
@@ -44,6 +46,7 @@ def window(bench: Bench) -> str:
         picture.pixel(x, y) for x in range(0, picture.width(), 4) for y in range(0, picture.height(), 4)
     }
     check(len(colours) > 200, f"the 3D view is empty: it has {len(colours)} colours")
+    bench.check_silence()
     drawn_in = type(opened.view.viewport.overlay.parentWidget()).__name__
     return f"{opened.windowTitle()}, {len(colours)} colours in the 3D view, a {drawn_in}"
 
@@ -69,6 +72,7 @@ def slider(bench: Bench) -> str:
     check(
         opened.session.undo_stack.count() == 1, f"it made {opened.session.undo_stack.count()} steps of undo"
     )
+    bench.check_silence()
     return f"{MOVED} from {100 * start:.1f} to {100 * handle.ratio():.1f} %, moved the body by {moved:.1f} mm"
 
 
@@ -116,6 +120,7 @@ def file_dialog(bench: Bench) -> str:
         QApplication.setAttribute(plain, before)
     check(bool(seen), "no dialog came")
     wait_until(lambda: opened.session.name == path.stem and opened.is_settled(), QApplication.processEvents)
+    bench.check_silence()
     return f"{seen[0]!r} accepted {path.name}, which is open now"
 
 
@@ -155,6 +160,7 @@ def closing(bench: Bench) -> str:
     bench.held.close()
     bench.window = None
     QApplication.processEvents()
+    bench.check_silence()
     running = [each.name for each in threading.enumerate() if each.name.startswith("busk")]
     if running:
         raise PartError(f"threads go on: {', '.join(running)}")
