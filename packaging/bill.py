@@ -140,9 +140,8 @@ def owner(place: str, source: str) -> Part:
     """Return the part that a shipped file belongs to, by where it lies and where it came from."""
     path = Path(source)
     if found := packages().get(str(path.resolve())):
-        if named(found) != "busk":
-            return _python_part(named(found))
-    elif path.is_relative_to(PYTHON) or place == "base_library.zip":
+        return busk() if named(found) == "busk" else _python_part(named(found))
+    if path.is_relative_to(PYTHON) or place == "base_library.zip":
         return python_itself()
     if path.is_relative_to(ROOT):
         return _own(place)
@@ -206,6 +205,8 @@ def collected(program: Path, origins: Mapping[str, str]) -> tuple[list[Part], li
     strays = [place for place in shipped if place not in origins and place != "base_library.zip"]
     stub = {each.name: each for each in (_python_part("pyinstaller"), busk(), python_itself())}
     for place, source in origins.items():
+        if source == "-":  # a folder of packages that has no file itself
+            continue
         part = owner(place, source)
         stub.setdefault(part.name, part)
     parts = [*stub.values(), *within(shipped, stub)]
