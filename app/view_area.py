@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from PySide6.QtCore import Signal
@@ -76,10 +76,15 @@ class ViewArea(QWidget):
         """The actions of all tools, for the menus."""
         return self.compare.actions_by_name | self.tools.actions_by_name
 
-    def prepare(self) -> None:
+    def prepare(self, done: Callable[[], None]) -> None:
         """Load the 3D libraries in a passing thread and make the scene, before there is anything to show."""
+
+        def make(_: object) -> None:
+            self.viewport.make()
+            done()
+
         words = tr("Getting the 3D view ready")
-        self._jobs.run(words, lambda _: load_libraries(), lambda _: self.viewport.make())
+        self._jobs.run(words, lambda _: load_libraries(), make)
 
     # -- what is shown
 

@@ -23,12 +23,15 @@ class Housekeeping(QObject):
     def __init__(self, parent: QObject) -> None:
         super().__init__(parent)
         gc.disable()
-        # What is there at the start stays: nobody has to look at it again.
-        gc.freeze()
+        self.spare()
         self._looks = 0
         self._clock = QTimer(self, interval=_OFTEN)
         self._clock.timeout.connect(self._look)
         self._clock.start()
+
+    def spare(self) -> None:
+        """Look no more at what is there now: libraries and parts of the window stay."""
+        gc.freeze()
 
     def close(self) -> None:
         """Give the search back to Python, once the solver's thread has ended."""
