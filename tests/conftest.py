@@ -139,7 +139,7 @@ def built() -> Callable[[str], Stages]:
 @pytest.fixture(scope="session")
 def qapp_cls() -> type[QApplication]:
     """The application of the tests is that of the program."""
-    from app.application import Application
+    from app.application import Application  # noqa: PLC0415 (not every test brings Qt along)
 
     return Application
 
