@@ -1,7 +1,7 @@
 # A part of try_install.sh, as root: a minimal Debian, to which nothing is added but the package and what it names.
 base=$PWD/build/roots/$suite.base root=$PWD/build/roots/$suite
 archives=$PWD/build/roots/archives
-user=designer home=/home/designer
+user=designer home=/home/$user
 
 # end_inside NAME: ends what runs inside the root, and nothing else, by its name or, for '', all of it.
 end_inside() {
@@ -41,7 +41,7 @@ make_root() {
     mount -t proc proc "$root/proc" && mount -t tmpfs tmpfs "$root/dev/shm" &&
         mount --bind "$archives" "$root/var/cache/apt/archives" || { say "Cannot mount here: try --prefix."; exit 2; }
     cp "$work/見本 1.busk" "$work/person.ply" "$root$home/"
-    cp "$deb" "$root/root/busk.deb"
+    cp "$deb" "$root/srv/busk.deb"
     chroot "$root" chown -R $user: $home
     apt update
 }
@@ -54,7 +54,7 @@ screen=
 
 # Names of all files but those that apt, dpkg and man keep books in; of those under /etc what is in them, too.
 listing() {
-    in_root sh -c 'find / -xdev \( -path /proc -o -path /tmp -o -path /root -o -path /home -o -path /var/cache/apt \
+    in_root sh -c 'find / -xdev \( -path /proc -o -path /tmp -o -path /root -o -path /srv -o -path /home -o -path /var/cache/apt \
         -o -path /var/lib/apt -o -path /var/lib/dpkg -o -path /var/log -o -path /var/cache/debconf -o -path /var/cache/man -o -path /run \) \
         -prune -o -print | grep -vE "^/(dev/shm|etc/ld.so.cache|var/cache/ldconfig)" | sort
         find /etc -type f ! -name ld.so.cache ! -name "*-" -exec md5sum {} + | sort -k 2'

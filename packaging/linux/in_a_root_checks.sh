@@ -1,10 +1,14 @@
 # A part of try_install.sh: what is done with the package in the minimal Debian of in_a_root.sh.
 installed() { [ "$(in_root dpkg-query -W -f '${db:Status-Status} ${Version}' busk 2>/dev/null)" = "installed $1" ]; }
-removed() { apt purge busk && apt autoremove --purge; }
+# What it brought goes, too, though something that was here before may suggest it.
+removed() {
+    apt purge busk &&
+        apt -o APT::AutoRemove::RecommendsImportant=false -o APT::AutoRemove::SuggestsImportant=false autoremove --purge
+}
 
 without_a_display() {
     listing >"$work/at first"
-    check "installs with what it depends on, and nothing else" apt install /root/busk.deb
+    check "installs with what it depends on, and nothing else" apt install /srv/busk.deb
     check "is known to dpkg as $version" installed "$version"
     check "every library finds those it is linked to" in_root sh -c "cd /usr/lib/busk && [ -z \"\$($FIND_LIBRARIES)\" ]"
     check "files belong to root, nobody else may write" in_root sh -c \
@@ -17,7 +21,7 @@ without_a_display() {
     check "with the source's answer" $python $here/same_answer.py "$work/source" "$root$home/installed"
     check "measures a project" as_user "busk measure '見本 1.busk' --csv"
     check "runs where the home cannot be written to" in_root su $user -s /bin/sh -c \
-        'cd /; export HOME=/nowhere; busk detect /home/designer/person.ply --json'
+        "cd /; export HOME=/nowhere; busk detect $home/person.ply --json"
     check "says in a sentence that there is no display" says "no display" as_user busk
     if [ -n "$archive" ]; then
         mkdir "$root$home/other place"
@@ -71,9 +75,9 @@ on_a_display() {
     chroot "$root" Xvfb :77 -screen 0 1600x1000x24 -noreset -nolisten tcp >"$work/xvfb.log" 2>&1 &
     display=$! screen=:77
     check "a virtual display is there" has_display
-    check "an older version installs" apt install /root/older.deb
+    check "an older version installs" apt install /srv/older.deb
     check "is known as 0.0.1" installed 0.0.1
-    check "the upgrade over it installs" apt install /root/busk.deb
+    check "the upgrade over it installs" apt install /srv/busk.deb
     check "is known as $version" installed "$version"
     check "a project has its type" says application/x-busk as_user "xdg-mime query filetype '見本 1.busk'"
     check "without its ending, too" says application/x-busk as_user \
@@ -102,6 +106,6 @@ make_base
 make_root
 say "$deb in a minimal $suite"
 $python $here/deb.py --program "$dist/busk" --version 0.0.1 --level 1 --out "$work/older" >>"$work/apt.log" 2>&1
-mv "$work"/older/*.deb "$root/root/older.deb"
+mv "$work"/older/*.deb "$root/srv/older.deb"
 without_a_display
 on_a_display
