@@ -68,6 +68,14 @@ def test_measures_of_ones_own_keep_their_names_in_files(outcome: Outcome, tmp_pa
     assert titles.count("バスト囲") == 1, "in those of the window"
 
 
+@pytest.mark.parametrize("axes", AXES)
+def test_the_axes_are_told_in_the_language_of_the_window(outcome: Outcome, axes: str) -> None:
+    manner = Manner(unit="mm", axes=axes)
+    assert make_ready("body", "a.stl", outcome, manner).how == f"in mm, {axes}"
+    with speaking("ja"):
+        assert make_ready("body", "a.stl", outcome, manner).how.startswith(f"mm、{axes[0]} が上")
+
+
 def turned(places: np.ndarray, unit: str, axes: str) -> np.ndarray:
     """Return places of a file in Busk's axes and millimetres."""
     return np.asarray(places) @ np.array(AXES[axes], dtype=float) * UNITS[unit]

@@ -205,6 +205,12 @@ def test_elastics_are_named_in_the_language_of_the_sheet(sheet: Sheet, tmp_path:
     assert "plush" not in text
 
 
+def test_the_band_of_a_size_is_no_band_of_the_garment_in_japanese(sheet: Sheet, tmp_path: Path) -> None:
+    text = written(handout(sheet), tmp_path / "ja.pdf", "ja").text()
+    assert "アンダー EU 75" in text
+    assert "バンド EU" not in text
+
+
 def test_letters_are_large_enough_for_the_bench() -> None:
     assert min(size for kind, (size, *_) in TYPES.items() if kind != "axis") >= 7.5
 

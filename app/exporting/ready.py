@@ -99,7 +99,8 @@ def _table_kind(path: str, manner: Manner) -> None:
 
 
 def _in_space(space: Space) -> str:
-    return tr("in {unit}, {axes}").format(unit=_unit_words(space.unit), axes=space.axes)
+    axes = {"z-up": tr("z-up"), "y-up": tr("y-up"), "z-up-front-y": tr("z-up-front-y")}[space.axes]
+    return tr("in {unit}, {axes}").format(unit=_unit_words(space.unit), axes=axes)
 
 
 def _unit_words(unit: str) -> str:
