@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from app.commands.settings import dressed, made_of
+from app.commands.worn import run_to_body
 from app.exporting.outcome import Manner, Outcome
 from app.exporting.ready import check, make_ready
 from core.design import Design
@@ -14,7 +15,6 @@ from core.errors import UserError
 from core.pipeline import build
 from core.progress import in_one_go, quiet
 from core.report import shape_warnings
-from core.solution import run
 
 KINDS = ("body", "control", "lines", "flat", "measures", "turntable")
 """What can be written by command, in order."""
@@ -45,7 +45,7 @@ def run_export(
     _check(wished, manner)
     stages = build(design)
     design = made_of(dressed(design, stages.model.lines, lengths), elastics)
-    solution = run(build(design, stages))
+    solution = run_to_body(build(design, stages))
     outcome = Outcome(solution.stages, solution.control_points, solution.records)
     for kind, name in wished.items():
         say(_write(kind, name, outcome, manner))

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from app.commands.told import told
+from app.commands.worn import run_to_body
 from core import __version__
 from core.design import Design
 from core.doubts import doubts
 from core.measures import before_after, measure_rows, measures
 from core.pipeline import build, find, read_body
 from core.report import shape_warnings
-from core.solution import run
 from core.writing_out.cells import csv_text
 
 COLUMNS = (
@@ -33,13 +33,13 @@ class Measured:
 
 
 def run_measure(design: Design, *, solved: bool) -> Measured:
-    """Measure the scan of a design, and what becomes of it if it is to be ``solved``."""
+    """Measure the scan of a design, and what becomes of it if it is to be ``solved``. Raises UserError."""
     if not solved:
         _, body = read_body(design.scan)
         landmarks = find(body, design.placed)
         rows = measure_rows(measures(body.calm, landmarks, design.own_measures))
         return Measured(rows, False, True, doubts(body, landmarks))
-    solution = run(build(design))
+    solution = run_to_body(build(design))
     stages = solution.stages
     rows = measure_rows(*before_after(stages, solution.control_points))
     settled = solution.verdict.motion == "settled" and solution.verdict.state != "folded"

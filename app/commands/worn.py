@@ -9,9 +9,10 @@ from functools import reduce
 from app.commands.settings import dressed, made_of
 from core.design import Design, cannot_hold
 from core.errors import LineError
-from core.pipeline import build
+from core.pipeline import Stages, build
 from core.report import shape_warnings
 from core.sewing.as_worn import as_worn
+from core.sewing.tensions import ran_away
 from core.solution import Solution, run
 
 
@@ -22,6 +23,14 @@ class Worn:
     solution: Solution
     settled: bool
     warnings: list[str]
+
+
+def run_to_body(stages: Stages) -> Solution:
+    """Solve the design of ``stages``. Raises LineError if the turns ran away: what they leave is no body."""
+    solution = run(stages)
+    if solution.verdict.motion == "diverging":
+        raise cannot_hold(stages.design) if stages.design.line_hold == "held" else ran_away()
+    return solution
 
 
 def run_worn(
@@ -39,15 +48,13 @@ def run_worn(
             reduce(lambda each, name: each.with_elastic(name, None), design.worn_elastics(), design)
         )
         made = made_of(design, elastics).worn_elastics()
-        design = as_worn(plain, run(plain).control_points, made)
+        design = as_worn(plain, run_to_body(plain).control_points, made)
     else:
         design = made_of(design, elastics)
     if not design.lines and not bare:
         raise LineError("No line is worn.", "Set one: --line mid-bust=75% --elastic 'mid-bust=plush 12'.")
-    solution = run(build(design, stages))
+    solution = run_to_body(build(design, stages))
     motion = solution.verdict.motion
-    if design.line_hold == "held" and motion == "diverging":
-        raise cannot_hold(design)
     settled = motion == "settled" and solution.verdict.state != "folded"
     warnings = shape_warnings(solution)
     if motion != "settled":

@@ -31,7 +31,10 @@ class LineTension:
 
 def ran_away() -> LineError:
     """Return what to say where the points are those of no body any more."""
-    return LineError("The calculation ran away: there is no shape to sew for.", "Set the lines longer.")
+    return LineError(
+        "The calculation ran away: there is no body to measure or to sew for.",
+        "Set the lines longer or softer.",
+    )
 
 
 def line_tensions(stages: Stages, control_points: Points) -> Mapping[str, LineTension]:
