@@ -66,7 +66,7 @@ def _run(words: list[str]) -> int:
 
 def design_of(path: str, options: argparse.Namespace) -> Design:
     """Return the design of a project, or a new one for a scan, with what the options overrule."""
-    design = open_project(path).design if is_project(path) else Design(ScanSource(str(Path(path).absolute())))
+    design = open_project(path).design if is_project(path) else Design(ScanSource(path))
     axes = {key: getattr(options, key) for key in ("unit", "up", "front") if getattr(options, key, None)}
     if axes:
         design = replace(design, scan=replace(design.scan, **axes))

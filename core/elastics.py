@@ -133,13 +133,13 @@ def _text_of(path: Path) -> str:
 
 def write_elastic(path: Path, elastic: Elastic) -> None:
     """Write an elastic as a table, whole or not at all. Raises ProjectError."""
-    with whole_file(path.absolute()) as partial:
+    with whole_file(path) as partial:
         partial.write_text(csv_of(elastic), encoding="utf-8-sig")
 
 
 def write_template(path: Path) -> None:
     """Write a table to be filled in with what is measured, whole or not at all. Raises ProjectError."""
-    with whole_file(path.absolute()) as partial:
+    with whole_file(path) as partial:
         partial.write_text(TEMPLATE, encoding="utf-8-sig")
 
 

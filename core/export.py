@@ -27,7 +27,7 @@ def write_mesh(
 
     Raises UserError for another ending, or a place that cannot be written to; Cancelled leaves no file.
     """
-    target = Path(path).absolute()
+    target = Path(path)
     kind = kind_of(target)
     space = space or space_of(kind)
     import trimesh  # noqa: PLC0415 (it takes long to load, and is needed here alone)
@@ -64,7 +64,7 @@ def write_control_points(
 
     They are those at rest, or ``points``, shape (n, 3). Raises UserError if the place cannot be written to.
     """
-    target, places = Path(path).absolute(), control.mesh.vertices if points is None else points
+    target, places = Path(path), control.mesh.vertices if points is None else points
     with whole_file(target) as partial, open(partial, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(["number", "row", "column", "x_mm", "y_mm", "z_mm", "free"])
@@ -79,7 +79,7 @@ def write_profile(path: str | os.PathLike[str], plane: Plane, bodies: Mapping[st
 
     Raises UserError if the place cannot be written to.
     """
-    target = Path(path).absolute()
+    target = Path(path)
     with whole_file(target) as partial, open(partial, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(["body", "curve", "x_mm", "y_mm", "z_mm"])

@@ -77,7 +77,7 @@ def save_project(
 
 def open_project(path: str | os.PathLike[str]) -> Document:
     """Read the document of a project; its scan is read from the same file. Raises ProjectError."""
-    source = Path(path).absolute()
+    source = Path(path)
     with _archive(source) as archive:
         names = [DESIGN, *({VARIANTS} & set(archive.namelist()))]
         document = from_texts({name: _text(archive, name) for name in names})
@@ -86,7 +86,7 @@ def open_project(path: str | os.PathLike[str]) -> Document:
             raise ProjectError(
                 f"{source.name} holds no scan.", "Open a backup, or start again from the scan."
             )
-    return with_scan(document, str(source), member)
+    return with_scan(document, str(source.absolute()), member)
 
 
 def with_scan(document: Document, path: str, member: str) -> Document:
@@ -121,12 +121,13 @@ def safe_name(name: str) -> str:
 def whole_file(target: Path) -> Iterator[Path]:
     """Give a name beside ``target`` to write to; it takes the target's place only when all went well.
 
-    Raises ProjectError if the place cannot be written to, or is being written to already.
+    Raises ProjectError if the place cannot be written to, told as it was named, or is being written to
+    already.
     """
     place = os.path.normcase(os.path.realpath(target))
     with _LOCK:
         if place in _AT_WORK:
-            raise still_written(target)
+            raise still_written(target.absolute())
         _AT_WORK.add(place)
     try:
         yield from _whole_file(target)
@@ -140,7 +141,8 @@ def still_written(target: Path) -> ProjectError:
     return ProjectError(f"{target.name} is still being written.", "Wait a moment, or choose another name.")
 
 
-def _whole_file(target: Path) -> Iterator[Path]:
+def _whole_file(named: Path) -> Iterator[Path]:
+    target = named.absolute()
     partial = target.with_name(f".{target.name}.{os.getpid()}.part")
     _sweep(target)
     try:
@@ -150,7 +152,7 @@ def _whole_file(target: Path) -> Iterator[Path]:
         os.replace(partial, target)
     except OSError as problem:
         raise ProjectError(
-            f"{target} cannot be written: {problem.strerror or problem}.",
+            f"{named} cannot be written: {problem.strerror or problem}.",
             "Choose another folder or make room." if problem.errno in _FULL else "Choose another folder.",
         ) from problem
     finally:

@@ -73,7 +73,7 @@ def write_solution(solution: Solution, folder: Path) -> dict[str, Any]:
     write_control_points(folder / "control.csv", stages.control)
     write_turns(folder / "turns.csv", solution.records, stages)
     figures = report(solution)
-    with whole_file((folder / "report.json").absolute()) as partial:
+    with whole_file(folder / "report.json") as partial:
         partial.write_text(json.dumps(figures, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     return figures
 
@@ -84,7 +84,7 @@ def write_turns(path: str | os.PathLike[str], records: Sequence[Record], stages:
     heading += [*(f"length_{line.name}_mm" for line in stages.model.lines), "step_mm"]
     low = _lowest(stages)
     with (
-        whole_file(Path(path).absolute()) as partial,
+        whole_file(Path(path)) as partial,
         open(partial, "w", newline="", encoding="utf-8") as file,
     ):
         writer = csv.writer(file)

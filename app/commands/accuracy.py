@@ -42,7 +42,7 @@ def run_accuracy(folder: Path, out: Path | None, json: bool) -> int:
         out = Path(out)
         out.mkdir(parents=True, exist_ok=True)
         for name, content in (("accuracy.md", text), ("accuracy.json", values + "\n")):
-            with whole_file((out / name).absolute()) as partial:
+            with whole_file(out / name) as partial:
                 partial.write_text(content, encoding="utf-8")
         save_sheets(cases, folder, out)
         print(f"tables and pictures written to {out}", file=sys.stderr)

@@ -68,8 +68,11 @@ def _check(wished: Mapping[str, str], manner: Manner) -> None:
 def _write(kind: str, name: str, outcome: Outcome, manner: Manner) -> str:
     """Write a file, and return what is said of it."""
     ready = make_ready(kind, name, outcome, manner)
-    target = Path(name).absolute()
-    target.parent.mkdir(parents=True, exist_ok=True)
+    target = Path(name)
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as why:
+        raise UserError(f"{name} cannot be written: {why.strerror}.", "Choose another folder.") from why
     drawn = in_one_go(ready.draw()) if ready.draw else None
     files = ready.write(target, drawn, quiet) or [target]
     place = name if len(files) == 1 else f"{files[0].name} to {files[-1].name}"

@@ -112,8 +112,8 @@ def save_window(window: MainWindow, out: Path) -> None:
 def _check_name(out: Path) -> None:
     if out.suffix.lower() != ".png":
         raise UserError(f"'{out}' is no name for a picture.", "Choose one that ends in .png.")
-    if not out.absolute().parent.is_dir():
-        raise UserError(f"There is no folder {out.absolute().parent}.", "Make it, or choose another one.")
+    if not out.parent.is_dir():
+        raise UserError(f"There is no folder {out.parent}.", "Make it, or choose another one.")
 
 
 def wait_until(ready: Callable[[], bool], turn: Callable[[], None]) -> None:

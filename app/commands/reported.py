@@ -67,7 +67,7 @@ def run_report(
     sheet = sheet_of(solution, solution.records, _heading(source, design, wishes))
     for name, text, code in ((wishes.json, sheet_json, "utf-8"), (wishes.csv, sheet_csv, ENCODING)):
         if name:
-            with whole_file(Path(name).absolute()) as partial:
+            with whole_file(Path(name)) as partial:
                 partial.write_text(text(sheet), encoding=code, errors="replace")  # of a file's name
     said = _write(solution, sheet, wishes)
     files = [name for name in (wishes.out, wishes.json, wishes.csv) if name]
@@ -81,10 +81,8 @@ def _check(wishes: SheetWishes) -> None:
     for name, ending in ((wishes.out, ".pdf"), (wishes.json, ".json"), (wishes.csv, ".csv")):
         if name and Path(name).suffix.lower() != ending:
             raise UserError(f"'{name}' is no name for such a file.", f"Choose one that ends in {ending}.")
-        if name and not Path(name).absolute().parent.is_dir():
-            raise UserError(
-                f"There is no folder {Path(name).absolute().parent}.", "Make it, or choose another one."
-            )
+        if name and not Path(name).parent.is_dir():
+            raise UserError(f"There is no folder {Path(name).parent}.", "Make it, or choose another one.")
     if not wishes.out:
         raise UserError("The place to write to has no name.", "Name a file: --out sheet.pdf.")
     known = sizes(750.0, 900.0, wishes.allowance or 0.0)

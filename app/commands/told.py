@@ -24,7 +24,7 @@ def told(forms: Mapping[str, Callable[[T], str]], found: T, kind: str, out: str 
     if not out.strip():
         raise UserError("The place to write to has no name.", "Name a file: --out table.csv.")
     form = forms[kind or {".json": "json", ".csv": "csv"}.get(Path(out).suffix.lower(), "")]
-    with whole_file(Path(out).absolute()) as partial:
+    with whole_file(Path(out)) as partial:
         partial.write_text(form(found) + "\n", encoding="utf-8")
     return f"written to {out}"
 

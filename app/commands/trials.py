@@ -64,9 +64,9 @@ def run_trials(out: Path, quick: bool = False) -> list[Trial]:
             left = (time.perf_counter() - start) * (count / len(made) - 1.0)
             print(f"\r{len(made)} of {count} cases, {left:.0f} s left ", end="", file=sys.stderr, flush=True)
     print(file=sys.stderr)
-    with whole_file((out / "sweep.csv").absolute()) as partial:
+    with whole_file(out / "sweep.csv") as partial:
         _write_rows(partial, made)
-    with whole_file((out / "sweep.md").absolute()) as partial:
+    with whole_file(out / "sweep.md") as partial:
         partial.write_text("\n".join(page(made, quick)) + "\n", encoding="utf-8")
     return made
 

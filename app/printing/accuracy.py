@@ -47,7 +47,7 @@ def save_sheets(cases: Sequence[Case], folder: Path, out: Path) -> list[Path]:
     written = []
     for number, page in enumerate(pages, start=1):
         name = out / f"accuracy-{number}.png"
-        with print_style(), whole_file(name.absolute()) as partial:
+        with print_style(), whole_file(name) as partial:
             _page(page, folder).savefig(partial, format="png", dpi=DOTS, metadata={"Software": "Busk"})
         written.append(name)
     return written

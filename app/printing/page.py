@@ -43,7 +43,7 @@ def write_page(
     def page(pictures: str = "", tables: bool = True) -> str:
         return page_of(drawn, stated, found, study, pictures=pictures, tables=tables)
 
-    with whole_file((out / NAME).absolute()) as partial:
+    with whole_file(out / NAME) as partial:
         partial.write_text(page(), encoding="utf-8")
     tell(f"  {out / NAME}: the page")
     return page

@@ -136,7 +136,7 @@ def write_picture(
 
     Raises UserError for another ending or a place that cannot be written to; Cancelled leaves no file.
     """
-    target = Path(path).absolute()
+    target = Path(path)
     picture_kind(target)
     progress("writing", 0.1)
     image = Image.fromarray(on_nothing(picture, dark) if clear else on_ground(picture, dark))

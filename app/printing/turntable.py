@@ -113,7 +113,7 @@ def write_turntable(
 
 def turntable_files(path: str | os.PathLike[str], frames: int) -> list[Path]:
     """Return the files that a turntable of this name is: one, or a numbered series of PNG."""
-    target = Path(path).absolute()
+    target = Path(path)
     if turntable_kind(path) != "png":
         return [target]
     digits = len(str(frames))

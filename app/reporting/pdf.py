@@ -17,7 +17,7 @@ _DOTS = 1200  # of the writer to an inch
 
 def write_pdf(path: str | Path, pages: Pages, title: str) -> None:
     """Write the pages of a sheet, whole or not at all. Raises UserError if they cannot be written."""
-    target, data = Path(path).absolute(), QBuffer()
+    target, data = Path(path), QBuffer()
     data.open(QIODevice.OpenModeFlag.WriteOnly)
     if not _paint(_writer(data, title), pages):
         raise ProjectError(

@@ -63,7 +63,7 @@ def scan_bytes(path: Path, progress: Progress = quiet) -> bytes:
     try:
         kind = path.stat()
         if not stat.S_ISREG(kind.st_mode):  # a pipe or a device may never end
-            raise ScanError(f"{path.name} cannot be read: it is no file.", "Choose another scan.")
+            raise ScanError(f"{path.name or path} cannot be read: it is no file.", "Choose another scan.")
         if kind.st_size > LARGEST_FILE:
             raise ScanError(f"{path.name} is too large.", _THINNER)
         with path.open("rb") as file:

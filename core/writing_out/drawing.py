@@ -36,7 +36,7 @@ def write_curves(path: str | os.PathLike[str], curves: Sequence[WornCurve], spac
 
     Raises UserError for another ending, or a place that cannot be written to.
     """
-    target, kind = Path(path).absolute(), drawing_kind(path, CURVE_FORMATS)
+    target, kind = Path(path), drawing_kind(path, CURVE_FORMATS)
     parts = [(curve.name, part, space.places(each)) for curve in curves for part, each in curve.parts.items()]
     with whole_file(target) as partial:
         if kind == "obj":
@@ -58,7 +58,7 @@ def write_strips(
     ``say`` puts what stands beside them into another language. Raises UserError for another ending, or a
     place that cannot be written to.
     """
-    target, kind = Path(path).absolute(), drawing_kind(path, STRIP_FORMATS)
+    target, kind = Path(path), drawing_kind(path, STRIP_FORMATS)
     with whole_file(target) as partial:
         if kind == "svg":
             drawing = Xml.ElementTree(_svg(strips, heading, say))

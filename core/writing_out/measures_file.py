@@ -56,7 +56,7 @@ def write_measures(path: str | os.PathLike[str], sheet: MeasuresSheet) -> None:
 
     Raises UserError for another ending, a unit that the file cannot have, or a place that cannot be written.
     """
-    target = Path(path).absolute()
+    target = Path(path)
     text = MEASURE_FORMATS[measures_kind(path, sheet.unit)](sheet)
     with whole_file(target) as partial:
         partial.write_text(text, encoding="utf-8", newline="")

@@ -1,0 +1,38 @@
+"""What is said of a file names it as it was typed: not where on the disk that is."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from app.cli import BAD_INPUT, main
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["detect", "nobody.ply"], "There is no file nobody.ply. "),
+        (["measure", "some/nobody.ply"], f"There is no file {Path('some/nobody.ply')}. "),
+        (["solve", "nobody.busk", "--out", "out"], "There is no project nobody.busk. "),
+        (["detect", "."], ". cannot be read: it is no file. "),
+        (["measure", "anna.ply", "--out", "nowhere/a.csv"], f"{Path('nowhere/a.csv')} cannot be written: "),
+        (["picture", "anna.ply", "--out", "nowhere/a.png"], "There is no folder nowhere. "),
+        (["report", "anna.ply", "--out", "nowhere/a.pdf"], "There is no folder nowhere. "),
+        (["export", "anna.ply", "--body", "anna.ply/a.glb"], "anna.ply/a.glb cannot be written: "),
+    ],
+)
+def test_a_file_is_named_as_it_was_typed(
+    mannequin: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    words: list[str],
+    said: str,
+) -> None:
+    shutil.copy(mannequin, tmp_path / "anna.ply")
+    monkeypatch.chdir(tmp_path)
+    assert main(words) == BAD_INPUT
+    assert capsys.readouterr().err.startswith(f"busk: {said}")
+    assert [each.name for each in tmp_path.iterdir()] == ["anna.ply"]
