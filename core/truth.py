@@ -17,7 +17,7 @@ from core.standing.upright import MILLIMETRES
 
 FILE = "truth.json"
 MOST_BYTES = 100_000_000
-FORM = "Its form is told in docs/accuracy.md."
+FORM = "Its form is told in the user guide, How well a scan is understood."
 TINY = 1e-9
 
 ROUNDED = 5e-3
@@ -108,7 +108,7 @@ def read_truths(folder: Path) -> tuple[list[Truth], list[str]]:
             truths.append(truth)
             strange |= unknown
     if not truths:
-        raise TruthError(f"{FILE} names no file.", "It needs 'bodies' or 'scans': see docs/accuracy.md.")
+        raise TruthError(f"{FILE} names no file under 'bodies' or 'scans'.", FORM)
     return truths, sorted(strange)
 
 
@@ -116,21 +116,19 @@ def _read_json(folder: Path) -> Table:
     path = folder / FILE
     try:
         if path.stat().st_size > MOST_BYTES:
-            raise TruthError(f"{path} is too large to be a list of landmarks.", "See docs/accuracy.md.")
+            raise TruthError(f"{path} is too large to be a list of landmarks.", FORM)
         content = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
         raise TruthError(
-            f"There is no {FILE} in {folder}.", "It tells where the landmarks are: see docs/accuracy.md."
+            f"There is no {FILE} in {folder}, which tells where the landmarks are.", FORM
         ) from None
     except OSError as problem:
         raise TruthError(f"{path} cannot be read: {problem.strerror}.", "Choose another folder.") from problem
     except (ValueError, RecursionError) as problem:
         where = f"line {problem.lineno}" if isinstance(problem, json.JSONDecodeError) else "its first line"
-        raise TruthError(
-            f"{path} is not written as JSON: look at {where}.", "Correct it: see docs/accuracy.md."
-        ) from problem
+        raise TruthError(f"{path} is not written as JSON: look at {where}.", FORM) from problem
     if not isinstance(content, dict):
-        raise TruthError(f"{FILE} holds no table of bodies or scans.", "See docs/accuracy.md.")
+        raise TruthError(f"{FILE} holds no table of bodies or scans.", FORM)
     return content
 
 

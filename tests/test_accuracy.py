@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,7 @@ from core.accuracy import compared, judged, spreads
 from core.body import read_scan
 from core.detect import detection
 from core.mesh import Mesh
-from core.truth import TruthError, read_truths
+from core.truth import FORM, TruthError, read_truths
 
 ROOT = Path(__file__).parents[1]
 TRUTH = json.loads((ROOT / "tests/data/truth.json").read_text(encoding="utf-8"))
@@ -162,6 +163,19 @@ def test_the_run_lists_failures_and_draws_every_body(
     first, broken = picture[60:300, :390], picture[60:300, 400:780]
     assert np.mean(first < 250) > 0.2
     assert np.mean(broken < 250) == 0.0
+
+
+def test_of_one_body_it_says_body(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write(folder, {"bodies": {"mannequin": {**TRUTH["mannequin"], "file": "mannequin.ply"}}})
+    assert main(["accuracy", str(folder)]) == 0
+    assert "\n1 body: 1 read the right way round" in capsys.readouterr().out
+
+
+def test_who_has_no_truth_is_sent_to_the_page_of_the_guide(tmp_path: Path) -> None:
+    with pytest.raises(TruthError, match=re.escape(FORM)):
+        read_truths(tmp_path)
+    title = (ROOT / "docs/accuracy.md").read_text("utf-8").splitlines()[0]
+    assert FORM.endswith(f" in the user guide, {title.removeprefix('# ')}.")
 
 
 def test_the_command_prints_json(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

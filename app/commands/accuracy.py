@@ -134,8 +134,9 @@ def _counts(cases: Sequence[Case], bodies: Sequence[Case]) -> Iterator[str]:
     wrong = [case for case in read if not case.right]
     crashed = sum(case.crashed for case in cases)
     seconds = [case.seconds for case in cases]
+    count = f"{len(bodies)} {'body' if len(bodies) == 1 else 'bodies'}"
     yield (
-        f"{len(bodies)} bodies: {len(right)} read the right way round, {sum(not c.sure for c in right)} of "
+        f"{count}: {len(right)} read the right way round, {sum(not c.sure for c in right)} of "
         f"these asked about; {len(wrong)} the wrong way round, {sum(not c.sure for c in wrong)} of these "
         f"asked about ({sum(not c.unit_right for c in wrong)} in a wrong unit, "
         f"{sum(not c.sides_right for c in wrong)} with sides swapped); "
