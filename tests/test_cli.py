@@ -171,6 +171,11 @@ def test_bad_requests_get_one_sentence(
         (["picture", "body.ply", "--out", "a.png", "--size", "0x0"], "'0x0' is no size"),
         (["picture", "body.ply", "--out", "a.png", "--size", "800"], "'800' is no size"),
         (["picture", "body.ply", "--out", "a"], "ends in .png"),
+        (["picture", "body.ply", "--out", "a.png", "--window", "--view", "left"], "not allowed with"),
+        *(
+            ([command, "body.ply", "--json", "--csv"], "--csv: not allowed with argument --json")
+            for command in ("measure", "cut", "press")
+        ),
         (["picture", "body.ply", "--out", "a.jpg", "--window"], "ends in .png"),
     ],
 )

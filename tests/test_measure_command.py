@@ -101,6 +101,11 @@ def test_it_is_written_whole_by_the_ending_of_its_name(person: Path, tmp_path: P
     assert "Bust girth" in (tmp_path / "a.txt").read_text("utf-8")
 
 
+def test_a_wished_form_counts_more_than_the_ending(person: Path, tmp_path: Path) -> None:
+    assert main(["measure", str(person), "--json", "--out", str(tmp_path / "a.txt")]) == 0
+    assert json.loads((tmp_path / "a.txt").read_text("utf-8"))["versions"]
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [

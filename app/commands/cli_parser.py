@@ -101,19 +101,17 @@ def _parser(command: str) -> argparse.ArgumentParser:
     if command == "accuracy":
         parser.add_argument("folder", metavar="DIR", help="scans with a truth.json beside them")
     if command in ("limits", "detect", "measure", "cut", "press", "accuracy"):
-        parser.add_argument("--json", action="store_true", help="print JSON")
-    if command in ("measure", "cut", "press"):
-        parser.add_argument("--csv", action="store_true", help="print a table of comma-separated values")
-        parser.add_argument("--out", metavar="FILE", help="write it to a file, by its ending .json or .csv")
+        _add_forms(parser, command)
     if command == "report":
         _add_sheet(parser)
     if command == "measure":
         parser.add_argument("--own", action="append", metavar="NAME=KIND:PLACES", help=MEASURE_HELP)
     if command == "picture":
-        parser.add_argument(
+        what = parser.add_mutually_exclusive_group()
+        what.add_argument(
             "--view", default="three-quarter", help="front, left, right, back, three-quarter, top, side"
         )
-        parser.add_argument("--window", action="store_true", help="the whole window, not just the body")
+        what.add_argument("--window", action="store_true", help="the whole window, not just the body")
         parser.add_argument("--dark", action="store_true", help="a picture on dark ground")
         parser.add_argument("--language", choices=("en", "ja"), default="en", help="that of the window")
         parser.add_argument(
@@ -129,6 +127,16 @@ def _parser(command: str) -> argparse.ArgumentParser:
         help_ = "the picture: .png" if command == "picture" else "the folder that is written to"
         parser.add_argument("--out", required=needed, default=default, metavar="PLACE", help=help_)
     return parser
+
+
+def _add_forms(parser: argparse.ArgumentParser, command: str) -> None:
+    """Add in which form it is told, and a file for what is told as a table."""
+    forms = parser.add_mutually_exclusive_group()
+    forms.add_argument("--json", action="store_true", help="print JSON")
+    if command in ("measure", "cut", "press"):
+        forms.add_argument("--csv", action="store_true", help="print a table of comma-separated values")
+        out = "write to a file what is printed; a name that ends in .json or .csv asks for JSON or CSV"
+        parser.add_argument("--out", metavar="FILE", help=out)
 
 
 def _add_design(parser: argparse.ArgumentParser, command: str) -> None:
