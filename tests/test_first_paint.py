@@ -42,6 +42,32 @@ def test_what_takes_long_to_load_is_loaded_when_the_window_is_painted() -> None:
     assert told.stdout.strip() == "and no more"
 
 
+CURVES_SHOWN = """
+import sys
+import numpy as np
+from PySide6.QtWidgets import QApplication
+from app.showing.plot_canvas import PlotCanvas
+from app.showing.plot_curves import Curve, Plotted
+from app.showing.profile_plot import Drawn, ProfilePlot
+
+app = QApplication(["busk", "-platform", "offscreen"])
+run = Curve(np.arange(3.0), np.zeros(3), "main")
+for runs, sections in (((), {}), ((run,), {"after": [np.eye(2)]})):
+    if sys.argv[1] == "strip":
+        PlotCanvas().set_plotted(Plotted(runs), (0.0, 1.0), True)
+    else:
+        ProfilePlot().show_curves(Drawn(sections), again=True)
+    print("pyqtgraph" in sys.modules)
+"""
+
+
+@pytest.mark.parametrize("plot", ["strip", "section"])
+def test_what_draws_curves_is_loaded_with_the_first_and_not_while_it_is_painted(plot: str) -> None:
+    command = [sys.executable, "-c", CURVES_SHOWN, plot]
+    told = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    assert told.stdout.split() == ["False", "True"]
+
+
 def test_the_window_is_at_work_before_there_is_a_body(
     mannequin: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

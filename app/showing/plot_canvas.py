@@ -22,7 +22,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 from app.dress.theme import font, tokens_of
 from app.showing.plot_curves import Plotted
 from app.showing.plot_painting import ROLE_COLORS, paint_dot, paint_plot, plot_area
-from app.showing.plot_scale import Scale
+from app.showing.plot_scale import Scale, load_curves
 from app.wording.words import number, tr
 
 Turns = tuple[float, float]
@@ -70,6 +70,8 @@ class PlotCanvas(QWidget):
 
     def set_plotted(self, plotted: Plotted, values: Turns, smooth: bool) -> None:
         """Show something else, with room for these values."""
+        if plotted.curves:
+            load_curves()
         self.plotted, self._values, self.smooth = plotted, values, smooth
         self._forget()
 

@@ -14,6 +14,11 @@ _ROOM = 0.08  # of the range of values, above and below
 _END = 0.02  # of the turns, behind the last
 
 
+def load_curves() -> None:
+    """Load what curves are drawn with: once there are some, so that no window waits for it, nor a painter."""
+    import pyqtgraph  # noqa: F401, PLC0415
+
+
 @dataclass(frozen=True)
 class Scale:
     """Turns ``first`` to ``last`` and values ``low`` to ``high`` on ``area`` [px]."""
@@ -43,7 +48,7 @@ class Scale:
 
     def path(self, turns: Numbers, values: Numbers) -> QPainterPath:
         """Return a curve [px], broken where a value is not finite."""
-        from pyqtgraph import arrayToQPath  # noqa: PLC0415 (no window waits for its first curve)
+        from pyqtgraph import arrayToQPath  # noqa: PLC0415 (see load_curves)
 
         x = self.area.left() + (turns - self.first) * self.turn_width
         y = self.area.bottom() - ((values - self.low) / self._span + _ROOM) * self._height

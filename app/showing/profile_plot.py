@@ -25,6 +25,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.dress.spoken import speak_value
 from app.dress.theme import font, tokens_of
+from app.showing.plot_scale import load_curves
 from app.wording.words import number, tr
 from core.mesh import Floats
 
@@ -73,6 +74,8 @@ class ProfilePlot(QWidget):
 
     def show_curves(self, drawn: Drawn, *, again: bool) -> None:
         """Draw these; ``again`` goes back to the box that is seen first."""
+        if drawn.curves:
+            load_curves()
         self._drawn = drawn
         if again or not self._moved:
             self.go_home()
@@ -192,7 +195,7 @@ class ProfilePlot(QWidget):
         painter.drawText(pill, Qt.AlignmentFlag.AlignCenter, text)
 
     def _path(self, places: Floats) -> QPainterPath:
-        from pyqtgraph import arrayToQPath  # noqa: PLC0415 (no window waits for its first curve)
+        from pyqtgraph import arrayToQPath  # noqa: PLC0415 (see load_curves)
 
         return QPainterPath(arrayToQPath(*self.to_pixels(places).T))
 
