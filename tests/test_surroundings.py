@@ -34,10 +34,10 @@ def said_by(window: MainWindow) -> str:
 @pytest.mark.parametrize(
     ("text", "path"),
     [
-        ("file:///home/anna/design%20of%20anna.busk", "/home/anna/design of anna.busk"),
-        ("file://localhost/home/anna/a.busk", "/home/anna/a.busk"),
-        ("FILE:/home/a.busk", "/home/a.busk"),
-        ("file:///home/%E3%81%82%E3%82%93.busk", "/home/あん.busk"),
+        ("file:///bodies/anna/design%20of%20anna.busk", "/bodies/anna/design of anna.busk"),
+        ("file://localhost/bodies/anna/a.busk", "/bodies/anna/a.busk"),
+        ("FILE:/bodies/a.busk", "/bodies/a.busk"),
+        ("file:///bodies/%E3%81%82%E3%82%93.busk", "/bodies/あん.busk"),
         ("anna 試し.busk", "anna 試し.busk"),
         ("100%25.busk", "100%25.busk"),
         ("file.busk", "file.busk"),
