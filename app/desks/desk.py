@@ -42,6 +42,7 @@ class Desk(QObject):
         self._session = window.session
         self._frame: Frame | None = None
         self._fell_back_to: Design | None = None
+        self._chosen = ""
         self._plotted: Frame | None = None
         self._plot_due = 0.0
         self._plot_clock = QTimer(self, interval=PLOT_INTERVAL, singleShot=True)
@@ -59,6 +60,8 @@ class Desk(QObject):
         window.actions_.enable_document()
         window.notices.clear()
         self.show_title()
+        if self._is_chosen_scan(frame.stages.design):
+            self.go_to("scan")
         self.select_line(window.view.selected_line)
         window.layout_.enter()
         window.scan_desk.show_opened(frame.stages)
@@ -184,9 +187,10 @@ class Desk(QObject):
         self.open_file(ask_open(self._window))
 
     def open_file(self, path: str) -> None:
-        """Open a project or a scan."""
+        """Open a project, or a scan, which shows the Scan step: unit and front are to be looked at."""
         if path and self.may_leave():
             remember_folder("opened", path)
+            self._chosen = path
             self._session.open(path)
 
     def open_sample(self, name: str) -> None:
@@ -225,6 +229,12 @@ class Desk(QObject):
     def close(self) -> None:
         """Stop the clock of the plot."""
         self._plot_clock.stop()
+
+    def _is_chosen_scan(self, design: Design) -> bool:
+        """Tell, once, whether a design is the scan that the user has just chosen, and no project."""
+        chosen, self._chosen = self._chosen, ""
+        scan = design.scan
+        return bool(chosen) and not scan.member and Path(scan.path) == Path(chosen).absolute()
 
     def _take_in(self) -> None:
         """Make edits of what was decided a moment ago: of a pin moved by keys, of a name being typed."""
