@@ -64,6 +64,7 @@ def test_the_first_start_leads_through_the_sample_and_later_ones_go_on(
         yield settled(window)
         assert not at_start(window)
         assert window.session.path == saved
+        assert window.rail.current() == "lines", "a project was looked at when it was a scan"
         window.desk.open_file(str(person))
         yield lambda: window.session.name == "person"
         assert recent_files() == [str(saved)], "samples can always be had"
@@ -73,7 +74,7 @@ def test_the_first_start_leads_through_the_sample_and_later_ones_go_on(
         assert window.variant_desk.segment.isHidden()
         QTest.keyClick(window.start_desk.page, Qt.Key.Key_Escape)
         assert not at_start(window)
-        assert window.rail.current() == "lines"
+        assert window.rail.current() == "scan", "the step that was open"
         assert window.variant_desk.segment.isVisible()
 
     run_main([], first)
@@ -89,6 +90,9 @@ def the_tour_stops_beside_four_parts(window: MainWindow) -> None:
         stops.append(tour.place)
         card, ring = tour.mark.geometry(), tour.mark.ring.geometry()
         assert tour.mark.isVisible()
+        if tour.place == 0:
+            assert "Ctrl+O" in tour.mark.accessibleName(), "the way to a scan of one's own"
+            assert not card.adjusted(10, 8, -10, -12).intersects(body_seen(window)), "the body is seen"
         assert window.rect().contains(card)
         assert not card.intersects(window.top.geometry()), "the menus can be opened meanwhile"
         assert not card.adjusted(10, 8, -10, -12).intersects(ring)
@@ -98,6 +102,16 @@ def the_tour_stops_beside_four_parts(window: MainWindow) -> None:
         QTest.keyClick(tour.mark, Qt.Key.Key_Return)
     assert stops == [0, 1, 2, 3]
     assert not tour.mark.isVisible()
+
+
+def body_seen(window: MainWindow) -> QRect:
+    """Where the body stands on the window."""
+    viewport = window.view.viewport
+    spots = viewport.scene.view.to_picture(
+        viewport.scene.body.rest.vertices, viewport.width(), viewport.height()
+    )
+    low, high = (QPoint(*map(int, each)) for each in (spots[:, :2].min(axis=0), spots[:, :2].max(axis=0)))
+    return QRect(viewport.mapTo(window, low), viewport.mapTo(window, high)).intersected(window.rect())
 
 
 def the_cards_show_what_was_open(window: MainWindow) -> None:

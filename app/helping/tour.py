@@ -96,7 +96,10 @@ class Tour(QObject):
         return (
             (
                 tr("Four steps"),
-                tr("From the scan to the result. Nothing is locked: go to any of them at any time."),
+                tr(
+                    "From the scan to the result. Nothing is locked: go to any of them at any time. "
+                    "For a scan of your own, drop its file on the window or press Ctrl+O."
+                ),
                 lambda: list(window.rail.items.values()),
             ),
             (

@@ -123,13 +123,16 @@ class Ring(QWidget):
 
 
 def _beside(target: QRect, card: QRect, room: QRect) -> QPoint:
-    """Return where a card has the most room beside ``target``: right, left, above or below it."""
+    """Return where a card has room beside ``target``, or the most: below, right, left or above it.
+
+    Below comes first: what stands at an edge has room there, and the body in the middle is seen.
+    """
     across, down = target.center().x() - card.width() // 2, target.center().y() - card.height() // 2
     places = (
+        (room.bottom() - target.bottom() - card.height(), QPoint(across, target.bottom() + _AWAY)),
         (room.right() - target.right() - card.width(), QPoint(target.right() + _AWAY, down)),
         (target.left() - room.left() - card.width(), QPoint(target.left() - card.width() - _AWAY, down)),
         (target.top() - room.top() - card.height(), QPoint(across, target.top() - card.height() - _AWAY)),
-        (room.bottom() - target.bottom() - card.height(), QPoint(across, target.bottom() + _AWAY)),
     )
     _, place = max(places, key=lambda each: min(each[0], _AWAY + 1))
     return QPoint(
