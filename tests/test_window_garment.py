@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from garment_tools import at_rest, choose, cut_rows, made_of, pick
+from garment_tools import at_rest, choose, cut_rows, made_of, open_menu, pick
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
@@ -88,6 +88,13 @@ def test_one_elastic_is_chosen_for_all_and_taken_off_again_without_moving_the_bo
         assert window.session.undo_stack.undoText() == "All lines made of Strap 15 mm"
         assert cut_rows(window)["under-bust"].elongation == pytest.approx(FIRST_STRETCH)
         choose(window, "mid-bust", "No elastic")
+        yield made_of(window, "full-bust", "under-bust")
+        window.garment.again.click()
+        assert not any(each.isChecked() for each in open_menu(window).actions()[:8]), "they are of several"
+        pick(window, "Bra band, plush back", "18 mm")
+        yield made_of(window, "mid-bust", "full-bust", "under-bust")
+        assert window.session.undo_stack.undoText() == "All lines made of Bra band, plush back 18 mm"
+        window.session.undo_stack.undo()
         yield made_of(window, "full-bust", "under-bust")
         choose(window, "full-bust", "No elastic")
         yield made_of(window, "under-bust")

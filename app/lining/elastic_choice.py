@@ -73,7 +73,9 @@ class ElasticChoice(QObject):
         frame, design = self._session.frame, self._session.design
         if frame is not None and design is not None:
             still = {line.name for line in frame.stages.model.lines if not line.constrains}
-            self._offer(tuple(sorted(design.worn() | still)), "", under)
+            names = tuple(sorted(design.worn() | still))
+            made = {design.traits_of(name).elastic for name in names}
+            self._offer(names, made.pop() if len(made) == 1 else None, under)
 
     def choose(self, names: tuple[str, ...], elastic: Elastic | None) -> None:
         """Make lines of an elastic, or of nothing in particular."""
@@ -113,7 +115,7 @@ class ElasticChoice(QObject):
         said = words.format(line=row_title(name, design), percent=number(100.0 * share))
         self._session.edit(lambda before: before.with_linked(name, 1.0 / (1.0 + share)), said)
 
-    def _offer(self, names: tuple[str, ...], chosen: str, under: QWidget) -> None:
+    def _offer(self, names: tuple[str, ...], chosen: str | None, under: QWidget) -> None:
         """Open the menu under a button."""
         design = self._session.design
         assert design is not None

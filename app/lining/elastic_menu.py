@@ -15,13 +15,14 @@ from core.elastics import built_in, own_elastics
 Choose = Callable[[Elastic | None], None]
 
 
-def fill_elastics(menu: QMenu, chosen: str, kept: Iterable[Elastic], choose: Choose) -> None:
+def fill_elastics(menu: QMenu, chosen: str | None, kept: Iterable[Elastic], choose: Choose) -> None:
     """Fill ``menu`` anew, the one called ``chosen`` ticked; ``kept`` are those that the project brings along.
 
+    An empty name is no elastic, None several: then nothing is ticked.
     ``choose`` hears which one is taken, None for none.
     """
     menu.clear()
-    _add(menu, tr("No elastic"), not chosen, partial(choose, None))
+    _add(menu, tr("No elastic"), chosen == "", partial(choose, None))
     menu.addSeparator()
     own, problems = own_elastics()
     known = {each.name: each for each in (*built_in(), *own)}
@@ -57,7 +58,9 @@ def _kinds(elastics: Iterable[Elastic]) -> dict[str, list[Elastic]]:
     return kinds
 
 
-def _group(menu: QMenu, heading: str, elastics: Mapping[str, Elastic], chosen: str, choose: Choose) -> None:
+def _group(
+    menu: QMenu, heading: str, elastics: Mapping[str, Elastic], chosen: str | None, choose: Choose
+) -> None:
     """Add elastics by what they are called here, under a heading."""
     if elastics:
         menu.addSection(heading)

@@ -9,7 +9,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QPushButton, QScrollArea, QVBoxLayout, QWidget
 
-from app.dress.parts import EmptyState, sentence
+from app.dress.parts import EmptyState, button, sentence
 from app.dress.press_row import press_row
 from app.dress.theme import label, set_tag
 from app.panels.garment_row import CUT, NEWTONS, PRESSURE, GarmentRow
@@ -53,6 +53,7 @@ class GarmentPanel(QWidget):
         )
         self.nothing.asked.connect(self.lines_asked)
         self.offer = self._make_offer()
+        self.again = self._make_again()
         self._doubt, self.tissue = sentence("", "secondary"), TissueCard()
         set_tag(self._doubt, "tone", "warn")
         column = QVBoxLayout(self)
@@ -76,6 +77,7 @@ class GarmentPanel(QWidget):
         self.tissue.setVisible(view.worn)
         self.nothing.setVisible(not view.worn)
         self.offer.setVisible(view.worn and view.bare)
+        self.again.setVisible(view.worn and not view.bare and len(view.rows) > 1)
         self._area.setVisible(bool(view.rows))
         if [row.line for row in view.rows] != list(self.rows):
             self._rebuild()
@@ -147,6 +149,12 @@ class GarmentPanel(QWidget):
         card.asked.connect(lambda: self.all_asked.emit(card))
         return card
 
+    def _make_again(self) -> QPushButton:
+        """Make what stands under the list once a line is made of an elastic: all can be changed at once."""
+        again = button(tr("Choose for all lines…"), "quiet")
+        again.clicked.connect(lambda: self.all_asked.emit(again))
+        return again
+
     def _make_head(self) -> QWidget:
         """Make the heading with the units, which stand nowhere else."""
         head = QWidget()
@@ -172,6 +180,7 @@ class GarmentPanel(QWidget):
         self._list.setSpacing(2)
         column.addWidget(self._make_head())  # with the rows, or a scroll bar shifts them under it
         column.addLayout(self._list)
+        column.addWidget(self.again, 0, Qt.AlignmentFlag.AlignLeft)
         column.addLayout(self.cards)
         column.addWidget(self.tissue)
         column.addStretch(1)
