@@ -78,7 +78,7 @@ def fit_control_mesh(
     _refuse_holes(template, holes)
     if best.faults.folded.any():
         raise FitError(
-            f"{best.faults.folded.sum()} triangles of the control mesh would be folded on this body.",
+            f"Triangles of the control mesh would be folded on this body: {best.faults.folded.sum()}.",
             "Correct the bust points and folds, or choose the other template.",
         )
     quality = measure_fit(best.mesh, ground.skin, *_off_landmarks(template, best.mesh, landmarks))

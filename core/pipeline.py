@@ -245,7 +245,7 @@ def _bind(body: Mesh, control: ControlMesh, fade: Floats, weights: Weights, scal
     loose = len(uncollared(control.mesh, control.fixed))
     if loose:
         raise FitError(
-            f"{loose} triangles at the border of the control mesh can move.",
+            f"Triangles at the border of the control mesh can move: {loose}.",
             "Choose a template whose two outermost rings of points are fixed.",
         )
     # Single precision is exact to 1e-4 mm here, far below what a scan resolves, and read in half the time.

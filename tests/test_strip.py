@@ -28,6 +28,13 @@ def test_the_exact_answer_takes_newton_steps_and_not_turns(built: Callable[[str]
     assert " turns: " in said(built("mannequin"), volume="adaptive").effort
 
 
+def test_of_one_newton_step_it_says_step(built: Callable[[str], Stages]) -> None:
+    stages = build(replace(built("mannequin").design.with_line("mid-bust", 0.8), volume="exact"))
+    comparison = Comparison(stages.model, targets_of(stages.design, stages), stages.watch)
+    comparison.exact = replace(comparison.exact, steps=1)
+    assert strip_verdict(make_frame(1, stages, comparison)).effort == "Worked out in one Newton step"
+
+
 def test_a_run_that_ran_away_has_no_figures_but_advice(built: Callable[[str], Stages]) -> None:
     verdict = said(built("mannequin"), line_force="explicit")
     assert verdict.state == "diverging"

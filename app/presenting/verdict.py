@@ -84,13 +84,15 @@ def swing_sentence(frame: Frame) -> str:
 
 def _effort(frame: Frame) -> str:
     """Return how many rounds it took, or steps to the exact answer."""
-    exact = frame.stages.design.volume == "exact"
+    exact, turns = frame.stages.design.volume == "exact", frame.verdict.turns
+    if exact and turns == 1:
+        return tr("Worked out in one Newton step")
     text = (
         tr("Worked out in {turns} Newton steps")
         if exact
         else tr("Worked out in {turns} turns: in each, every control point goes once to its own balance")
     )
-    return text.format(turns=number(frame.verdict.turns, 0))
+    return text.format(turns=number(turns, 0))
 
 
 def _figures(frame: Frame) -> list[tuple[str, str]]:
