@@ -17,7 +17,7 @@ from app.panels.landmarks import LandmarksPanel
 from app.presenting.scan import landmark_view, spot_of
 from core.doubts import first_doubt, landmark_doubts
 from core.finding.bust_point import NIPPLE
-from core.landmark import Landmark, Landmarks
+from core.landmark import CERTAIN, Landmark, Landmarks
 from core.landmarks import find_landmarks
 
 LEFT = LandmarkView("fold_left", "Fold left", 0.3, "A rule.", "under", weak=True)
@@ -75,6 +75,26 @@ def test_finding_again_has_a_place_where_nothing_else_is_ever_asked(panel: Landm
     assert panel.right.isHidden()
     assert panel.reset.isVisible()
     assert not panel.reset.geometry().intersects(right)
+
+
+def test_what_the_colour_says_is_told_in_words_and_by_a_mark(panel: LandmarksPanel) -> None:
+    views = [replace(CALM, confidence=share) for share in (CERTAIN, CERTAIN - 0.01)]
+    views.append(replace(LEFT, confidence=CERTAIN - 0.01))
+    assert [(view.tone, view.sureness) for view in views] == [
+        ("ok", "certain"),
+        ("control", "unneeded"),
+        ("warn", "doubtful"),
+    ]
+    assert "from 50 % on it needs no second look" in views[0].words()
+    assert "below 50 % it wants a look" in views[2].words()
+    row, dots = panel.rows["side_left"], []
+    for sureness in ("certain", "unneeded", "doubtful"):
+        view = next(view for view in views if view.sureness == sureness)
+        row.show_view(view)
+        shade = row.grab().toImage().copy(6, 8, 17, 18)
+        body = shade.pixelColor(4, 6).rgb()
+        dots.append([shade.pixelColor(x, y).rgb() == body for y in range(4, 14) for x in range(4, 13)])
+    assert len({tuple(each) for each in dots}) == 3, "told apart without their colours"
 
 
 def test_a_point_by_hand_far_from_a_sure_rule_says_so_and_a_near_one_does_not() -> None:

@@ -21,6 +21,13 @@ from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 from app.dress.parts import paint_card
 from app.dress.theme import font, tokens_of, tone_of
 from app.wording.words import say, tr
+from core.landmark import CERTAIN
+
+_MARKS = {
+    "certain": (((-2.6, 0.2), (-0.7, 2.1), (2.7, -1.9)),),
+    "doubtful": (((0.0, -2.9), (0.0, 0.5)), ((0.0, 2.9), (0.0, 2.95))),
+}
+"""The strokes on a dot, which tell without its colour what that says [px about its middle]."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +59,13 @@ class LandmarkView:
         return "control" if self.absent or not (self.weak or tone == "ok") else tone
 
     @property
+    def sureness(self) -> str:
+        """What colour and mark say: certain, doubtful, unneeded; empty if placed by hand, or absent."""
+        if self.absent or (self.by_hand and not self.weak):
+            return ""
+        return {"ok": "certain", "control": "unneeded"}.get(self.tone, "doubtful")
+
+    @property
     def state(self) -> str:
         """How it came to be there, or how sure it is, in a word or two."""
         if self.absent:
@@ -62,11 +76,14 @@ class LandmarkView:
         return f"{self.confidence * 100:.0f} %"
 
     def words(self) -> str:
-        """Return the rule that it was found by, what it was read from, and why it is grey if it is."""
+        """Return the rule that it was found by, what it was read from, and what its colour says."""
         read = tr("The curve that it was read from is drawn on the body.")
         grey = tr("Not certain, and grey: the model does not hang on it.")
-        unsure = self.tone == "control" and not self.absent
-        return "\n".join([say(self.rule), *[read] * self.traced, *[grey] * unsure])
+        sure = tr("Certain: from {least} % on it needs no second look.")
+        doubtful = tr("Doubtful: below {least} % it wants a look.")
+        said = {"certain": sure, "doubtful": "" if self.by_hand else doubtful, "unneeded": grey}
+        told = said.get(self.sureness, "").format(least=f"{CERTAIN * 100:.0f}")
+        return "\n".join([say(self.rule), *[read] * self.traced, *[told] * bool(told)])
 
 
 class LandmarkRow(QAbstractButton):
@@ -125,9 +142,7 @@ class LandmarkRow(QAbstractButton):
         paint_card(painter, self, "selected", 7)
         tone, state = getattr(tokens, self.view.tone), self.view.state
         middle, right = self.height() / 2, self.width() - 10
-        painter.setPen(QPen(QColor(tokens.text_caption if self.view.absent else tokens.raised), 1.5))
-        painter.setBrush(Qt.BrushStyle.NoBrush if self.view.absent else QColor(tone))
-        painter.drawEllipse(QPointF(14, middle), 5.5, 5.5)
+        self._paint_mark(painter, QPointF(14, middle))
         painter.setFont(font("name" if self.isChecked() else "body"))
         painter.setPen(QColor(tokens.text_quiet if self.view.absent else tokens.text))
         left = Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft
@@ -149,3 +164,20 @@ class LandmarkRow(QAbstractButton):
         bar.setWidth(52 * min(max(self.view.confidence, 0.0), 1.0))
         painter.setBrush(QColor(tone))
         painter.drawRoundedRect(bar, 1.5, 1.5)
+        # So far it has to reach: what is certain has passed the notch.
+        painter.fillRect(
+            QRectF(bar.left() + 52 * CERTAIN - 0.5, middle - 4, 1, 8), QColor(tokens.text_caption)
+        )
+
+    def _paint_mark(self, painter: QPainter, at: QPointF) -> None:
+        """Paint the dot: ticked if certain, with a stroke and a point if doubtful, a ring if absent."""
+        tokens, view = tokens_of(self), self.view
+        painter.setPen(QPen(QColor(tokens.text_caption if view.absent else tokens.raised), 1.5))
+        painter.setBrush(Qt.BrushStyle.NoBrush if view.absent else QColor(getattr(tokens, view.tone)))
+        painter.drawEllipse(at, 6.0, 6.0)
+        round_cap = Qt.PenCapStyle.RoundCap
+        painter.setPen(
+            QPen(QColor(tokens.raised), 1.5, Qt.PenStyle.SolidLine, round_cap, Qt.PenJoinStyle.RoundJoin)
+        )
+        for mark in _MARKS.get(view.sureness, ()):
+            painter.drawPolyline([at + QPointF(*place) for place in mark])
