@@ -2,48 +2,60 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 import pyvista as pv
-from PIL import Image
+from measure_marks import Marks, marks_of
+from PIL import Image, ImageDraw
 from scipy.interpolate import PchipInterpolator
 
 from app.seeing.camera import View
 from app.seeing.occlusion import bake_occlusion
 from app.seeing.scene import Scene
-from app.seeing.trace import Trace
+from app.seeing.trace import COLOURS, Trace
 from app.wording.samples import sample_design
 from core.body import Body
-from core.landmark import SIDES
+from core.landmark import SIDES, Landmarks
 from core.landmarks import find_landmarks
 from core.measures import Measures, before_after, measures
 from core.measuring.definitions import DEFINITIONS
+from core.measuring.subject import Subject, subject_of
 from core.mesh import Mesh, Points
-from core.pipeline import Stages, build
+from core.pipeline import build
 from core.solution import run
 
-SIDE = 150
+SIDE = 180
 """Width and height of a picture [px]."""
 
-FINER = 4
+FINER = 3
 """So many times as large a picture is drawn before it is made small."""
 
-RADIUS, THROUGH = 3.4, 0.75
+RADIUS, THROUGH = 3.2, 0.22
 """Half the thickness of a curve [mm], and how opaque it is where the body hides it [1]."""
 
-VIEWS = dict.fromkeys(("bust_height", "bust_protrusion", "apex_lift", "bust_point_to_fold"), (82.0, 6.0))
-VIEWS |= {"cup_depth": (30.0, 50.0), "asymmetry_forward": (0.0, 60.0)}
-VIEWS |= dict.fromkeys(("bust_point_distance", "asymmetry_height", "asymmetry_volume"), (0.0, 5.0))
-"""From where a measure is seen, azimuth and elevation [degrees]; all others from between front and left."""
+BLUE, GREY = COLOURS[False], "#7A828E"
+"""What is measured, and what it is measured from: both are seen on a light page and on a dark one."""
 
+PALE = "#E9E1D8"
+"""A cut through the body."""
+
+FILL = (0.55, 0.25)
+"""How opaque the left breast is filled, and the right one, which it is compared with [1]."""
+
+FROM_ABOVE = (30.0, 38.0)
 USUAL = (35.0, 14.0)
+SIDEWAYS = (90.0, 2.0)
+VIEWS = dict.fromkeys(("bust_height", "bust_protrusion", "apex_lift"), SIDEWAYS)
+VIEWS |= {"cup_depth": (25.0, 50.0), "asymmetry_forward": (0.0, 56.0), "bust_point_to_fold": (62.0, 0.0)}
+VIEWS |= dict.fromkeys(("bust_point_distance", "asymmetry_height", "asymmetry_volume"), (0.0, 5.0))
+VIEWS |= {"hip_girth": (150.0, 14.0), "hip_girth_skin": (150.0, 38.0)}
+"""From where a measure is seen, azimuth and elevation [degrees]; all others from between front and left."""
 
 WAIST = 210.0
 """Height of the sample's waist [mm]."""
-
-VIEWS |= {"hip_girth_skin": (150.0, 14.0)}
 
 TRUNK = (-150.0, 150.0, -230.0, 90.0, 120.0, 470.0)
 """What is seen of the sample: x, y and z from and to [mm]."""
@@ -51,32 +63,92 @@ TRUNK = (-150.0, 150.0, -230.0, 90.0, 120.0, 470.0)
 LOWER_TRUNK = (-190.0, 190.0, -250.0, 110.0, -150.0, 260.0)
 """What is seen where the hip is measured."""
 
+BEFORE = (-150.0, 150.0, -290.0, 30.0, 150.0, 470.0)
+"""What is seen from the side, with room before the body."""
+
+BREAST = (60.0, 140.0, -290.0, -120.0, 270.0, 430.0)
+"""What is seen where little is measured, from the side."""
+
+SEEN = {"bust_height": BEFORE, "bust_protrusion": BEFORE, "apex_lift": BREAST}
+
+
+@dataclass(frozen=True, eq=False)
+class Shown:
+    """A body that measures are shown on, and what it measures."""
+
+    body: Body
+    landmarks: Landmarks
+    found: Measures
+
+    @property
+    def subject(self) -> Subject:
+        """What the measures were taken from."""
+        return subject_of(self.body.mesh, self.landmarks)
+
 
 def draw(folder: Path) -> list[Path]:
-    """Write a picture of each measure that the sample shows into a folder, and return their files."""
-    stages, points = _solved()
-    before, after = before_after(stages, points)
+    """Write a picture of each measure into a folder, and return their files."""
+    solution = run(build(sample_design().with_line("mid-bust", 0.85)))
+    stages = solution.stages
+    usual = measured(stages.body)
+    worn = replace(stages.body, mesh=solution.body)
+    lifted = Shown(worn, usual.landmarks, before_after(stages, solution.control_points)[1])
+    with_hip, uneven = measured(drawn_on(stages.body)), measured(drawn_uneven(stages.body))
     folder.mkdir(parents=True, exist_ok=True)
+    written = []
+    for key in DEFINITIONS:
+        on = {"hip": with_hip, "asymmetry": uneven, "apex": lifted}.get(key.partition("_")[0], usual)
+        written.append(folder / f"{key}.png")
+        draw_one(key, on, marks_of(key, on.found, on.landmarks), written[-1])
+    return written
+
+
+def measured(body: Body) -> Shown:
+    """Return a body with what it measures."""
+    landmarks = find_landmarks(body)
+    return Shown(body, landmarks, measures(body.calm, landmarks))
+
+
+def draw_one(key: str, on: Shown, marks: Marks, path: Path) -> None:
+    """Write the picture of one measure: the body, what is filled and the curves on it, then arrows."""
     plotter = pv.Plotter(off_screen=True, window_size=[SIDE * FINER] * 2, lighting="none")
     plotter.enable_anti_aliasing("ssaa")
-    scene, trace = _scene(plotter, stages.body.mesh), Trace(plotter, "measure", THROUGH, RADIUS)
-    written = []
-    hips = [key for key in DEFINITIONS if key.startswith("hip")]
-    for key in [key for key in DEFINITIONS if key not in hips] + hips:
-        if key == hips[0]:  # last of all: from now on another body is seen
-            body = drawn_on(stages.body)
-            scene.show_body(body.mesh)
-            scene.set_occlusion(bake_occlusion(body.mesh))
-            before = measures(body.calm, find_landmarks(body))
-        trace.show(*_curves(after if key == "apex_lift" else before, key))
-        azimuth, elevation = VIEWS.get(key, USUAL)
-        view = View(azimuth=azimuth, elevation=elevation, parallel=True)
-        scene.look_from(view.framing(LOWER_TRUNK if key in hips else TRUNK, 1.0, margin=1.04))
-        path = folder / f"{key}.png"
-        _save(plotter, path)
-        written.append(path)
+    level = key.endswith("_skin") or key.startswith("section_area")
+    mesh = below(on.body.mesh, marks.curves[0][:, 2].mean()) if level else on.body.mesh
+    scene = Scene(plotter, dark=False)
+    scene.show_body(mesh)
+    scene.set_occlusion(bake_occlusion(mesh))
+    scene.set_visible("floor", False)
+    plotter.set_background("white")  # no gradient: nothing but the body is seen on the page
+    for area, colour, opacity in areas(key, on.subject, marks):
+        actor = plotter.add_mesh(area, color=colour, opacity=opacity, lighting=False)
+        actor.mapper.SetResolveCoincidentTopologyToPolygonOffset()
+        actor.mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(0.0, -3000.0)
+    Trace(plotter, "measure", THROUGH, RADIUS).show(*marks.curves)
+    azimuth, elevation = VIEWS.get(key, FROM_ABOVE if level else USUAL)
+    seen = LOWER_TRUNK if key.startswith("hip") else SEEN.get(key, TRUNK)
+    view = View(azimuth=azimuth, elevation=elevation, parallel=True)
+    scene.look_from(view.framing(seen, 1.0, margin=1.04))
+    _save(plotter, marks, path)
     plotter.close()
-    return written
+
+
+def below(mesh: Mesh, height: float) -> Mesh:
+    """Return what of a body lies below a level [mm]: the level can then be looked at from above."""
+    cut = pv.make_tri_mesh(mesh.vertices, mesh.faces).clip((0, 0, 1), (0, 0, height)).triangulate()
+    return Mesh(np.array(cut.points, dtype=float), np.array(cut.regular_faces))
+
+
+def areas(key: str, subject: Subject, marks: Marks) -> Iterator[tuple[pv.PolyData, str, float]]:
+    """Yield what is filled, its colour and how opaque it is: a section, or the skin of one breast or both."""
+    if key.endswith("_skin") or key.startswith("section_area"):
+        ring = marks.curves[0]
+        section = pv.PolyData(ring, faces=[len(ring), *range(len(ring))]).triangulate()
+        yield section, PALE if key.endswith("_skin") else BLUE, 1.0
+    sides = {"breast_volume": SIDES[:1], "asymmetry_volume": SIDES}.get(key, ())
+    for side, opacity in zip(sides, FILL, strict=False):
+        skin = pv.make_tri_mesh(subject.mesh.vertices, subject.breasts[side].faces)
+        yield skin, BLUE, opacity
 
 
 def drawn_on(body: Body) -> Body:
@@ -96,27 +168,58 @@ def drawn_on(body: Body) -> Body:
     return replace(body, mesh=Mesh(skin, body.mesh.faces))
 
 
-def _solved() -> tuple[Stages, Points]:
-    solution = run(build(sample_design().with_line("mid-bust", 0.85)))
-    return solution.stages, solution.control_points
+def drawn_uneven(body: Body) -> Body:
+    """Return the sample with its left breast drawn larger, higher and further out than the right one."""
+    x, y, z = body.mesh.vertices.T
+    tip = find_landmarks(body).position("bust_point_left")
+    near = np.exp(-(((x - tip[0]) / 55.0) ** 2) - ((z - tip[2]) / 60.0) ** 2) * (y < tip[1] + 120.0)
+    return replace(body, mesh=Mesh(np.stack((x, y - 20.0 * near, z + 18.0 * near), axis=1), body.mesh.faces))
 
 
-def _scene(plotter: pv.Plotter, mesh: Mesh) -> Scene:
-    scene = Scene(plotter, dark=False)
-    scene.show_body(mesh)
-    scene.set_occlusion(bake_occlusion(mesh))
-    scene.set_visible("floor", False)
-    plotter.set_background("white")
-    return scene
-
-
-def _curves(found: Measures, key: str) -> tuple[Points, ...]:
-    """Return the curves of a measure, of the left side where there are two."""
-    return (found.get(key) or found[f"{key}_{SIDES[0]}"]).curves
-
-
-def _save(plotter: pv.Plotter, path: Path) -> None:
+def _save(plotter: pv.Plotter, marks: Marks, path: Path) -> None:
     plotter.render()
-    image = Image.fromarray(plotter.screenshot(return_img=True))
+    image = Image.fromarray(plotter.screenshot(transparent_background=True, return_img=True))
+    _draw_marks(ImageDraw.Draw(image), plotter.renderer, marks)
     small = image.resize((SIDE, SIDE), Image.Resampling.LANCZOS)
-    small.quantize(256, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(path, optimize=True)
+    small.save(path, optimize=True)
+
+
+def _draw_marks(pen: ImageDraw.ImageDraw, renderer: pv.Renderer, marks: Marks) -> None:
+    """Draw dashed guides, arrows with two heads and dots over the picture."""
+    for guide in marks.guides:
+        _dashed(pen, *_on_screen(renderer, guide))
+    for arrow in marks.arrows:
+        _arrow(pen, *_on_screen(renderer, arrow))
+    for dot in (place for dots in marks.dots for place in _on_screen(renderer, dots)):
+        pen.circle(tuple(dot), 4.0 * FINER, fill=BLUE, outline="white", width=FINER)
+
+
+def _on_screen(renderer: pv.Renderer, places: Points) -> Points:
+    """Return where places (k, 3) [mm] are in the picture, shape (k, 2) [px]."""
+    seen = []
+    for place in places:
+        renderer.SetWorldPoint(*place, 1.0)
+        renderer.WorldToDisplay()
+        seen.append(renderer.GetDisplayPoint()[:2])
+    return np.array(seen) * (1.0, -1.0) + (0.0, SIDE * FINER)
+
+
+def _dashed(pen: ImageDraw.ImageDraw, start: Points, end: Points) -> None:
+    count = max(int(np.linalg.norm(end - start) / (4.0 * FINER)) // 2 * 2 + 1, 1)
+    ends = start + np.linspace(0.0, 1.0, count + 1)[:, None] * (end - start)
+    for number in range(0, count, 2):
+        pen.line([tuple(ends[number]), tuple(ends[number + 1])], fill=GREY, width=2 * FINER)
+
+
+def _arrow(pen: ImageDraw.ImageDraw, start: Points, end: Points) -> None:
+    """Draw a line with a head at both ends; where it is too short, they point at it from outside."""
+    length = float(np.linalg.norm(end - start))
+    way = (end - start) / max(length, 1e-9)
+    head = 7.0 * FINER
+    inside = length > 2.5 * head
+    pen.line([tuple(start), tuple(end)], fill=BLUE, width=2 * FINER)
+    for tip, back in ((start, way), (end, -way)) if inside else ((start, -way), (end, way)):
+        foot, aside = tip + head * back, 0.45 * head * np.array((-way[1], way[0]))
+        pen.polygon([tuple(tip), tuple(foot + aside), tuple(foot - aside)], fill=BLUE)
+        if not inside:
+            pen.line([tuple(foot), tuple(foot + head * back)], fill=BLUE, width=2 * FINER)

@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
+from PIL import Image
 
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
@@ -108,3 +109,11 @@ def test_a_page_that_loads_from_elsewhere_is_found(tmp_path: Path, loads: str) -
         f'<a href="https://host.example">a link is no load</a><img src="here.png">{loads}', "utf-8"
     )
     assert len(builder().loaded_from_elsewhere(tmp_path)) == 1
+
+
+def test_each_picture_of_a_measure_is_one_of_its_own_and_shows_the_page_behind_it() -> None:
+    paths = sorted((DOCS / "pictures" / "measures").glob("*.png"))
+    assert len(paths) > 20
+    assert len({path.read_bytes() for path in paths}) == len(paths)
+    opaque = [path.name for path in paths if Image.open(path).convert("RGBA").getchannel("A").getextrema()[0]]
+    assert opaque == [], "a white block on a dark page"
