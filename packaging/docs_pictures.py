@@ -25,7 +25,7 @@ scenes.use_own_folders()
 
 import guide_pictures  # noqa: E402
 import measure_pictures  # noqa: E402
-from guide_pictures import SHOTS, SMALL  # noqa: E402
+from guide_pictures import SHOTS, WIDE  # noqa: E402
 
 from app.commands.picture import save_window, settled_window  # noqa: E402
 from app.printing.figures import make_figures  # noqa: E402
@@ -77,7 +77,7 @@ def verdicts() -> None:
     for folder, language in (("", "en"), ("ja/", "ja")):
         strips = []
         for design in guide_pictures.runs():
-            with settled_window(design, size=SMALL, language=language) as window:
+            with settled_window(design, size=WIDE, language=language) as window:
                 save_window(window, PICTURES / f"{folder}verdicts.png")
                 strips.append(window.strip.grab().toImage())
         room = QImage(strips[0].width(), sum(each.height() for each in strips), strips[0].format())

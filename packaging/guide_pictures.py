@@ -9,8 +9,7 @@ import scenes
 from scenes import (
     Scene,
     bra,
-    cut_bra,
-    eased_bra,
+    for_customer,
     for_somebody,
     made_of_elastics,
     own_scan,
@@ -35,7 +34,7 @@ class Shot:
     small: bool = False
 
 
-SMALL, LARGE = (1280, 800), (1600, 1000)
+SMALL, WIDE, LARGE = (1280, 800), (1440, 800), (1600, 1000)
 DARK = {"dark": True, "language": "ja", "size": SMALL}
 
 
@@ -60,20 +59,20 @@ FIRST: tuple[tuple[str, Callable[[], Design], Scene], ...] = (
     ("first-scan", own_scan, step("scan")),
     ("first-landmarks", own_scan, scenes.pin_selected),
     ("first-lines", bra, tab("lines", "strap left")),
-    ("first-garment", cut_bra, tab("garment", "mid-bust")),
-    ("first-pressure", cut_bra, scenes.pressed),
-    ("first-report", eased_bra, scenes.reported),
+    ("first-garment", bra, scenes.cut),
+    ("first-pressure", bra, scenes.pressed_by_the_cut),
+    ("first-report", for_customer, scenes.eased_and_reported),
 )
 
 # Of each screen, in both languages.
 SCREENS: tuple[tuple[str, Callable[[], Design], Scene], ...] = (
     ("tour", _mannequin, scenes.touring),
     ("start", _mannequin, scenes.start_page),
-    *((name, _person, step(name)) for name in ("scan", "landmarks", "lines", "result")),
+    *((name, _person, step(name)) for name in ("landmarks", "lines", "result")),
     ("ask", _person, scenes.asking),
     ("path", _mannequin, scenes.drawing),
     ("garment", made_of_elastics, tab("garment")),
-    ("wipe", _mannequin, scenes.wiped),
+    ("wipe", bra, scenes.wiped),
     ("pressure", made_of_elastics, scenes.pressed),
     ("variants", _mannequin, scenes.variants),
     ("model", scenes.sliding, scenes.model_page),

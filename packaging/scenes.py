@@ -62,18 +62,9 @@ def bra() -> Design:
     return design
 
 
-def cut_bra(mid_bust: float = 0.72, straps: float = 0.7) -> Design:
-    """Return a bra that is all of one elastic, by default so short that the body stays much as it was."""
-    design, elastic = bra(), find_elastic("strap 15")
-    lengths = {"mid-bust": mid_bust, "under-bust": 1.0 / 1.2, "strap left": straps, "strap right": straps}
-    for name, ratio in lengths.items():
-        design = design.with_line(name, ratio).with_elastic(name, elastic)
-    return replace(design, customer="Customer 0412")
-
-
-def eased_bra() -> Design:
-    """Return the same bra, longer: it presses less."""
-    return cut_bra(mid_bust=0.85, straps=0.88)
+def for_customer() -> Design:
+    """Return the same with the name of the customer."""
+    return replace(bra(), customer="Customer 0412")
 
 
 def sliding() -> Design:
@@ -136,10 +127,11 @@ def with_control_mesh(window: MainWindow) -> None:
 
 
 def wiped(window: MainWindow) -> None:
-    """Wipe between before and after, seen from the left."""
+    """Wipe between before and after, seen from the front."""
     window.desk.go_to("result")
-    window.view.viewport.set_view("left")
+    window.view.viewport.set_view("front")
     window.view.compare_by("wipe")
+    window.desk.select_line("")
 
 
 def mapped(window: MainWindow) -> None:
@@ -160,6 +152,37 @@ def pressed(window: MainWindow) -> None:
     window.desk.select_line("")
 
 
+def cut(window: MainWindow) -> None:
+    """Make all lines of one elastic as the window does it: what they reach stays."""
+    tab("garment")(window)
+    lines = ("mid-bust", "under-bust", "strap left", "strap right")
+    window.elastic_choice.choose(lines, find_elastic("strap 15"))
+    wait_for(lambda: len(worn(window).worn_elastics()) == len(lines) and window.is_settled())
+    wait_for(lambda: window.pressure_desk.shown is not None)
+    window.desk.select_line("mid-bust")
+
+
+def worn(window: MainWindow) -> Design:
+    """Return the design that is shown."""
+    assert window.session.design is not None
+    return window.session.design
+
+
+def pressed_by_the_cut(window: MainWindow) -> None:
+    """Make all lines of one elastic, and go to the place that is pressed most."""
+    cut(window)
+    window.pressure_desk.card.place.click()
+
+
+def eased_and_reported(window: MainWindow) -> None:
+    """Make the lines of the cut longer until they press less, and show the sheet."""
+    cut(window)
+    for line, ratio in (("strap left", 0.88), ("mid-bust", 0.85)):
+        window.lines_desk.commit_length(line, ratio)
+        wait_for(window.is_settled)
+    reported(window)
+
+
 def pin_selected(window: MainWindow) -> None:
     """Select a landmark, seen from the front."""
     window.desk.go_to("landmarks")
@@ -173,7 +196,7 @@ def variants(window: MainWindow) -> None:
     window.lines_desk.commit_length("mid-bust", 0.9)
     wait_for(window.is_settled)
     window.variant_desk.show_side_by_side()
-    window.inspector.open("history")
+    window.inspector.open("variants")
 
 
 def start_page(window: MainWindow) -> None:

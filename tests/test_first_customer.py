@@ -15,8 +15,16 @@ from test_window_scan import pull
 from window_tools import Script, drag, run_main, settled, undrawn
 
 from app.main_window import MainWindow
-from app.presenting.bust import bust_move
+from app.presenting.bust import bust_move, move_between
+from core.cutting import cut_list
+from core.design import Design, ScanSource
+from core.elastics import find_elastic
+from core.pipeline import Stages, build
+from core.presets import built_in, with_preset
 from core.project import open_project
+from core.sewing.as_worn import made_as_worn, reached_points
+
+DOCS = Path(__file__).parent.parent / "docs"
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -152,3 +160,34 @@ def kept(window: MainWindow, folder: Path) -> Script:
     assert window.session.design.lines == design.lines
     assert window.session.design.placed == design.placed
     assert window.session.document.customer == "Anna 0412"
+
+
+def test_the_figures_of_the_guide_are_those_of_its_steps(person: Path) -> None:
+    """Of steps 7 to 14, on the sample as the pictures show it."""
+    strap, bands = find_elastic("strap 15"), ("mid-bust", "strap left", "strap right")
+    design = with_preset(
+        Design(ScanSource(str(person))), next(each for each in built_in() if each.title == "Bra")
+    )
+    for name in bands[1:]:
+        design = design.with_line(name, 0.94)
+    worn = build(design)
+    made = made_as_worn(worn, dict.fromkeys(bands, strap))
+    cut = build(made, worn)
+    rows = {row.line: row for row in cut_list(cut, reached_points(cut)).rows}
+    eased = build(
+        made.with_line("mid-bust", 0.85).with_line("strap left", 0.88).with_line("strap right", 0.88), cut
+    )
+    figures = [
+        *(f"{rows[name].cut_mm:.0f} mm" for name in bands[:2]),
+        *(f"{100.0 * made.ratio(name):.0f}" for name in bands[:2]),
+        *(f"{lift(each):.1f} mm" for each in (worn, cut, eased)),
+    ]
+    assert rows["strap left"].far
+    for page in ("first.md", "ja/first.md"):
+        text = (DOCS / page).read_text("utf-8")
+        assert [each for each in figures if each not in text] == []
+
+
+def lift(stages: Stages) -> float:
+    """How far the bust points stand above where they are at rest [mm]."""
+    return move_between(stages.rest_marks, stages.watch(reached_points(stages))).mean.up
