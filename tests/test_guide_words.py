@@ -11,6 +11,7 @@ from test_word_list import refused
 from test_words import asked_words
 
 from app.lining.elastic_menu import kind_title
+from app.wording.model_choices import Choice, groups
 from app.wording.samples import SAMPLES
 from app.wording.words import read_words, say, speaking, tr
 from core.elastics import built_in as elastics
@@ -79,3 +80,16 @@ def test_the_japanese_guide_keeps_to_the_list_of_words(name: str) -> None:
     wrong = {english: re.findall(pattern, text) for english, pattern in refused()}
     assert {english: found for english, found in wrong.items() if found} == {}
     assert not re.search(r"[ぁ-んァ-ヶ一-龥][,?!]", text), "commas and question marks are full-width"
+
+
+def test_the_guide_names_the_choices_of_the_model_as_the_window_does() -> None:
+    rows = [line for line in page_of("en", "guide.md").splitlines() if line.startswith("| ")]
+    unnamed = []
+    for _, settings in groups():
+        for setting in settings:
+            key = "`--volume`" if setting.key == "volume" else f"`{setting.key}`"
+            row = next((each for each in rows if key in each), "")
+            words = [title for _, title in setting.options] if isinstance(setting, Choice) else []
+            unnamed += [each for each in words if f"**{each}**" not in row]
+            unnamed += [setting.title] if setting.title not in row else []
+    assert unnamed == []
