@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 from docutils import nodes
+from sphinx.application import Sphinx
 
 DOCS = Path(__file__).parent
 sys.path.insert(0, str(DOCS.parent))
@@ -46,6 +47,10 @@ html_css_files = [f"{shared}guide.css"]
 html_show_copyright = html_show_sphinx = html_copy_source = html_show_sourcelink = html_use_index = False
 html_show_search_summary = False  # it would be fetched, which no browser allows for a file on the disk
 html_permalinks_icon = "#"
+SEARCH = DOCS / "search.js"
+html_search_scorer = str(SEARCH)
+TRADE_WORDS = dict(re.findall(r'^  "(\w+)": "(.*)",$', SEARCH.read_text("utf-8"), re.MULTILINE))
+"""Pages with the words of the trade that they answer."""
 
 
 def colours(tokens: Tokens) -> dict[str, str]:
@@ -92,7 +97,7 @@ def listed_pages(text: str) -> str:
     return "\n".join(trees)
 
 
-def as_guide(app: object, page: str, source: list[str]) -> None:
+def as_guide(app: Sphinx, page: str, source: list[str]) -> None:
     """Lead links to where things are in the guide, and give its first page the table of contents."""
     text = source[0]
     for outside, inside in OUTSIDE.items():
@@ -105,26 +110,57 @@ def as_guide(app: object, page: str, source: list[str]) -> None:
     source[0] = f"{text}\n{listed_pages(text)}" if page == "index" else text
 
 
-def caption_pictures(app: object, page: nodes.document) -> None:
-    """Let what a picture that stands by itself shows be read under it too."""
+def add_trade_words(app: Sphinx, page: nodes.document) -> None:
+    """Let a page be found by the words of the trade that it answers, though they may not stand in it."""
+    words = "" if japanese else TRADE_WORDS.get(app.env.docname, "")
+    if words:
+        page.insert(0, nodes.meta(name="keywords", content=words))
+
+
+WIDE = "[\u3000-\u30ff\u3400-\u9fff\uff00-\uffef]"
+"""A letter or a mark of Japanese, which no blank parts from the next."""
+
+
+def join_lines(app: Sphinx, page: nodes.document) -> None:
+    """Drop the breaks of lines in the source between Japanese letters: a browser shows them as blanks."""
+    for paragraph in page.findall(nodes.paragraph):
+        whole, at = paragraph.astext(), 0
+        for text in list(paragraph.findall(nodes.Text)):
+            kept = [
+                each
+                for place, each in enumerate(text, start=at)
+                if each != "\n" or not re.fullmatch(f"{WIDE}\n{WIDE}", whole[max(place - 1, 0) : place + 2])
+            ]
+            at += len(text)
+            text.parent.replace(text, nodes.Text("".join(kept)))
+
+
+def caption_pictures(app: Sphinx, page: nodes.document) -> None:
+    """Let what a picture that stands by itself shows be read under it too, and a click show its full size."""
     for number, picture in enumerate(list(page.findall(nodes.image)), start=1):
         around = picture.parent
         alone = isinstance(around, nodes.paragraph) and len(around) == 1
         if alone and picture.get("alt") and not isinstance(around.parent, nodes.entry):
             caption = nodes.caption("", picture["alt"])
+            picture["scale"] = 100  # Sphinx leads what has a scale to the picture itself
             around.replace_self(nodes.figure("", picture, caption, ids=[f"picture-{number}"]))
 
 
-def other_language(app: object, page: str, template: str, context: dict[str, object], tree: object) -> None:
+def other_language(app: Sphinx, page: str, template: str, context: dict[str, object], tree: object) -> None:
     """Tell the template where the page, or the first one, stands in the other language."""
     there = DOCS if japanese else DOCS / "ja"
     name = page if (there / f"{page}.md").is_file() else "index"
     context["shared"] = shared
+    # What the Japanese first page names of the English ones stands at the side of every page.
+    first = (DOCS / "ja" / "index.md").read_text("utf-8") if japanese else ""
+    context["english_pages"] = [link[::-1] for link in re.findall(r"\[([^]]+)\]\(\.\./(\w+)\.md\)", first)]
     context["other_language"] = f"../{name}.html" if japanese else f"ja/{name}.html"
 
 
-def setup(app) -> None:
+def setup(app: Sphinx) -> None:
     """Ask to be called."""
     app.connect("source-read", as_guide)
+    app.connect("doctree-read", add_trade_words)
+    app.connect("doctree-read", join_lines)
     app.connect("doctree-read", caption_pictures)
     app.connect("html-page-context", other_language)

@@ -76,12 +76,18 @@ def builder():
     return module
 
 
-def test_the_built_guide_holds_all_that_its_pages_load(tmp_path: Path) -> None:
-    guide, site = builder(), tmp_path / "site"
-    guide.build(site, tmp_path / "work")  # warnings of Sphinx end it
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The guide, built: warnings of Sphinx end it."""
+    folder = tmp_path_factory.mktemp("guide")
+    builder().build(folder / "site", folder / "work")
+    return folder / "site"
+
+
+def test_the_built_guide_holds_all_that_its_pages_load(site: Path) -> None:
     pages = {page.relative_to(DOCS).with_suffix(".html") for page in DOCS.rglob("*.md")}
     assert [str(page) for page in pages if not (site / page).is_file()] == []
-    assert guide.loaded_from_elsewhere(site) == []
+    assert builder().loaded_from_elsewhere(site) == []
     assert 'lang="ja"' in (site / "ja" / "index.html").read_text("utf-8")
     assert "furo" in (site / "licences.txt").read_text("utf-8")
     page = (site / "index.html").read_text("utf-8")
@@ -117,3 +123,21 @@ def test_each_picture_of_a_measure_is_one_of_its_own_and_shows_the_page_behind_i
     assert len({path.read_bytes() for path in paths}) == len(paths)
     opaque = [path.name for path in paths if Image.open(path).convert("RGBA").getchannel("A").getextrema()[0]]
     assert opaque == [], "a white block on a dark page"
+
+
+def test_pages_are_found_by_words_of_the_trade_join_their_lines_and_open_their_pictures(site: Path) -> None:
+    page = (site / "pressure.html").read_text("utf-8")
+    assert re.search(r'<meta content="pressure [^"]*" name="keywords"', page)
+    assert "TRADE_WORDS" in (site / "_static" / "language_data.js").read_text("utf-8")
+    first = (site / "first.html").read_text("utf-8")
+    assert re.search(r'<a class="[^"]*" href="(_images/first-scan\.png)"><img[^>]* src="\1"', first)
+    japanese = (site / "ja" / "screens.html").read_text("utf-8")
+    for words in re.findall("<p>(.*?)</p>", japanese, re.DOTALL):
+        assert not re.search("[ぁ-んァ-ヶ一-龥。、]\n[ぁ-んァ-ヶ一-龥]", re.sub("<[^>]*>", "", words)), words
+    assert 'href="../trouble.html">困ったとき' in japanese
+
+
+def test_every_page_with_words_of_the_trade_is_there() -> None:
+    words = re.findall(r'^  "(\w+)": "(.*)",$', (DOCS / "search.js").read_text("utf-8"), re.MULTILINE)
+    assert len(words) > 10
+    assert [page for page, _ in words if not (DOCS / f"{page}.md").is_file()] == []
