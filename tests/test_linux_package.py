@@ -100,19 +100,42 @@ def test_scans_stay_with_the_programs_that_they_belong_to() -> None:
     assert ENTRIES[1].name > "org.freecad.FreeCAD.desktop"
 
 
+def said(match: ET.Element, data: bytes) -> bool:
+    """Tell whether a rule of the magic holds for a file, with one of those inside it if there are any."""
+    first, _, last = match.get("offset", "").partition(":")
+    value = match.get("value", "")
+    wanted = (
+        int(value).to_bytes(2, "little")
+        if match.get("type") == "little16"
+        else value.encode().decode("unicode_escape").encode("latin-1")
+    )
+    if not any(data[start:].startswith(wanted) for start in range(int(first), int(last or first) + 1)):
+        return False
+    inner = match.findall(f"{MIME}match")
+    return not inner or any(said(each, data) for each in inner)
+
+
+def zip_of(folder: Path, name: str, text: str) -> bytes:
+    with zipfile.ZipFile(folder / "other.zip", "w") as other:
+        other.writestr(name, text)
+    return (folder / "other.zip").read_bytes()
+
+
 def test_a_project_is_known_by_its_name_and_by_what_is_in_it(tmp_path: Path) -> None:
     node = mime_types()["application/x-busk"]
-    outer = node.find(f"{MIME}magic/{MIME}match")
-    assert outer is not None
-    inner = outer.find(f"{MIME}match")
-    assert inner is not None
-    kept = next(LINUX.parent.parent.glob("tests/releases/*/first.busk")).read_bytes()
-    for match in (outer, inner):
-        wanted = match.get("value", "").encode().decode("unicode_escape").encode("latin-1")
-        assert kept[int(match.get("offset", "")) :].startswith(wanted)
-    with zipfile.ZipFile(tmp_path / "other.zip", "w") as other:
-        other.writestr("readme.txt", "no project")
-    assert b"design.json" not in (tmp_path / "other.zip").read_bytes()[30:60]
+    (rule,) = node.findall(f"{MIME}magic/{MIME}match")
+    projects = sorted(LINUX.parent.parent.glob("tests/releases/*/*.busk"))
+    assert [path.name for path in projects if not said(rule, path.read_bytes())] == []
+    project = zipfile.ZipFile(projects[0]).read("design.json").decode()
+    assert said(rule, zip_of(tmp_path, "design.json", project))
+    for name, text in (
+        ("readme.txt", "no project"),
+        ("design.json", '{"pages": 3}'),
+        ("design.json", '{\n "format": 1,\n "pages": 3}'),
+        ("design.json5", project),
+        ("design.json/", ""),
+    ):
+        assert not said(rule, zip_of(tmp_path, name, text)), f"{name} in somebody else's zip"
     assert [glob.get("pattern") for glob in node.iter(f"{MIME}glob")] == ["*.busk"]
 
 
