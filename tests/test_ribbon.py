@@ -11,11 +11,12 @@ from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
 from app.presenting.frame import bands
-from app.seeing.band import Band
+from app.seeing.band import OFF_WIDTH, Band, band_width
 from app.seeing.bands import Bands, RibbonActor
 from app.seeing.ribbon import CASING, Ribbon, Surface, build_casing, build_ribbon
 from app.seeing.sight import Sight
 from core.centre_line import NO_BACK, centre_line
+from core.design import Design, ScanSource
 from core.mesh import Mesh, unit
 from core.pipeline import Stages, build
 from core.sections import arc_length
@@ -123,6 +124,30 @@ def test_a_strap_lies_on_a_wide_band(x: float) -> None:
     for at in casing.mesh.vertices[hidden]:
         assert above.hit(at, at + out) is not None, "its casing looks out beside it only"
     plotter.close()
+
+
+def test_a_line_that_is_off_is_dashed_and_met_between_its_dashes_all_the_same() -> None:
+    shown = Bands(pv.Plotter(off_screen=True))
+    off = Band("off", arc(-80.0, 80.0, 20.0), "#125A6B", 4.0, off=True)
+    shown.show([off], Surface(breast()))
+    drawn_rows = np.unique(shown._ribbons["off"].data.regular_faces // shown.ribbon("off").columns)
+    assert 0.6 < len(drawn_rows) / shown.ribbon("off").rows < 0.9
+    whole = shown.ribbon("off").mesh
+    flat = np.linalg.norm(whole.face_normals, axis=1) > 0.5  # at a round end triangles have no area
+    for at, normal in zip(
+        whole.vertices[whole.faces[flat]].mean(axis=1), whole.face_normals[flat], strict=True
+    ):
+        assert shown.hit(at + normal, at - normal) is not None
+    shown._plotter.close()
+
+
+def test_what_can_pull_and_is_off_is_thin_and_dashed_and_nothing_else() -> None:
+    stages = build(Design(ScanSource("resources/samples/mannequin.ply")).with_line("mid-bust", 0.95))
+    assert {band.name: (band.off, band.width) for band in bands(stages, ())} == {
+        "full-bust": (True, OFF_WIDTH),
+        "mid-bust": (False, band_width("mid-bust")),
+        "under-bust": (False, band_width("under-bust")),
+    }
 
 
 def test_a_band_covers_a_nipple() -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from app.presenting.lines import line_colours, line_title
 from app.presenting.verdict import state_of
-from app.seeing.band import Band, band_width
+from app.seeing.band import OFF_WIDTH, Band, band_width
 from app.showing.verdict_chip import state_title
 from app.wording.words import number, tr
 from core.centre_line import NO_BACK
@@ -24,13 +24,22 @@ class _Drawn:
     path: tuple[int, ...]
     colour: str
     width: float
+    off: bool
 
 
 def drawn(stages: Stages) -> tuple[_Drawn, ...]:
     """Return how the lines of a body are drawn, in the order of the list."""
     paths, design = {line.name: line.path for line in stages.model.lines}, stages.design
+    # What cannot pull is not put on and taken off: it measures, and is drawn as it lies.
+    off = {line.name for line in stages.model.lines if line.constrains} - design.worn()
     return tuple(
-        _Drawn(name, tuple(paths[name].tolist()), colour, band_width(name, design))
+        _Drawn(
+            name,
+            tuple(paths[name].tolist()),
+            colour,
+            OFF_WIDTH if name in off else band_width(name, design),
+            name in off,
+        )
         for name, colour in line_colours(paths, design).items()
     )
 
@@ -48,6 +57,7 @@ def bands(stages: Stages, hidden: Collection[str]) -> list[Band]:
             line.colour,
             line.width,
             backs[line.name].path if line.name in backs else NO_BACK,
+            line.off,
         )
         for line in drawn(stages)
         if line.name not in hidden

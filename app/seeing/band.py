@@ -18,6 +18,9 @@ BAND_WIDTHS = {"full-bust": 10.0, "mid-bust": 12.0, "under-bust": 22.0}
 OWN_WIDTH = 12.0
 """Usual width of the band of an own line [mm]."""
 
+OFF_WIDTH = 4.0
+"""Width of the dashes that show where a line lies that is off [mm]."""
+
 
 def band_width(name: str, design: Design | None = None) -> float:
     """Return the width of a line's band as it is drawn [mm]."""
@@ -30,6 +33,7 @@ class Band:
     """What is drawn of one line: its path over the control points, (k, 3) [mm], colour and width [mm].
 
     ``back``, shape (b, 3) [mm], goes on round the back to where the path begins; without it the band ends.
+    One that is ``off`` is dashed.
     """
 
     name: str
@@ -37,3 +41,4 @@ class Band:
     colour: str
     width: float = 12.0
     back: Points = field(default_factory=lambda: NO_BACK)
+    off: bool = False

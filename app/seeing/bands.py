@@ -23,9 +23,9 @@ _QUIET, _CLOTH = 0.45, "#F2ECE6"  # the back part keeps its length: its colour s
 
 
 class RibbonActor:
-    """One ribbon on a plotter."""
+    """One ribbon on a plotter, ``dashed`` or not; a sight meets the whole ribbon."""
 
-    def __init__(self, plotter: pv.BasePlotter, ribbon: Ribbon, name: str) -> None:
+    def __init__(self, plotter: pv.BasePlotter, ribbon: Ribbon, name: str, dashed: bool = False) -> None:
         self.ribbon = ribbon
         self._raised = np.zeros_like(ribbon.mesh.vertices)
         self._moving = moving_faces(ribbon.mesh, np.empty(0, dtype=np.int64))
@@ -35,13 +35,15 @@ class RibbonActor:
             name,
             mesh.vertices,
             mesh.vertex_normals,
-            mesh.faces,
+            ribbon.dashes if dashed else mesh.faces,
             ambient=0.42,
             diffuse=0.8,
             specular=0.14,
             specular_power=20,
         )
-        self.sight = Sight(self.data)
+        whole = pv.PolyData.from_regular_faces(mesh.vertices, mesh.faces) if dashed else self.data
+        whole.SetPoints(self.data.GetPoints())
+        self.sight = Sight(whole)
         # Plain views of what is drawn: pyvista looks its own up by name each time.
         self._places = vtk_to_numpy(self.data.GetPoints().GetData())
         self._normals = vtk_to_numpy(self.data.GetPointData().GetNormals())
@@ -129,7 +131,8 @@ class Bands:
             wider = [
                 drawn.ribbon for each, drawn in self._ribbons.items() if self._bands[each].width > band.width
             ]
-            self._ribbons[name] = RibbonActor(self._plotter, ribbon.over(wider), f"band {name}")
+            over = ribbon.over(wider)
+            self._ribbons[name] = RibbonActor(self._plotter, over, f"band {name}", dashed=band.off)
             self._ribbons[name].paint(band.colour)
         self._show_what_is_asked()
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.seeing.band import band_width
+from app.seeing.band import OFF_WIDTH, band_width
 from app.seeing.piece import NONE, pieces_of
 from app.seeing.ribbon import Surface
 from app.seeing.skin import PREPARING, skin_of
@@ -23,4 +23,5 @@ def make_ready(built: Stages | StuckError, progress: Progress = quiet) -> None:
     for done, line in enumerate(stages.model.lines):
         progress(PREPARING, 0.9 + 0.1 * done / len(stages.model.lines))
         back = stages.backs[line.name].path if line.name in stages.backs else NO_BACK
-        surface.lay_ready(rest[list(line.path)], band_width(line.name, stages.design), back)
+        for width in (band_width(line.name, stages.design), OFF_WIDTH):
+            surface.lay_ready(rest[list(line.path)], width, back)

@@ -29,6 +29,7 @@ _LEAST, _MORE = 0.7, 1.2  # how high a ribbon stands off the skin, and how much 
 _CLOTH, _CROSSING = 0.4, 6.0  # how far a ribbon stands off another, and how near that is to be under it [mm]
 _CLIMB = 2.5  # how far it is raised at most: what is selected is drawn over all by a little more [mm]
 _ROUND = np.radians([0.0, 18.0, 36.0, 54.0, 72.0, 90.0])  # where the rows of a round end lie
+_DASH = (3, 2)  # so many rows of a dashed ribbon are drawn, and so many are left out
 _TIP = 0.1  # a ribbon narrower than this, in widths, dips under the skin
 
 
@@ -65,6 +66,12 @@ class Ribbon:
     def top(self) -> Points:
         """The points between its rims, shape (rows, columns - 4, 3) [mm]."""
         return self.mesh.vertices.reshape(self.rows, -1, 3)[:, _RIM:-_RIM]
+
+    @property
+    def dashes(self) -> Faces:
+        """The triangles that are left of it where it is dashed, shape (k, 3)."""
+        row = self.mesh.faces[:, 0] // self.columns
+        return self.mesh.faces[row % sum(_DASH) < _DASH[0]]
 
     def over(self, lower: Sequence[Ribbon]) -> Ribbon:
         """Return it raised to where it lies on ``lower`` ribbons that it crosses."""
