@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from PySide6.QtCore import Qt
 from window_tools import Script, run_main, settled, undrawn
 
 from app.main_window import MainWindow
@@ -26,12 +27,18 @@ def test_what_a_designer_types_is_found() -> None:
             chosen = sheet.list.chosen()
             return chosen.title if chosen is not None else ""
 
+        def found(typed: str) -> set[str]:
+            sheet.search.setText(typed)
+            rows = range(sheet.list.topLevelItemCount())
+            return {sheet.list.topLevelItem(row).data(0, Qt.ItemDataRole.UserRole).title for row in rows}
+
         assert first("lif") == "Map on the body"
         assert first("リフト")
         assert first("unit") == first("インチ") == "Scan"
         assert first("prin") == "Print the picture"
         for typed in ("waist", "bust", "report", "cup", "ＳＴＬ", "断面", "カップ", "レポート", "symm"):
             assert first(typed), typed
+        assert "Result" in found("waist") & found("ウエスト") & found("hip"), "its measures stand there"
         assert first("Lines") == "Lines", "what begins so comes first"
         assert first("picture copy") == "Copy the picture"
         assert not first("zzz")

@@ -47,8 +47,8 @@ SYNONYMS = {
     "Landmarks": "bust point nipple apex fold underbust armpit waist hip pin "
     "バストポイント アンダー 乳頭 ウエスト ヒップ",
     "Lines": "length shorter tighter bust underbust waist strap percent 長さ バスト ウエスト 締める",
-    "Result": "measure measurement lift raise bust girth cup size volume report table "
-    "寸法 計測 リフト バスト カップ サイズ 体積 レポート",
+    "Result": "measures measurement lift raise bust waist hip girth cup size volume report table "
+    "寸法 計測 リフト バスト ウエスト ヒップ カップ サイズ 体積 レポート",
     "Live plot": "chart graph curve vibration グラフ 振動",
     "User guide": "manual handbook help documentation F1 マニュアル 説明書 ヘルプ 手引き",
     "First customer in ten minutes": "tutorial manual begin beginner steps マニュアル 入門 はじめて 手順",
