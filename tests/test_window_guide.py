@@ -17,7 +17,7 @@ from app.wording.words import speaking
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
-PAGES = ("index", "first", *guide.PAGES.values())
+PAGES = ("index", "first", *(english.partition("#")[0] for english, _ in guide.PAGES.values()))
 
 
 @pytest.fixture
@@ -39,7 +39,8 @@ def opened(site: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
     def show(url: object) -> bool:
         path = Path(url.toLocalFile())
         assert path.is_file()
-        pages.append(path.relative_to(site).with_suffix("").as_posix())
+        heading = f"#{url.fragment()}" if url.hasFragment() else ""
+        pages.append(path.relative_to(site).with_suffix("").as_posix() + heading)
         return True
 
     monkeypatch.setattr(QDesktopServices, "openUrl", show)
@@ -68,7 +69,7 @@ def test_f1_opens_the_page_that_fits_what_is_being_done(opened: list[str]) -> No
         window.start_desk.tour.end()
         go_everywhere(window)
         assert opened == [
-            *("guide", "guide", "screens", "measures"),
+            *("guide#opening-a-scan", "guide#correcting-landmarks", "screens#lines", "measures"),
             *("sewing", "method", "report", "index"),
         ]
         opened.clear()
@@ -103,8 +104,19 @@ def where_nothing_opens_it_the_window_says_where_it_is(window: MainWindow) -> No
 
 def test_a_window_that_speaks_japanese_opens_the_japanese_part() -> None:
     with speaking("ja"):
-        assert {guide.fitting_page(at) for at in guide.PAGES} == {"ja/screens"}
+        assert {guide.fitting_page(at).partition("#")[0] for at in guide.PAGES} == {"ja/screens"}
+        assert guide.fitting_page("garment") == "ja/screens#裁断"
         assert (guide.fitting_page(""), guide.first_page()) == ("ja/index", "ja/first")
+
+
+@pytest.mark.parametrize("place", [each for both in guide.PAGES.values() for each in both])
+def test_what_f1_opens_stands_in_the_guide(place: str) -> None:
+    page, _, heading = place.partition("#")
+    text = (Path(__file__).parent.parent / "docs" / f"{page}.md").read_text("utf-8")
+    titles = [
+        line.lstrip("# ").lower().replace(" ", "-") for line in text.splitlines() if line.startswith("## ")
+    ]
+    assert not heading or heading in titles
 
 
 def test_the_built_guide_is_looked_for_beside_the_resources() -> None:

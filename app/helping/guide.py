@@ -10,15 +10,15 @@ from app.panels.notice import NoticeBar
 from app.wording.words import language, tr
 
 PAGES = {
-    "scan": "guide",
-    "landmarks": "guide",
-    "lines": "screens",
-    "model": "method",
-    "garment": "sewing",
-    "result": "measures",
-    "report": "report",
+    "scan": ("guide#opening-a-scan", "ja/screens#四つの手順"),
+    "landmarks": ("guide#correcting-landmarks", "ja/screens#四つの手順"),
+    "lines": ("screens#lines", "ja/screens#ライン"),
+    "model": ("method", "ja/screens#ライン"),
+    "garment": ("sewing", "ja/screens#裁断"),
+    "result": ("measures", "ja/screens#寸法"),
+    "report": ("report", "ja/screens#補整シート"),
 }
-"""What is being done in the window, and the page that speaks of it."""
+"""What is being done in the window, and where the guide speaks of it, in English and in Japanese."""
 
 FIRST = "first"
 
@@ -32,13 +32,9 @@ def guide_folder() -> Path:
 
 
 def fitting_page(at: str) -> str:
-    """Return the page for what is being done, a key of ``PAGES``, in the language of the window.
-
-    Of the Japanese part one page speaks of all screens.
-    """
-    if language() == "ja":
-        return "ja/screens" if at in PAGES else "ja/index"
-    return PAGES.get(at, "index")
+    """Return where the guide speaks of what is being done, a key of ``PAGES``, in the window's language."""
+    english, japanese = PAGES.get(at, ("index", "ja/index"))
+    return japanese if language() == "ja" else english
 
 
 def first_page() -> str:
@@ -47,9 +43,10 @@ def first_page() -> str:
 
 
 def show_page(page: str, notices: NoticeBar) -> None:
-    """Show a page of the guide in the browser; where that does not go, say where it is."""
-    path = guide_folder() / f"{page}.html"
-    if path.is_file() and open_outside(path):
+    """Show a page of the guide in the browser, from ``#`` a heading on; where that fails, say where it is."""
+    name, _, heading = page.partition("#")
+    path = guide_folder() / f"{name}.html"
+    if path.is_file() and open_outside(path, heading):
         return
     if path.is_file():
         hint = tr("Open this file in a browser: {file}").format(file=path)

@@ -12,10 +12,16 @@ from PySide6.QtCore import QUrl
 from PySide6.QtGui import QDesktopServices
 
 
-def open_outside(path: Path) -> bool:
-    """Let the desktop open a folder or a page, and tell whether it knows a program for that."""
+def open_outside(path: Path, heading: str = "") -> bool:
+    """Let the desktop open a folder, or a page at a heading; tells whether it knows a program for that.
+
+    Some desktops open the page at its top all the same.
+    """
+    url = QUrl.fromLocalFile(str(path))
+    if heading:
+        url.setFragment(heading)
     with environment_of_others():
-        return QDesktopServices.openUrl(QUrl.fromLocalFile(str(path)))
+        return QDesktopServices.openUrl(url)
 
 
 @contextmanager
