@@ -1,6 +1,7 @@
 """What Windows and macOS are told of the program, as far as that can be read on any system."""
 
 import io
+import json
 import plistlib
 import re
 import struct
@@ -44,7 +45,10 @@ class Frozen:
             "SPECPATH": str(PACKAGING),
             "workpath": str(folder),
             "Analysis": lambda *_, **told: SimpleNamespace(
-                pure=[], scripts=[], binaries=[], datas=list(told["datas"])
+                pure=[("core.design", "design.py", "PYMODULE")],
+                scripts=[],
+                binaries=[("libvtkB.so", "vtkmodules/libvtkB.so", "SYMLINK")],
+                datas=[(place, source, "DATA") for source, place in told["datas"]],
             ),
             "PYZ": lambda pure: pure,
             "EXE": self.program,
@@ -61,10 +65,21 @@ def frozen_on(platform, monkeypatch, folder):
     """What the specification makes on another system."""
     monkeypatch.setattr(sys, "platform", platform)
     monkeypatch.setattr(PyInstaller.utils.hooks, "collect_submodules", lambda _: [])
-    monkeypatch.setitem(sys.modules, "lean", SimpleNamespace(vtk_modules=set, NO_MODULES=[]))
+    import lean  # noqa: PLC0415
+
+    monkeypatch.setattr(lean, "vtk_modules", frozenset)  # asking pyvista takes seconds
     frozen = Frozen()
     exec(compile((PACKAGING / "busk.spec").read_text("utf-8"), "busk.spec", "exec"), frozen.names(folder))
     return frozen
+
+
+@pytest.mark.parametrize("platform", ["linux", "win32", "darwin"])
+def test_the_bill_is_told_where_everything_came_from(monkeypatch, tmp_path, platform):
+    frozen_on(platform, monkeypatch, tmp_path)
+    told = dict(json.loads((tmp_path / "origins.json").read_text("utf-8")))
+    assert told["core.design"] == "design.py"
+    assert Path(told["resources"]) == ROOT / "resources"
+    assert "libvtkB.so" not in told, "a link is no part of its own"
 
 
 def test_windows_gets_a_program_that_prints_and_one_without_a_console(monkeypatch, tmp_path):
