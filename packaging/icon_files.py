@@ -1,4 +1,4 @@
-"""Icons of the systems (.ico, .icns), made of the drawings in resources/icons/program at packaging."""
+"""Icons of the systems (.png, .ico, .icns), made of the drawings in resources/icons/program at packaging."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ ICNS_SIZES = (16, 32, 64, 128, 256, 512, 1024)
 """What macOS asks for, simple and doubled [pixels]."""
 
 
-def drawn(name: str, size: int) -> Image.Image:
-    """Return a drawing as a picture of ``size`` by ``size`` pixels."""
+def picture(name: str, size: int) -> QImage:
+    """Return a drawing as a picture of ``size`` by ``size`` pixels, clear around it."""
     renderer = QSvgRenderer(str(DRAWINGS / f"{name}.svg"))
     if not renderer.isValid():
         raise SystemExit(f"There is no drawing {name}.svg in {DRAWINGS}.")
@@ -30,8 +30,13 @@ def drawn(name: str, size: int) -> Image.Image:
     painter = QPainter(image)
     renderer.render(painter, QRectF(0, 0, size, size))
     painter.end()
+    return image
+
+
+def drawn(name: str, size: int) -> Image.Image:
+    """Return a drawing as a picture that Pillow can put into files of several sizes."""
     buffer = QBuffer()
-    image.save(buffer, "PNG")
+    picture(name, size).save(buffer, "PNG")
     return Image.open(io.BytesIO(buffer.data().data())).convert("RGBA")
 
 

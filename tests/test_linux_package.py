@@ -33,6 +33,7 @@ DEBIAN = pytest.mark.skipif(
 @pytest.fixture
 def of_linux(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     """Return what makes the package; its folder is no package of Python."""
+    monkeypatch.syspath_prepend(str(LINUX.parent))
     monkeypatch.syspath_prepend(str(LINUX))
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
     return importlib.import_module("deb")
@@ -220,6 +221,7 @@ def test_the_package_holds_the_program_and_all_that_desktops_need(
     fields = subprocess.run(["dpkg-deb", "--field", made], capture_output=True, text=True, check=True).stdout
     assert "Version: 9.8.7" in fields
     assert re.search(r"^Depends: libc6 \(>= 2\.\d+\), xkb-data$", fields, re.M)
+    assert re.search(r"^Recommends: .*\bxdg-utils\b", fields, re.M), "Qt opens guide and folders by xdg-open"
     again = of_linux.make_deb(tmp_path / "busk", tmp_path / "again", "9.8.7", level=1)
     assert made.read_bytes() == again.read_bytes()
 
@@ -234,8 +236,7 @@ def test_a_library_that_debian_does_not_know_is_refused(of_linux: ModuleType) ->
 
 @pytest.mark.parametrize("name", ["busk", "busk-project"])
 def test_the_pictures_can_be_told_apart_when_small(of_linux: ModuleType, name: str) -> None:
-    tree = importlib.import_module("tree")
-    small = tree.drawn(tree.DRAWINGS / f"{name}.svg", 16)
+    small = importlib.import_module("icon_files").picture(name, 16)
     colors = {small.pixelColor(x, y).name() for x in range(16) for y in range(16)}
     assert len(colors) > 40
     assert small.pixelColor(0, 0).alpha() < 128

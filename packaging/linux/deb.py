@@ -16,14 +16,15 @@ from tempfile import TemporaryDirectory
 
 import tree
 from needs import depends, read_libraries
+from package import LEVEL, epoch
 
 from core import __version__
 
 MAINTAINER = "The Busk project <busk@busk.invalid>"
 """Whom to ask; the address is none until the project has one."""
 
-LEVEL = 19
-"""Of zstd, measured in packaging/README.md."""
+RECOMMENDS = "desktop-file-utils, shared-mime-info, hicolor-icon-theme, xdg-utils"
+"""What tells desktops of Busk; the last opens the guide and folders from within it."""
 
 DESCRIPTION = """\
 see how a foundation garment reshapes a body, before it is cut
@@ -35,12 +36,6 @@ see how a foundation garment reshapes a body, before it is cut
  .
  The result is a model. Nothing leaves the computer: Busk has no network code.
 """
-
-
-def epoch() -> int:
-    """Return the date of the package in seconds since 1970: told from outside, or of the last commit."""
-    told = os.environ.get("SOURCE_DATE_EPOCH")
-    return int(told or _asked("git", "-C", str(tree.ROOT), "log", "-1", "--format=%ct"))
 
 
 def architecture() -> str:
@@ -59,7 +54,7 @@ def control(version: str, needed: str, size: int) -> str:
         "Maintainer": MAINTAINER,
         "Installed-Size": str(size),
         "Depends": needed,
-        "Recommends": "desktop-file-utils, shared-mime-info, hicolor-icon-theme",
+        "Recommends": RECOMMENDS,
         "Description": DESCRIPTION.rstrip(),
     }
     return "".join(f"{name}: {value}\n" for name, value in fields.items())

@@ -6,16 +6,16 @@ import gzip
 import json
 import os
 import shutil
+import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).parent.parent))
+
+from icon_files import DRAWINGS, picture
 from man_page import man_page
-from PySide6.QtCore import QRectF
-from PySide6.QtGui import QImage, QPainter
-from PySide6.QtSvg import QSvgRenderer
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent.parent
-DRAWINGS = ROOT / "resources" / "icons" / "program"
 
 SIZES = (16, 22, 24, 32, 48, 64, 128, 256, 512)
 """Widths of the pictures that desktops look for before they draw the SVG file themselves [pixels]."""
@@ -65,16 +65,6 @@ def plain(stage: Path, epoch: int) -> None:
         os.utime(path, (epoch, epoch), follow_symlinks=False)
 
 
-def drawn(drawing: Path, size: int) -> QImage:
-    """Return an SVG drawing as a picture of ``size`` pixels."""
-    picture = QImage(size, size, QImage.Format.Format_ARGB32)
-    picture.fill(0)
-    painter = QPainter(picture)
-    QSvgRenderer(str(drawing)).render(painter, QRectF(0, 0, size, size))
-    painter.end()
-    return picture
-
-
 def _add_icons(hicolor: Path) -> None:
     for drawing, kind, name in (("busk", "apps", "busk"), ("busk-project", "mimetypes", PROJECT_TYPE)):
         source = DRAWINGS / f"{drawing}.svg"
@@ -82,7 +72,7 @@ def _add_icons(hicolor: Path) -> None:
         for size in SIZES:
             target = hicolor / f"{size}x{size}" / kind / f"{name}.png"
             target.parent.mkdir(parents=True, exist_ok=True)
-            if not drawn(source, size).save(str(target)):
+            if not picture(drawing, size).save(str(target)):
                 raise OSError(f"the picture {target} cannot be written")
 
 
