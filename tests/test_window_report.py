@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled, undrawn
 
 from app.main_window import MainWindow
+from app.panels.picture_list import VIEW
 from app.reporting.handout import SHOTS
 from app.reporting.paper import A4
 from app.reporting.pdf import write_pdf
@@ -94,6 +96,21 @@ def test_the_sheet_follows_and_a_former_one_is_not_given_away() -> None:
         window.actions_.undo.trigger()
         yield made(window)
         assert window.report_desk.handout.sheet.cuts.rows == ()
+
+    assert run_main(["resources/samples/mannequin.ply"], script) == 0
+
+
+def test_what_came_of_an_edit_on_the_sheet_is_kept_with_its_picture() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        window.report_desk.open()
+        window.session.edit(lambda design: replace(design, customer="Anna"), "Customer Anna")
+        yield made(window)
+        QTest.qWait(600)  # longer than a result must have stood
+        window.report_desk.leave()
+        kept = window.history.snapshots
+        yield lambda: kept.count() == 1
+        assert kept.item(0).data(VIEW).picture is not None
 
     assert run_main(["resources/samples/mannequin.ply"], script) == 0
 

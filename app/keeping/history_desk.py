@@ -120,6 +120,10 @@ class HistoryDesk(QObject):
             or stack.index() == 0
         ):
             return
+        if not self._window.view.isVisible():
+            # The sheet lies over the body: its picture is taken once that is seen again.
+            self._clock.start()
+            return
         row = PictureRow(
             stack.text(stack.index() - 1),
             time.strftime("%H:%M:%S"),
@@ -130,11 +134,9 @@ class HistoryDesk(QObject):
         self._snapshots.append(_Snapshot(document.shown, frame.stages.design, row))
         self.show_snapshots()
 
-    def _picture(self) -> QImage | None:
-        view = self._window.view
-        if not view.isVisible():
-            return None
-        return view.viewport.picture().scaledToHeight(_PICTURE, Qt.TransformationMode.SmoothTransformation)
+    def _picture(self) -> QImage:
+        picture = self._window.view.viewport.picture()
+        return picture.scaledToHeight(_PICTURE, Qt.TransformationMode.SmoothTransformation)
 
 
 def _title(snapshot: _Snapshot, document: Document) -> str:
