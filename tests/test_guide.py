@@ -141,3 +141,11 @@ def test_every_page_with_words_of_the_trade_is_there() -> None:
     words = re.findall(r'^  "(\w+)": "(.*)",$', (DOCS / "search.js").read_text("utf-8"), re.MULTILINE)
     assert len(words) > 10
     assert [page for page, _ in words if not (DOCS / f"{page}.md").is_file()] == []
+
+
+def test_one_page_tells_what_busk_writes_and_removes_no_more_than_that() -> None:
+    removing = {page.name: page.read_text("utf-8") for page in PAGES if "rm -rf" in page.read_text("utf-8")}
+    assert list(removing) == ["install.md"]
+    written = re.findall(r"^\| `(~/[^`]+)`", removing["install.md"], re.MULTILINE)
+    assert re.search(r"rm -rf (.*)", removing["install.md"])[1].split() == written
+    assert all("Busk" in place or "QtProject" in place for place in written)
