@@ -51,7 +51,7 @@ def test_every_link_and_picture_leads_somewhere(page: Path) -> None:
 def test_the_first_page_lists_every_page_once_by_its_title(index: Path) -> None:
     listed = re.findall(r"^- \[(.*?)\]\((\w+\.md)\)(?:: .*)?$", index.read_text("utf-8"), re.MULTILINE)
     if index.parent == DOCS:
-        assert not re.findall(r"^- \[.*\)$", index.read_text("utf-8"), re.MULTILINE), "each says what it holds"
+        assert not re.findall(r"^- \[.*\)$", index.read_text("utf-8"), re.MULTILINE), "what it holds"
     others = [page.name for page in index.parent.glob("*.md") if page != index]
     assert sorted(name for _, name in listed) == sorted(others)
     assert [words for words, _ in listed] == [title_of(index.parent / name) for _, name in listed]
