@@ -93,3 +93,12 @@ def test_the_guide_names_the_choices_of_the_model_as_the_window_does() -> None:
             unnamed += [each for each in words if f"**{each}**" not in row]
             unnamed += [setting.title] if setting.title not in row else []
     assert unnamed == []
+
+
+@pytest.mark.parametrize("heading", ["Five ways to treat the volume", "Choices of the model"])
+def test_the_method_calls_its_choices_as_the_window_does(heading: str) -> None:
+    section = page_of("en", "method.md").partition(f"## {heading}\n")[2].partition("\n## ")[0]
+    table = "\n".join(line for line in section.splitlines() if line.startswith("| "))
+    named = [each for each in quoted(table) if "vibrates" not in each]
+    assert len(named) > 4
+    assert [each for each in named if each not in on_the_screen("en")] == []
