@@ -103,8 +103,8 @@ def test_a_message_is_translated_with_what_is_filled_in() -> None:
     assert say("It is odd. Choose another scan.") == "It is odd.別のスキャンを選んでください。"
     unit = "Read in mm, the trunk is 889 mm round, which is the size of a body."
     axes = "That +z is up and -y is front was told."
-    translated = "mm で読むと胴まわり（およその値）は 889 mm で、上半身の大きさです。上 +z、前 -y は指定によります。"
-    assert say(f"{unit} {axes}") == translated
+    translated = "mm で読むと胴まわり（およその値）は 889 mm で、上半身の大きさです。"
+    assert say(f"{unit} {axes}") == translated + "上 +z、前 -y は指定によります。"
     assert say("a cloud of {curly} words") == "a cloud of {curly} words"
     use_language("en")
     assert say("scan.ply has no sound triangles.") == "scan.ply has no sound triangles."
