@@ -120,16 +120,18 @@ def add_trade_words(app: Sphinx, page: nodes.document) -> None:
 WIDE = "[\u3000-\u30ff\u3400-\u9fff\uff00-\uffef]"
 """A letter or a mark of Japanese, which no blank parts from the next."""
 
+NO_BLANK = re.compile(f"{WIDE}\n{WIDE}|[。、：）」] {WIDE}")
+"""A break of a line in the source; a blank that ends bold words after a mark. A browser shows both."""
 
-def join_lines(app: Sphinx, page: nodes.document) -> None:
-    """Drop the breaks of lines in the source between Japanese letters: a browser shows them as blanks."""
+
+def join_japanese(app: Sphinx, page: nodes.document) -> None:
+    """Drop what would part Japanese letters that belong together."""
     for paragraph in page.findall(nodes.paragraph):
         whole, at = paragraph.astext(), 0
         for text in list(paragraph.findall(nodes.Text)):
+            places = enumerate(text, start=at)
             kept = [
-                each
-                for place, each in enumerate(text, start=at)
-                if each != "\n" or not re.fullmatch(f"{WIDE}\n{WIDE}", whole[max(place - 1, 0) : place + 2])
+                each for place, each in places if not NO_BLANK.fullmatch(whole[max(place - 1, 0) : place + 2])
             ]
             at += len(text)
             text.parent.replace(text, nodes.Text("".join(kept)))
@@ -161,6 +163,6 @@ def setup(app: Sphinx) -> None:
     """Ask to be called."""
     app.connect("source-read", as_guide)
     app.connect("doctree-read", add_trade_words)
-    app.connect("doctree-read", join_lines)
+    app.connect("doctree-read", join_japanese)
     app.connect("doctree-read", caption_pictures)
     app.connect("html-page-context", other_language)

@@ -135,7 +135,8 @@ def test_pages_are_found_by_words_of_the_trade_join_their_lines_and_open_their_p
     assert re.search(r'<a class="[^"]*" href="(_images/first-scan\.png)"><img[^>]* src="\1"', first)
     japanese = (site / "ja" / "screens.html").read_text("utf-8")
     for words in re.findall("<p>(.*?)</p>", japanese, re.DOTALL):
-        assert not re.search("[ぁ-んァ-ヶ一-龥。、]\n[ぁ-んァ-ヶ一-龥]", re.sub("<[^>]*>", "", words)), words
+        parted = "[ぁ-んァ-ヶ一-龥。、]\n[ぁ-んァ-ヶ一-龥]|[。、] [ぁ-んァ-ヶ一-龥]"
+        assert not re.search(parted, re.sub("<[^>]*>", "", words)), words
     assert 'href="../trouble.html">困ったとき' in japanese
 
 
