@@ -16,67 +16,22 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 from functools import cache
 from importlib import metadata
 from pathlib import Path
 
-from packaging.licenses import InvalidLicenseExpression, canonicalize_license_expression
-
 ROOT = Path(__file__).parent.parent
-sys.path.insert(0, str(ROOT))
+sys.path[:0] = [str(ROOT), str(ROOT / "packaging")]
+
+from bill_part import Part, faults, wanted_whole  # noqa: E402
 
 from core import __version__  # noqa: E402
 
 HERE = ROOT / "packaging" / "licences"
 KNOWN = json.loads((HERE / "known.json").read_text("utf-8"))
 PYTHON = Path(sys.base_prefix)
+CLOSED = re.compile(r"\.(so|pyd|dylib|dll|ttf|otf|woff2?|afm|csv|js)\b[.\d]*$", re.IGNORECASE)
 LICENCE_FILE = re.compile(r"(licen[cs]e|copying|copyright|notice|authors)[^/]*$", re.IGNORECASE)
-
-
-@dataclass(frozen=True)
-class Part:
-    """Something that somebody has made and that is shipped: ``texts`` are file names with what they say."""
-
-    name: str
-    version: str
-    licence: str
-    kind: str
-    texts: Mapping[str, str] = field(default_factory=dict)
-    within: str = ""
-    """The part that brings it along."""
-
-    @property
-    def key(self) -> str:
-        """Return the name of its folder among the licences, the same on every machine."""
-        return re.sub(r"[^a-z0-9.]+", "-", f"{self.within}-{self.name}".lower()).strip("-")
-
-    @property
-    def purl(self) -> str:
-        """Return the address of the package, as bills of materials write it."""
-        kinds = {"python": "pypi", "system": "deb/debian"}
-        return f"pkg:{kinds.get(self.kind, 'generic')}/{self.key}@{self.version or 'unversioned'}"
-
-
-def faults(parts: Iterable[Part]) -> list[str]:
-    """Return what the bill lacks, a sentence each; nothing if all is well."""
-    found = []
-    for part in parts:
-        if not part.licence:
-            found.append(f"{part.name} has no known licence: name it in packaging/licences/known.json.")
-        elif not any(text.strip() for text in part.texts.values()):
-            found.append(f"{part.name} has no text of its licence.")
-        elif problem := _problem(part.licence):
-            found.append(f"{part.name}: {problem}")
-    return found
-
-
-def _problem(expression: str) -> str:
-    try:
-        canonicalize_license_expression(expression)
-    except InvalidLicenseExpression as error:
-        return str(error)
-    return ""
 
 
 @cache
@@ -132,8 +87,10 @@ def system_part(name: str) -> Part:
         ["dpkg-query", "-W", "-f=${Version}\n", name], capture_output=True, text=True, check=True
     )
     text = (Path("/usr/share/doc") / name / "copyright").read_text("utf-8")
-    version = shown.stdout.split("\n")[0]
-    return Part(name, version, KNOWN["system"].get(name, ""), "system", {"copyright.txt": text})
+    version, licence = shown.stdout.split("\n")[0], KNOWN["system"].get(name, "")
+    # Debian keeps these texts in one place of the system; other systems have no such place.
+    whole = our_texts(wanted_whole(licence))
+    return Part(name, version, licence, "system", {"copyright.txt": text, **whole})
 
 
 def owner(place: str, source: str) -> Part:
@@ -189,6 +146,21 @@ def within(places: list[str], parts: Mapping[str, Part]) -> Iterator[Part]:
             texts = our_texts(row["texts"], row.get("copyright", "")) if "texts" in row else bringer.texts
             version = row.get("version", "").replace("as PySide6", bringer.version)
             yield Part(row["name"], version, row["licence"], "within", texts, row["of"])
+
+
+def unasked(origins: Mapping[str, str]) -> list[str]:
+    """Return a sentence on each Python package that ships what may hold others' work, and has no row of it.
+
+    That are fonts, tables of colours and what was compiled: a library inside shows in no list of packages.
+    """
+    answered = {row["of"] for row in KNOWN["within"]} | set(KNOWN["nothing within"])
+    found = {
+        packages().get(str(Path(source).resolve())) for source in origins.values() if CLOSED.search(source)
+    }
+    names = sorted({named(each) for each in found if each} - answered)
+    return [
+        f"{name} may bring other work along: say what in packaging/licences/known.json." for name in names
+    ]
 
 
 def collected(program: Path, origins: Mapping[str, str]) -> tuple[list[Part], list[str]]:
@@ -281,8 +253,10 @@ def main() -> int:
     parser.add_argument("--origins", type=Path, default=ROOT / "build" / "work" / "busk" / "origins.json")
     parser.add_argument("--out", type=Path, default=ROOT / "dist")
     chosen = parser.parse_args()
-    parts, strays = collected(chosen.program, dict(json.loads(chosen.origins.read_text("utf-8"))))
-    wrong = [f"Nobody knows where {place} came from." for place in strays] + faults(parts)
+    origins = dict(json.loads(chosen.origins.read_text("utf-8")))
+    parts, strays = collected(chosen.program, origins)
+    wrong = [f"Nobody knows where {place} came from." for place in strays]
+    wrong += faults(parts) + unasked(origins)
     if wrong:
         print("\n".join(("The bill is not complete:", *wrong)), file=sys.stderr)
         return 1

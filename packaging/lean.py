@@ -72,8 +72,8 @@ OPENED_BY_NAME = ("*llvmlite*", "*libpython3*", "*python3*.dll", "*opengl32sw.dl
 NO_DATA = (
     "*/tests/*", "*/test/*", "*.pyi", "*.pyx", "*.pxd", "*.hpp", "*.h", "*.c", "*/py.typed",
     "*/sample_data/*", "matplotlib/mpl-data/fonts/afm/*", "matplotlib/mpl-data/fonts/pdfcorefonts/*",
-    "pyqtgraph/examples/*", "*/__pycache__/*", "certifi/*", "resources/*.py", "*.dist-info/RECORD",
-    "*.dist-info/REQUESTED", "*.dist-info/direct_url.json", "*.dist-info/INSTALLER",
+    "pyqtgraph/examples/*", "pyqtgraph/colors/maps/*", "*/__pycache__/*", "certifi/*", "resources/*.py",
+    "*.dist-info/RECORD", "*.dist-info/REQUESTED", "*.dist-info/direct_url.json", "*.dist-info/INSTALLER",
     "*.dist-info/uv_cache.json",
 )  # fmt: skip
 TRANSLATIONS = ("*/translations/qtbase_ja.qm", "*/translations/qtbase_en.qm")

@@ -15,6 +15,7 @@ ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT / "packaging"))
 
 import bill  # noqa: E402
+import bill_part  # noqa: E402
 import lean  # noqa: E402
 import package  # noqa: E402
 
@@ -139,6 +140,44 @@ def test_a_bill_without_licence_or_text_is_refused() -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    "licence", ["LGPL-2.1-or-later", "GPL-3.0-or-later WITH GCC-exception-3.1", "MPL-2.0"]
+)
+def test_a_bill_without_the_whole_text_of_a_licence_that_wants_it_is_refused(licence: str) -> None:
+    (name,) = bill_part.wanted_whole(licence)
+    whole = bill.our_texts([name])
+    assert bill.faults([bill.Part("part", "1", licence, "within", whole)]) == []
+    (text,) = whole.values()
+    for told in (text[: len(text) // 2], f"It is under {name}, see elsewhere."):
+        assert bill.faults([bill.Part("part", "1", licence, "within", {"LICENSE": told})])
+
+
+def test_every_row_that_names_its_texts_brings_whole_what_wants_to_be_whole() -> None:
+    rows = [row for row in bill.KNOWN["within"] if bill_part.wanted_whole(row["licence"]) and "texts" in row]
+    assert {"libquadmath", "Eigen", "Qt"} <= {row["name"] for row in rows}
+    parts = [
+        bill.Part(row["name"], "", row["licence"], "within", bill.our_texts(row["texts"])) for row in rows
+    ]
+    assert bill.faults(parts) == []
+
+
+def test_a_package_with_compiled_files_or_fonts_must_say_what_is_inside(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    origins = {
+        place: str(file.locate())
+        for name in ("potpourri3d", "numpy")
+        for file in bill.metadata.distribution(name).files or ()
+        if (place := str(file)).endswith((".so", ".py", ".pyd"))
+    }
+    assert bill.unasked(origins) == []
+    monkeypatch.setitem(bill.KNOWN, "within", [row for row in bill.KNOWN["within"] if row["of"] == "numpy"])
+    (told,) = bill.unasked(origins)
+    assert told.startswith("potpourri3d may bring")
+    monkeypatch.setitem(bill.KNOWN, "nothing within", {"potpourri3d": "so it is said"})
+    assert bill.unasked(origins) == []
+
+
 def test_every_licence_that_is_known_is_one_that_the_world_knows() -> None:
     rows = [*bill.KNOWN["ours"], *bill.KNOWN["within"]]
     named = [
@@ -146,7 +185,7 @@ def test_every_licence_that_is_known_is_one_that_the_world_knows() -> None:
         *bill.KNOWN["system"].values(),
         *(row["licence"] for row in rows),
     ]
-    assert [licence for licence in named if bill._problem(licence)] == []
+    assert [licence for licence in named if bill_part._problem(licence)] == []
 
 
 def test_the_texts_that_the_bill_names_are_here() -> None:
