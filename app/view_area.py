@@ -76,15 +76,18 @@ class ViewArea(QWidget):
         """The actions of all tools, for the menus."""
         return self.compare.actions_by_name | self.tools.actions_by_name
 
-    def prepare(self, done: Callable[[], None]) -> None:
-        """Load the 3D libraries in a passing thread and make the scene, before there is anything to show."""
+    def prepare(self, done: Callable[[], None], failed: Callable[[Exception], None]) -> None:
+        """Load the 3D libraries in a passing thread and make the scene, before there is anything to show.
+
+        ``failed`` hears why they cannot be loaded.
+        """
 
         def make(_: object) -> None:
             self.viewport.make()
             done()
 
         words = tr("Getting the 3D view ready")
-        self._jobs.run(words, lambda _: load_libraries(), make)
+        self._jobs.run(words, lambda _: load_libraries(), make, failed)
 
     # -- what is shown
 
@@ -205,6 +208,7 @@ class ViewArea(QWidget):
 
         Of what floats over it only that is in the picture which explains it, such as the legend of a map.
         """
+        self.viewport.make()
         from app.showing.fine_picture import fine_picture  # noqa: PLC0415 (brings VTK along)
 
         picture = fine_picture(self.panes, finer)

@@ -63,7 +63,7 @@ def _go_on(window: MainWindow, what: str | Design | None) -> None:
     """Do what takes long, now that the window is there: read the body, load the 3D libraries."""
     _open(window, what)
     hand_files_to(window.desk.open_file)
-    window.view.prepare(window.housekeeping.spare)
+    window.view.prepare(window.housekeeping.spare, window.rescuer.note)
 
 
 def open_window(what: str | Design | None) -> MainWindow:

@@ -16,6 +16,7 @@ from app.helping.machine import machine_facts
 from app.panels.about import as_text
 from app.panels.fault import FaultSheet
 from app.wording.words import tr
+from core.errors import UserError
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -27,10 +28,11 @@ _TOLD = 5  # different faults that are asked about in a session
 class Rescue(QObject):
     """Hears of faults in slots, events and threads while a window is open.
 
-    One fault may come again sixty times a second: it is told once, and written down a few times.
+    One fault may come again sixty times a second: it is told once, and written down a few times. Of a
+    UserError, which says itself what to do, a notice tells.
     """
 
-    _fell = Signal(str)
+    _fell = Signal(object, str)
 
     def __init__(self, window: MainWindow) -> None:
         super().__init__(window)
@@ -41,10 +43,15 @@ class Rescue(QObject):
         sys.excepthook, threading.excepthook = self._note, self._note_in_thread
         # The fault may have come in a thread, or while something was being painted: it is told afterwards.
         self._fell.connect(self._tell, Qt.ConnectionType.QueuedConnection)
+        window.session.opened.connect(self._tell_anew)
 
     def close(self) -> None:
         """Hear of faults no longer."""
         sys.excepthook, threading.excepthook = self._hooks
+
+    def note(self, fault: Exception) -> None:
+        """Hear of a fault that somebody else has caught."""
+        self._note(type(fault), fault, fault.__traceback__)
 
     def _note(self, kind: type[BaseException], fault: BaseException, trace: TracebackType | None, /) -> None:
         if not issubclass(kind, Exception):
@@ -56,13 +63,17 @@ class Rescue(QObject):
         if self._seen[name] <= _LOGGED:
             self._hooks[0](kind, fault, trace)
         if self._seen[name] == 1 and len(self._seen) <= _TOLD:
-            self._fell.emit("".join(traceback.format_exception(kind, fault, trace)))
+            self._fell.emit(fault, "".join(traceback.format_exception(kind, fault, trace)))
 
     def _note_in_thread(self, args: threading.ExceptHookArgs, /) -> None:
         self._note(args.exc_type, args.exc_value or RuntimeError(), args.exc_traceback)
 
-    def _tell(self, trace: str) -> None:
+    def _tell(self, fault: Exception, trace: str) -> None:
         """Keep the design aside, then say what happened; a second fault joins the first."""
+        if isinstance(fault, UserError):
+            notices = self._window.notices
+            notices.show_notice("bad", fault.message, fault.hint, lasting=True, details=trace)
+            return
         if self.sheet is not None:
             self.sheet.add_details(trace)
             return
@@ -70,6 +81,11 @@ class Rescue(QObject):
         sheet.quit_asked.connect(self._window.close)
         sheet.finished.connect(self._forget)
         sheet.open()
+
+    def _tell_anew(self) -> None:
+        """Let notices come again: those that stood there went with the document before."""
+        for name in [name for name in self._seen if name.startswith(UserError.__name__)]:
+            del self._seen[name]
 
     def _keep_aside(self) -> str:
         """Return where the design has been kept, or an empty text."""

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import sys
+import threading
 from collections.abc import Callable, Iterable
 from functools import cache
 from typing import TYPE_CHECKING, Any
@@ -26,6 +27,8 @@ from PySide6.QtWidgets import QWidget
 from app.dress.theme import tokens_of
 from app.seeing.look import LOOKS
 from app.showing.graphics import is_safe_mode
+from app.wording.words import tr
+from core.errors import UserError
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -33,6 +36,7 @@ if TYPE_CHECKING:
     from app.showing.pictures import Pictures
 
 _GL_RENDERER = 0x1F01
+_loading = threading.Lock()
 
 
 @cache
@@ -61,15 +65,37 @@ def is_painted() -> bool:
 
 
 def load_libraries() -> None:
-    """Load all that a scene needs, in whatever thread: the window goes on meanwhile."""
-    import pyvista.plotting  # noqa: F401, PLC0415 (with matplotlib, which it needs)
+    """Load all that a scene needs, in whatever thread; who asks for it meanwhile waits until it is there.
 
-    import app.seeing.scene  # noqa: PLC0415
+    Raises UserError, each time anew, where they cannot be loaded.
+    """
+    # Of what another thread has half loaded pyvista says that there is no such thing.
+    with _loading:
+        trouble = _trouble_of_loading(is_painted())
+    if trouble is not None:
+        raise UserError(
+            tr("There is no 3D view: the libraries that it needs cannot be loaded."),
+            tr(
+                "'busk self-test' tells what is missing; 'busk --safe-mode' does without the graphics driver."
+            ),
+        ) from trouble
 
-    if is_painted():
-        import app.showing.pictures  # noqa: F401, PLC0415
-    else:
-        import pyvistaqt  # noqa: F401, PLC0415
+
+@cache
+def _trouble_of_loading(painted: bool) -> Exception | None:
+    """Load the libraries once, and return what went wrong: a second try would end as the first."""
+    try:
+        import pyvista.plotting  # noqa: F401, PLC0415 (with matplotlib, which it needs)
+
+        import app.seeing.scene  # noqa: PLC0415
+
+        if painted:
+            import app.showing.pictures  # noqa: F401, PLC0415
+        else:
+            import pyvistaqt  # noqa: F401, PLC0415
+    except Exception as fault:
+        return fault
+    return None
 
 
 class Canvas(QWidget):
@@ -94,6 +120,7 @@ class Canvas(QWidget):
 
     def make_plotter(self) -> pv.BasePlotter:
         """Load the 3D libraries, if they are not, and return the plotter whose scene is shown from now on."""
+        load_libraries()
         if self.painted:
             from app.showing.pictures import Pictures  # noqa: PLC0415 (brings VTK along)
 

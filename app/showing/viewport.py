@@ -95,10 +95,10 @@ class Viewport(QWidget):
         self._scene = self.scene
 
     def _make_scene(self) -> Scene:
+        plotter = self._canvas.make_plotter()
         from app.seeing.scene import Scene  # noqa: PLC0415 (brings VTK along)
         from app.showing.smoothing import Smoothing  # noqa: PLC0415 (so does this)
 
-        plotter = self._canvas.make_plotter()
         self._scene = scene = Scene(plotter, tokens_of(self).dark, self.devicePixelRatioF())
         scene.look_from(self._view)
         scene.set_material(self._material)
