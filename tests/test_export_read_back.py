@@ -82,12 +82,9 @@ def turned(places: np.ndarray, unit: str, axes: str) -> np.ndarray:
 
 
 def read_mesh(path: Path) -> pv.PolyData:
-    read = pv.read(path)
-    mesh = (
-        read.combine().extract_surface(algorithm="dataset_surface")
-        if isinstance(read, pv.MultiBlock)
-        else read
-    )
+    mesh = pv.read(path)
+    if isinstance(mesh, pv.MultiBlock):
+        mesh = mesh.combine().extract_surface(algorithm="dataset_surface")
     assert isinstance(mesh, pv.PolyData)
     return mesh
 
@@ -123,9 +120,8 @@ def test_a_whole_body_is_read_at_its_place_and_size(
         np.testing.assert_allclose(each(places, axis=0), each(wanted.vertices, axis=0), atol=1e-3)
     volume = float(mesh.volume) * UNITS[space.unit] ** 3
     assert volume == pytest.approx(_volume(wanted), rel=1e-4)
-    found, other = (
-        np.sort(each, axis=0) for each in (_corners(mesh, places), _corners_of(outcome.body(not before)))
-    )
+    found = np.sort(_corners(mesh, places), axis=0)
+    other = np.sort(_corners_of(outcome.body(not before)), axis=0)
     np.testing.assert_allclose(found, np.sort(_corners_of(wanted), axis=0), atol=1e-3)
     assert np.abs(found - other).max() > 0.1, "at rest and reshaped are two bodies"
 
@@ -217,9 +213,8 @@ def test_turns_are_a_table_with_a_row_each(tmp_path: Path, outcome: Outcome) -> 
     path = write("turns", tmp_path / "t.csv", outcome, Manner())
     rows = np.genfromtxt(path, delimiter=",", names=True)
     assert len(rows) == len(outcome.records) > 5
-    last = dict(
-        zip((line.name for line in outcome.stages.model.lines), outcome.records[-1].lengths, strict=True)
-    )
+    names = [line.name for line in outcome.stages.model.lines]
+    last = dict(zip(names, outcome.records[-1].lengths, strict=True))
     assert rows["length_midbust_mm"][-1] == pytest.approx(last["mid-bust"], abs=1e-4)
 
 
