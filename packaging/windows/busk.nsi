@@ -16,6 +16,7 @@ ManifestSupportedOS Win10
 !include MUI2.nsh
 !include LogicLib.nsh
 !include WinVer.nsh
+!include Sections.nsh
 !include x64.nsh
 
 !define LISTED "Software\Microsoft\Windows\CurrentVersion\Uninstall\Busk"
@@ -95,16 +96,6 @@ VIProductVersion "${VERSION}.0"
 !macro TellTheSystem
   System::Call 'shell32::SHChangeNotify(i 0x08000000, i 0, p 0, p 0)'
 !macroend
-
-Function .onInit
-  ${IfNot} ${AtLeastWin10}
-    !insertmacro Refuse "$(TOO_OLD)"
-  ${EndIf}
-  ${IfNot} ${IsNativeAMD64}
-  ${AndIfNot} ${IsNativeARM64} ; it runs what is made for the other
-    !insertmacro Refuse "$(TOO_OLD)"
-  ${EndIf}
-FunctionEnd
 
 ; _internal is removed before a newer version comes: it must be Busk's own.
 Function FolderIsForeign
@@ -191,6 +182,32 @@ SectionEnd
 Section /o "$(DESKTOP_LINK)" desktop_link
   CreateShortCut "$DESKTOP\Busk.lnk" "$INSTDIR\buskw.exe"
 SectionEnd
+
+; An upgrade asks for the file type as it was answered before; the first time it is ticked.
+Section "-remember" remember
+  ${If} ${SectionIsSelected} ${file_type}
+    WriteRegDWORD HKCU "${LISTED}" "FileType" 1
+  ${Else}
+    WriteRegDWORD HKCU "${LISTED}" "FileType" 0
+  ${EndIf}
+SectionEnd
+
+; Below the sections, whose numbers it asks for.
+Function .onInit
+  ${IfNot} ${AtLeastWin10}
+    !insertmacro Refuse "$(TOO_OLD)"
+  ${EndIf}
+  ${IfNot} ${IsNativeAMD64}
+  ${AndIfNot} ${IsNativeARM64} ; it runs what is made for the other
+    !insertmacro Refuse "$(TOO_OLD)"
+  ${EndIf}
+  ClearErrors
+  ReadRegDWORD $0 HKCU "${LISTED}" "FileType"
+  ${IfNot} ${Errors}
+  ${AndIf} $0 == 0
+    !insertmacro UnselectSection ${file_type}
+  ${EndIf}
+FunctionEnd
 
 !insertmacro MUI_FUNCTION_DESCRIPTION_BEGIN
   !insertmacro MUI_DESCRIPTION_TEXT ${program} "$(ABOUT_PROGRAM)"

@@ -32,6 +32,19 @@ INSIDE = (
     "_internal/日本語.txt",
 )
 REFUSED = 2
+LISTED = r"HKCU\Software\Microsoft\Windows\CurrentVersion\Uninstall\Busk"
+KIND = r"[Software\\Classes\\Busk.Project\\shell\\open\\command]"
+IN_THE_REGISTRY = (
+    f'"DisplayVersion"="{__version__}"',
+    r'"QuietUninstallString"="\"C:\\users\\',
+    '"EstimatedSize"=dword:',
+    '"FileType"=dword:00000001',
+    KIND,
+    r"[Software\\Classes\\.busk\\OpenWithProgids]",
+    '@="Busk.Project"',
+    r"[Software\\Microsoft\\Windows\\CurrentVersion\\App Paths\\busk.exe]",
+    r"[Software\\Classes\\Applications\\buskw.exe\\SupportedTypes]",
+)
 
 failures = 0
 
@@ -100,28 +113,40 @@ def try_with_wine(wine: Wine, older: Path, newer: Path) -> None:
     check("Windows 7 is refused", wine.run(str(older), "/S") == REFUSED and not wine.installed.exists())
     wine.run("reg", "add", r"HKCU\Software\Wine", "/v", "Version", "/d", "win10", "/f")
     wine.run("reg", "add", r"HKCU\Software\Busk\Busk", "/v", "language", "/d", "ja")
-    check("the older version installs in silence", wine.run(str(older), "/S") == 0)
-    there = wine.installed
-    check("its files are there", all((there / name).exists() for name in INSIDE))
-    check("it has a place in the start menu", (wine.programs / "Busk.lnk").exists())
-    (there / "of the user.txt").write_text("hers")
+    _try_to_install(wine, older)
+    _try_to_upgrade(wine, newer)
+    _try_what_is_refused(wine, older, newer)
+    _try_to_remove(wine)
 
+
+def _try_to_install(wine: Wine, older: Path) -> None:
+    check("the older version installs in silence", wine.run(str(older), "/S") == 0)
+    check("its files are there", all((wine.installed / name).exists() for name in INSIDE))
+    check("it has a place in the start menu", (wine.programs / "Busk.lnk").exists())
+    check("projects are opened with it", KIND in wine.registry())
+
+
+def _try_to_upgrade(wine: Wine, newer: Path) -> None:
+    there = wine.installed
+    (there / "of the user.txt").write_text("hers")
     check("the newer version installs over it", wine.run(str(newer), "/S") == 0)
     check("the older one's own files are gone", not (there / "_internal" / "only in 0.0.1.txt").exists())
     check("the newer one's are there", (there / "_internal" / f"only in {__version__}.txt").exists())
     registry = wine.registry()
-    for told in (
-        f'"DisplayVersion"="{__version__}"',
-        r'"QuietUninstallString"="\"C:\\users\\',
-        '"EstimatedSize"=dword:',
-        r"[Software\\Classes\\Busk.Project\\shell\\open\\command]",
-        r"[Software\\Classes\\.busk\\OpenWithProgids]",
-        '@="Busk.Project"',
-        r"[Software\\Microsoft\\Windows\\CurrentVersion\\App Paths\\busk.exe]",
-        r"[Software\\Classes\\Applications\\buskw.exe\\SupportedTypes]",
-    ):
+    for told in IN_THE_REGISTRY:
         check(f"the registry holds {told}", told in registry)
+    for key in (r"HKCU\Software\Classes\Busk.Project", r"HKCU\Software\Classes\.busk"):
+        wine.run("reg", "delete", key, "/f")
+    wine.run("reg", "add", LISTED, "/v", "FileType", "/t", "REG_DWORD", "/d", "0", "/f")
+    check("an upgrade without the file type installs", wine.run(str(newer), "/S") == 0)
+    check("and leaves projects to others", KIND not in wine.registry())
+    wine.run("reg", "delete", LISTED, "/v", "FileType", "/f")
+    check("one of before it was asked installs", wine.run(str(newer), "/S") == 0)
+    check("and opens projects", KIND in wine.registry())
 
+
+def _try_what_is_refused(wine: Wine, older: Path, newer: Path) -> None:
+    there = wine.installed
     running = subprocess.Popen(
         ["wine", str(there / "buskw.exe")], env=wine.environment, stderr=subprocess.DEVNULL
     )
@@ -136,6 +161,9 @@ def try_with_wine(wine: Wine, older: Path, newer: Path) -> None:
     check("a folder of others is refused", wine.run(str(newer), "/S", r"/D=C:\foreign") == REFUSED)
     check("and left as it was", [path.name for path in foreign.iterdir()] == ["_internal"])
 
+
+def _try_to_remove(wine: Wine) -> None:
+    there = wine.installed
     wine.run(str(there / "uninstall.exe"), "/S")
     check("the program is removed", wine.gone(there / "uninstall.exe"))
     check("a file of the user's stays", [path.name for path in there.iterdir()] == ["of the user.txt"])
