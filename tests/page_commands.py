@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from app.cli import main
-from app.commands.cli_parser import COMMANDS, _parser
+from app.commands.cli_parser import COMMANDS, command_parser
 from app.wording.samples import sample_design
 from core.design_measures import OwnMeasure
 from core.document import Document
@@ -160,7 +160,7 @@ def options() -> Iterator[tuple[str, str, str]]:
     """Yield every option with the commands that take it and what it does, as the program's own help says."""
     of: dict[tuple[str, str], list[str]] = {}
     for command in COMMANDS:
-        for each in _parser(command)._actions:
+        for each in command_parser(command)._actions:
             if each.option_strings and each.dest != "help":
                 of.setdefault(_option(each), []).append(command)
     for (option, help_), commands in of.items():

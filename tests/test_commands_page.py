@@ -22,7 +22,7 @@ from page_commands import (
 )
 
 from app.cli import SETTLED
-from app.commands.cli_parser import COMMANDS, _parser, command_options, window_options
+from app.commands.cli_parser import COMMANDS, command_parser, command_options, window_options
 from app.commands.self_test import PARTS
 from core.errors import UserError
 
@@ -50,7 +50,7 @@ def test_the_program_understands_every_command(path: Path) -> None:
     for told in inline_of(path):
         command, *words = told.split()
         if command in COMMANDS:
-            known = {option for each in _parser(command)._actions for option in each.option_strings}
+            known = {option for each in command_parser(command)._actions for option in each.option_strings}
             assert {word.split("=")[0] for word in words if word.startswith("--")} <= known, told
         else:
             assert Path(command).suffix == ".busk", f"{path.name} names a command that there is not: {told}"

@@ -19,7 +19,7 @@ from types import ModuleType
 
 import pytest
 
-from app.commands.cli_parser import COMMANDS, _parser, _window_parser
+from app.commands.cli_parser import COMMANDS, command_parser, window_parser
 from core.reading.scan_file import FORMATS
 
 LINUX = Path(__file__).parent.parent / "packaging" / "linux"
@@ -89,7 +89,7 @@ def test_every_action_of_the_menu_entry_is_read_by_the_program() -> None:
     for action in filter(None, told["Desktop Entry"]["Actions"].split(";")):
         program, *words = told[f"Desktop Action {action}"]["Exec"].split()
         assert program == "busk"
-        assert _window_parser().parse_args(words).safe_mode
+        assert window_parser().parse_args(words).safe_mode
 
 
 def test_scans_stay_with_the_programs_that_they_belong_to() -> None:
@@ -168,7 +168,7 @@ def test_the_manual_page_names_every_command_and_option(of_linux: ModuleType) ->
     )
     assert list(parts) == list(COMMANDS)
     for command, text in parts.items():
-        for action in _parser(command)._actions:
+        for action in command_parser(command)._actions:
             assert all(name in text for name in action.option_strings if name not in ("-h", "--help")), (
                 command
             )

@@ -42,12 +42,12 @@ _AXIS = "like {axis}, or a direction x,y,z of the file for a body that stands as
 
 def command_options(command: str, words: Sequence[str]) -> argparse.Namespace:
     """Read the words after a command. Raises UserError."""
-    return _parser(command).parse_args(_joined(words))
+    return command_parser(command).parse_args(_joined(words))
 
 
 def window_options(words: Sequence[str]) -> argparse.Namespace:
     """Read the words where there is no command. Raises UserError."""
-    return _window_parser().parse_args(words)
+    return window_parser().parse_args(words)
 
 
 def _joined(words: Sequence[str]) -> list[str]:
@@ -68,7 +68,8 @@ class _Parser(argparse.ArgumentParser):
         raise UserError(f"{message[:1].upper()}{message[1:]}.", f"See '{self.prog} --help'.")
 
 
-def _window_parser() -> argparse.ArgumentParser:
+def window_parser() -> argparse.ArgumentParser:
+    """Return what reads the words where there is no command."""
     commands = "\n".join(f"  busk {name:10} {help_}" for name, help_ in COMMANDS.items())
     parser = _Parser(
         prog="busk",
@@ -84,7 +85,8 @@ def _window_parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _parser(command: str) -> argparse.ArgumentParser:
+def command_parser(command: str) -> argparse.ArgumentParser:
+    """Return what reads the words after a command."""
     parser = _Parser(prog=f"busk {command}", description=COMMANDS[command])
     if command in _OF_A_SCAN:
         _add_scan(parser)

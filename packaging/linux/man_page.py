@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import time
 
-from app.commands.cli_parser import COMMANDS, _parser, _window_parser
+from app.commands.cli_parser import COMMANDS, command_parser, window_parser
 from core import __version__
 
 HEAD = r"""
@@ -108,7 +108,7 @@ def command_lines(command: str) -> list[str]:
     return [
         f".SS busk {escaped(command)}",
         escaped(f"{what[:1].upper()}{what[1:]}."),
-        *option_lines(_parser(command)),
+        *option_lines(command_parser(command)),
     ]
 
 
@@ -120,7 +120,7 @@ def man_page(epoch: int) -> str:
             f'.TH BUSK 1 {date} "Busk {__version__}" "User Commands"',
             HEAD.strip(),
             ".SH OPTIONS",
-            *option_lines(_window_parser()),
+            *option_lines(window_parser()),
             ".TP",
             r"\fB\-h\fR, \fB\-\-help\fR",
             "Show a short help; behind a command, that of the command.",
