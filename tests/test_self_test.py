@@ -119,9 +119,15 @@ def test_every_part_needs_only_parts_before_it() -> None:
         assert set(part.needs) <= set(names[:place])
 
 
-def test_what_is_written_lies_apart_from_the_users_own_files(qapp: QApplication, tmp_path: Path) -> None:
+def test_what_is_written_lies_apart_from_the_users_own_files(
+    qapp: QApplication, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    finds = ("MPLCONFIGDIR", "NUMBA_CACHE_DIR")
+    for name in finds:
+        monkeypatch.setenv(name, "elsewhere")
     own, before = QSettings().fileName(), dict(os.environ)
     with apart(tmp_path):
+        assert all(Path(os.environ[name]).is_relative_to(tmp_path) for name in finds)
         places = [platformdirs.user_data_path("Busk"), platformdirs.user_state_path("Busk")]
         places += [Path(QSettings().fileName()), Path(tempfile.gettempdir())]
         QSettings().setValue("theme", "dark")

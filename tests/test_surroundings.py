@@ -170,3 +170,42 @@ def test_streams_are_left_alone_where_they_can_write_everything(monkeypatch: pyt
     narrow.flush()
     sys.stderr.close()
     assert narrow.buffer.getvalue() == b"?20 ?" + os.linesep.encode()
+
+
+def test_what_libraries_find_out_has_a_place_even_without_a_home(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def homeless(*_: object, **__: object) -> Path:
+        raise RuntimeError("Could not determine home directory.")
+
+    monkeypatch.setattr(sys, "frozen", True, raising=False)
+    for name in ("MPLCONFIGDIR", "NUMBA_CACHE_DIR"):
+        monkeypatch.setenv(name, "")
+        monkeypatch.delenv(name)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    settle_in()
+    kept = Path(os.environ["MPLCONFIGDIR"])
+    assert kept.is_relative_to(tmp_path)
+    assert not list(tmp_path.iterdir()), "made when there is something to keep"
+    monkeypatch.setattr(surroundings.os, "access", lambda *_: False)
+    settle_in()
+    assert not Path(os.environ["MPLCONFIGDIR"]).is_relative_to(tmp_path / "Busk")
+    monkeypatch.setattr(surroundings.platformdirs, "user_cache_path", homeless)
+    settle_in()
+    assert Path(os.environ["MPLCONFIGDIR"]).parent.is_dir()
+
+
+@pytest.mark.parametrize(
+    ("told", "set_to"), [({"LC_ALL": "C"}, "LC_ALL"), ({"LANG": "C"}, "LC_CTYPE"), ({}, "LC_CTYPE")]
+)
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="locales have other names")
+def test_letters_are_those_of_unicode_where_no_language_is_set(
+    told: dict[str, str], set_to: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("LC_ALL", "LC_CTYPE", "LANG"):
+        monkeypatch.setenv(name, told.get(name, ""))
+    settle_in()
+    assert os.environ[set_to] == "C.UTF-8"
+    monkeypatch.setenv(set_to, "ja_JP.UTF-8")
+    settle_in()
+    assert os.environ[set_to] == "ja_JP.UTF-8"

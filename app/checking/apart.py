@@ -14,6 +14,7 @@ from core.errors import UserError
 
 _FOLDERS = ("config", "data", "state", "cache")
 _WINDOWS = {"APPDATA": "config", "LOCAL_APPDATA": "data"}
+_FINDS = {"MPLCONFIGDIR": "matplotlib", "NUMBA_CACHE_DIR": "numba"}
 _PASSING = ("TMPDIR", "TEMP", "TMP")
 PASSING = "passing"
 """The folder, in the one that the test has, for files that are gone when it ends."""
@@ -27,6 +28,7 @@ def apart(folder: Path) -> Iterator[None]:
     """
     values = {f"XDG_{kind.upper()}_HOME": str(folder / kind) for kind in _FOLDERS}
     values |= {f"WIN_PD_OVERRIDE_{name}": str(folder / kind) for name, kind in _WINDOWS.items()}
+    values |= {name: str(folder / "cache" / kind) for name, kind in _FINDS.items() if name in os.environ}
     values |= dict.fromkeys(_PASSING, str(folder / PASSING))
     (folder / PASSING).mkdir(parents=True, exist_ok=True)
     before, passing = {name: os.environ.get(name) for name in values}, tempfile.tempdir

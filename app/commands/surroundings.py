@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import atexit
 import io
 import os
+import shutil
 import sys
+import tempfile
+from contextlib import suppress
 from pathlib import Path
 
 import platformdirs
@@ -23,9 +27,27 @@ def settle_in() -> None:
             # A console of another code page lacks some of our letters: better one is lost than all.
             stream.reconfigure(errors="replace")
     if getattr(sys, "frozen", False):
-        # The packager lets it look for all type of the system at each start anew.
-        kept = platformdirs.user_cache_path("Busk", appauthor=False) / "matplotlib"
-        os.environ["MPLCONFIGDIR"] = str(kept)
+        # The packager lets one look for all type of the system at each start anew; the other would keep
+        # what it compiles where the program lies.
+        folder = _lasting()
+        os.environ["MPLCONFIGDIR"] = str(folder / "matplotlib")
+        os.environ.setdefault("NUMBA_CACHE_DIR", str(folder / "numba"))
+    if sys.platform.startswith("linux"):
+        told = next((name for name in ("LC_ALL", "LC_CTYPE", "LANG") if os.environ.get(name)), "LC_CTYPE")
+        if (os.environ.get(told) or "C") in ("C", "POSIX"):  # Qt would take this one too, and complain
+            os.environ["LC_CTYPE" if told == "LANG" else told] = "C.UTF-8"
+
+
+def _lasting() -> Path:
+    """Return the user's folder for caches, or a passing one where none can be made: there may be no home."""
+    with suppress(OSError, RuntimeError):
+        folder = platformdirs.user_cache_path("Busk", appauthor=False)
+        there = next(place for place in (folder, *folder.parents) if place.exists())
+        if folder.is_absolute() and os.access(there, os.W_OK):
+            return folder
+    passing = tempfile.mkdtemp(prefix="busk-")
+    atexit.register(shutil.rmtree, passing, ignore_errors=True)
+    return Path(passing)
 
 
 def has_terminal() -> bool:
