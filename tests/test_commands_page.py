@@ -22,7 +22,7 @@ from page_commands import (
 )
 
 from app.cli import SETTLED
-from app.commands.cli_parser import COMMANDS, command_parser, command_options, window_options
+from app.commands.cli_parser import COMMANDS, command_options, command_parser, window_options
 from app.commands.self_test import PARTS
 from core.errors import UserError
 
