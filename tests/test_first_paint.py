@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import weakref
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ from pytestqt.qtbot import QtBot
 from window_tools import Script, run_main, settled
 
 import app.window
+from app.asking.housekeeping import Housekeeping
 from app.dress import first_paint
 from app.main_window import MainWindow
 from app.showing.viewport import Viewport
@@ -148,3 +150,21 @@ def test_what_waits_for_the_first_paint_is_done_once_whether_it_comes_or_not(
     shown.repaint()
     qtbot.wait(80)
     assert sorted(done) == ["hidden", "shown"]
+
+
+def test_what_is_spared_from_the_search_is_no_garbage(qtbot: QtBot) -> None:
+    parent = QWidget()
+    qtbot.addWidget(parent)
+    housekeeping = Housekeeping(parent)
+    ring = Ring()
+    ring.itself, gone = ring, weakref.ref(ring)
+    del ring
+    housekeeping.spare()
+    housekeeping.close()
+    assert gone() is None
+
+
+class Ring:
+    """Something that only the search for garbage takes away."""
+
+    itself: Ring

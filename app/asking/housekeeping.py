@@ -23,14 +23,15 @@ class Housekeeping(QObject):
     def __init__(self, parent: QObject) -> None:
         super().__init__(parent)
         gc.disable()
-        self.spare()
+        gc.freeze()
         self._looks = 0
         self._clock = QTimer(self, interval=_OFTEN)
         self._clock.timeout.connect(self._look)
         self._clock.start()
 
     def spare(self) -> None:
-        """Look no more at what is there now: libraries and parts of the window stay."""
+        """Look no more at what is there now, but for garbage: libraries and parts of the window stay."""
+        gc.collect()
         gc.freeze()
 
     def close(self) -> None:
