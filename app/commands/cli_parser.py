@@ -109,16 +109,7 @@ def command_parser(command: str) -> argparse.ArgumentParser:
     if command == "measure":
         parser.add_argument("--own", action="append", metavar="NAME=KIND:PLACES", help=MEASURE_HELP)
     if command == "picture":
-        what = parser.add_mutually_exclusive_group()
-        what.add_argument(
-            "--view", default="three-quarter", help="front, left, right, back, three-quarter, top, side"
-        )
-        what.add_argument("--window", action="store_true", help="the whole window, not just the body")
-        parser.add_argument("--dark", action="store_true", help="a picture on dark ground")
-        parser.add_argument("--language", choices=("en", "ja"), default="en", help="that of the window")
-        parser.add_argument(
-            "--size", type=_size, default=(1600, 1000), metavar="WIDTHxHEIGHT", help="of a picture"
-        )
+        _add_picture(parser)
     if command == "sweep":
         parser.add_argument("--quick", action="store_true", help="a few cases only")
     if command == "figures":
@@ -129,6 +120,19 @@ def command_parser(command: str) -> argparse.ArgumentParser:
         help_ = "the picture: .png" if command == "picture" else "the folder that is written to"
         parser.add_argument("--out", required=needed, default=default, metavar="PLACE", help=help_)
     return parser
+
+
+def _add_picture(parser: argparse.ArgumentParser) -> None:
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument(
+        "--view", default="three-quarter", help="front, left, right, back, three-quarter, top, side"
+    )
+    what.add_argument("--window", action="store_true", help="the whole window, not just the body")
+    parser.add_argument("--dark", action="store_true", help="a picture on dark ground")
+    parser.add_argument("--language", choices=("en", "ja"), default="en", help="that of the window")
+    parser.add_argument(
+        "--size", type=_size, default=(1600, 1000), metavar="WIDTHxHEIGHT", help="of a picture"
+    )
 
 
 def _add_forms(parser: argparse.ArgumentParser, command: str) -> None:

@@ -90,13 +90,7 @@ class StartPage(QWidget):
         column.addWidget(self.zone)
         column.addSpacing(16)
         column.addWidget(label(tr("Or look at a sample"), "secondary"))
-        samples = QHBoxLayout()
-        samples.setSpacing(8)
-        for name, title in SAMPLES.items():
-            each = button(tr(title))
-            each.clicked.connect(lambda _=False, chosen=name: self.sample_asked.emit(chosen))
-            samples.addWidget(each, 1)
-        column.addLayout(samples)
+        column.addLayout(self._samples())
         tour = button(tr("Take the tour"))
         tour.clicked.connect(self.tour_asked)
         column.addWidget(tour)
@@ -119,6 +113,15 @@ class StartPage(QWidget):
         )
         column.addLayout(private)
         return side
+
+    def _samples(self) -> QHBoxLayout:
+        samples = QHBoxLayout()
+        samples.setSpacing(8)
+        for name, title in SAMPLES.items():
+            each = button(tr(title))
+            each.clicked.connect(lambda _=False, chosen=name: self.sample_asked.emit(chosen))
+            samples.addWidget(each, 1)
+        return samples
 
     def _recent(self) -> QWidget:
         """Return the right side."""
