@@ -52,6 +52,18 @@ class MovingFaces:
         """
         return np.asarray(self._cones(places) - self._rest_cones)
 
+    def side_volume_slopes(self, places: Points) -> Floats:
+        """Return the derivatives of ``side_volume_changes`` by the places, shape (2, r, 3) [mm^2]."""
+        corners = (places - self._apex)[self.corners]
+        slopes = np.zeros((2, *places.shape))
+        for at, corner in enumerate(self.corners):
+            by_corner = np.cross(corners[at - 2], corners[at - 1]) / 6.0
+            for side, here in enumerate((self.left, ~self.left)):
+                for axis in range(3):
+                    weight = np.where(here, by_corner[:, axis], 0.0)
+                    slopes[side, :, axis] += np.bincount(corner, weight, len(places))
+        return slopes
+
     def _cones(self, places: Points) -> Floats:
         return kernels.cones(places - self._apex, self.corners, self.left)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -121,3 +122,15 @@ def hull_perimeter(points: Points) -> float:
         return float(ConvexHull(points[:, :2]).area)
     except QhullError:
         return 0.0
+
+
+def hull_slopes(points: Points) -> Points:
+    """Return the slopes of ``hull_perimeter`` by the points' places in their level, shape (k, 2) [1]."""
+    slopes = np.zeros((len(points), 2))
+    if len(points) >= 3:
+        with suppress(QhullError):
+            corners = ConvexHull(points[:, :2]).vertices
+            sides = points[corners, :2] - points[np.roll(corners, 1), :2]
+            sides /= np.linalg.norm(sides, axis=1, keepdims=True)
+            slopes[corners] = sides - np.roll(sides, -1, axis=0)
+    return slopes

@@ -47,6 +47,13 @@ class Operator:
         """
         return kernels.blend(self.weights, self.starts, self.columns, change, rest)
 
+    def pulled(self, slopes: Points) -> Points:
+        """Return slopes by the operator's columns of what has ``slopes`` (r, 3) by its rows, (columns, 3)."""
+        weights, found = self.weights, np.zeros((int(self.columns.max(initial=-1)) + 1, 3))
+        for (r, c, w), (s, d, x) in pairwise(self.starts.tolist()):
+            found[self.columns[c:d]] += weights[w:x].reshape(d - c, s - r) @ slopes[r:s]
+        return found
+
     def of_rows(self, rows: Indices) -> sparse.csr_array:
         """Return a few of its rows as a matrix, shape (rows, columns)."""
         each, back = np.unique(rows, return_inverse=True)  # a row may be asked for twice
@@ -106,6 +113,34 @@ class Binding:
             rest = 2.0 * self.control.face_areas[self.triangles]
             spans *= np.sqrt(length / np.where(rest > 0.0, rest, 1.0))
         return np.concatenate([control_points[self.points], spans.T])
+
+    def pulled(self, control_points: Points, slopes: Points) -> Points:
+        """Return slopes by the control points of what has ``slopes`` (k, 3) by the places of ``moving``.
+
+        Both at ``control_points`` (n, 3) [mm]; the result has their shape. Those that are fixed have none.
+        """
+        return self.by_points(control_points, self.operator.pulled(slopes))
+
+    def by_points(self, control_points: Points, slopes: Points) -> Points:
+        """Return slopes by the control points, (n, 3), of what has ``slopes`` (c, 3) by the first columns."""
+        columns = np.zeros((len(self.points) + len(self.triangles), 3))
+        columns[: len(slopes)] = slopes
+        found = np.zeros_like(control_points)
+        found[self.points], by_normal = np.split(columns, [len(self.points)])
+        v0, v1, v2 = control_points[self._corners]
+        across = np.cross(v1 - v0, v2 - v0)
+        length = np.where((size := np.linalg.norm(across, axis=1)) > 0.0, size, 1.0)[:, None]
+        unit = across / length
+        along = np.sum(unit * by_normal, axis=1, keepdims=True) * unit
+        if self.scaled_normals:
+            rest = 2.0 * self.control.face_areas[self.triangles, None]
+            by_area = (by_normal - 0.5 * along) / np.sqrt(length * np.where(rest > 0.0, rest, 1.0))
+        else:
+            by_area = (by_normal - along) / length
+        by_second, by_third = np.cross(v2 - v0, by_area), np.cross(by_area, v1 - v0)
+        for corner, share in zip(self._corners, (-by_second - by_third, by_second, by_third), strict=True):
+            np.add.at(found, corner, share)
+        return found
 
     @cached_property
     def _rest_frames(self) -> Floats:

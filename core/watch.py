@@ -11,7 +11,7 @@ from core.control_mesh import ControlMesh
 from core.landmark import Landmarks
 from core.mesh import Flags, Floats, Indices, Mesh, Points
 from core.moving import MovingFaces
-from core.sections import cut, hull_perimeter
+from core.sections import cut, hull_perimeter, hull_slopes
 from core.solver import Marks
 from core.tffd import Binding
 from core.trunk import trunk_levels
@@ -42,14 +42,23 @@ class BodyWatch:
         self._right = slice(2 + len(left), None)
         rows = np.concatenate([nipples, left, right])
         self._binding, self._rest, self._operator = binding, rest[rows], binding.operator.of_rows(rows)
-        self._offset = points[:, 1:] - rest[nipples, 1:]
+        self._away = points - rest[nipples]
         self._back = float(control.mesh.vertices[control.border, 1].mean())
+
+    def bust_points(self, control_points: Points) -> Points:
+        """Return where the left and the right bust point are, shape (2, 3) [mm]."""
+        moved = self._operator[:2] @ self._binding.change(control_points)
+        return np.asarray(self._rest[:2] + moved + self._away)
+
+    def bust_point_slopes(self, control_points: Points, weights: Points) -> Points:
+        """Return slopes by the control points, (n, 3), of both bust points times ``weights``, summed."""
+        return self._binding.by_points(control_points, self._operator[:2].T @ weights)
 
     def __call__(self, control_points: Points) -> Marks:
         """Return the marks for control points, shape (n, 3) [mm]."""
         places = self._rest + self._operator @ self._binding.change(control_points)
         apex = np.mean([_apex(places[self._left]), _apex(places[self._right])], axis=0)
-        (left_y, left_z), (right_y, right_z) = (places[:2, 1:] + self._offset).tolist()
+        (left_y, left_z), (right_y, right_z) = (places[:2] + self._away)[:, 1:].tolist()
         apex_out, outs = self._back - float(apex[0]), (self._back - left_y, self._back - right_y)
         return Marks(left_z, right_z, float(apex[1]), apex_out, *outs)
 
@@ -97,6 +106,19 @@ class Tapes:
             [hull_perimeter(np.concatenate([still, _cut(places, edges, z)])) for z, edges, still in levels]
         )
 
+    def slopes(self, places: Points) -> Floats:
+        """Return the slopes of the tapes by the places, shape (k, r, 3) [1]."""
+        found = np.zeros((len(self._heights), *places.shape))
+        for slopes, z, edges, still in zip(found, self._heights, self._edges, self._still, strict=True):
+            crossing = _crossing(places, edges, z)
+            by_point = hull_slopes(np.concatenate([still, _cut(places, edges, z)]))[len(still) :]
+            (start, end), (a, b) = crossing, places[crossing]
+            part = ((z - a[:, 2]) / (b[:, 2] - a[:, 2]))[:, None]
+            steep = np.sum(by_point * (b - a)[:, :2], axis=1, keepdims=True) / (b[:, 2] - a[:, 2])[:, None]
+            np.add.at(slopes, start, np.hstack([(1.0 - part) * by_point, (part - 1.0) * steep]))
+            np.add.at(slopes, end, np.hstack([part * by_point, -part * steep]))
+        return found
+
 
 def _still(moving: MovingFaces) -> Mesh:
     moves = np.zeros(len(moving.body.vertices), dtype=bool)
@@ -120,8 +142,12 @@ def _outline(still: Mesh, body: Mesh, z: float) -> Points:
 
 def _cut(places: Points, edges: Indices, z: float) -> Points:
     """Return where the edges, shape (2, e), cross a height, shape (c, 2) [mm]."""
-    above = places[:, 2] >= z
-    start, end = edges[:, above.take(edges[0]) != above.take(edges[1])]
-    a, b = places[start], places[end]
+    a, b = places[_crossing(places, edges, z)]
     part = (z - a[:, 2]) / (b[:, 2] - a[:, 2])
     return np.asarray(a[:, :2] + part[:, None] * (b - a)[:, :2])
+
+
+def _crossing(places: Points, edges: Indices, z: float) -> Indices:
+    """Return those of the edges, shape (2, e), that cross a height, shape (2, c)."""
+    above = places[:, 2] >= z
+    return edges[:, above.take(edges[0]) != above.take(edges[1])]

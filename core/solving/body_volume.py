@@ -16,6 +16,7 @@ from core.exact import NEWTON_LIMIT, solve_exact
 from core.mesh import Floats, Points
 from core.model import ConstrainedModel
 from core.solving.newton import Balance
+from core.solving.sensitivity import Rates
 
 BodyChange = Callable[[Points], Floats]
 """What the body's left and right have gained [mm^3], (2,), for the control points, shape (n, 3) [mm]."""
@@ -48,3 +49,16 @@ def solve_body_exact(
             return replace(last, steps=steps)
         excess = excess - lacking
     return replace(last, steps=steps, residual=np.inf)
+
+
+def body_kept(rates: Rates, by_excess: Rates, slopes: Floats, *, each: bool) -> Rates:
+    """Return the rates at which the body, not the control mesh, keeps its volume.
+
+    ``rates`` are those at which the control mesh keeps it and ``by_excess`` those by its excess; ``slopes``
+    (2, 3 f) [mm^2] are those of what the body's left and right have gained by the free points' displacements.
+    ``each`` tells whether both sides keep theirs or only their sum.
+    """
+    given = np.eye(2) if each else np.ones((2, 1))
+    kept = slopes if each else slopes.sum(axis=0, keepdims=True)
+    excess = -given @ np.linalg.solve(kept @ by_excess.moved @ given, kept @ rates.moved)
+    return Rates(rates.moved + by_excess.moved @ excess, rates.multipliers + by_excess.multipliers @ excess)

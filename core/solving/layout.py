@@ -21,6 +21,8 @@ class Layout:
 
     ``constant`` is what never changes, ``changing`` the map of the other figures: those of the cables' law,
     the blocks of the line segments, and the places of the corners times both pressures, at ``corners``.
+    ``trace`` [1] is a stiffness to the ground in ``constant``, too small to see: it keeps bodies that float
+    freely in their place.
     """
 
     band: Band
@@ -28,6 +30,7 @@ class Layout:
     changing: Operator
     segments: Springs
     corners: Entries
+    trace: float
 
     @cached_property
     def lines_general(self) -> Operator:
@@ -69,12 +72,11 @@ def layout_of(tensegric: TensegricModel, segments: Springs, volume: VolumeMeasur
     band = band_of(len(tensegric.free), first, second)
     maps = [sparse.csr_array(band.lower(part)) for part in parts]
     changing = sparse.csr_array(sparse.hstack(maps, format="csr"))
-    # A trace of stiffness to the ground keeps bodies that float freely in their place.
-    shift = 1e-8 * tensegric.mean_stiffness
+    trace = 1e-8 * tensegric.mean_stiffness
     diagonal = np.arange(band.size)
-    loose = Entries(diagonal, diagonal, np.zeros_like(diagonal), np.full(band.size, shift), 1)
+    loose = Entries(diagonal, diagonal, np.zeros_like(diagonal), np.full(band.size, trace), 1)
     constant = band.lower(joined([fixed, loose], 1)) @ np.ones(1)
-    return Layout(band, constant, changing, segments, corners)
+    return Layout(band, constant, changing, segments, corners, trace)
 
 
 def sliding_entries(first: Indices, second: Indices) -> Entries:

@@ -7,7 +7,7 @@ quadratically.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -66,13 +66,14 @@ class Skin:
         n[self.nodes] = outward[self.nodes] / size[self.nodes, None]
         return n, size
 
+    def across(self, place: Place) -> Callable[[Points], Floats]:
+        """Return what takes of forces, shape (f, 3), the part across the skin, shape (3 f,)."""
+        n, _ = self._across(place)
+        return lambda force: np.asarray((n * np.einsum("ij,ij->i", force, n)[:, None]).ravel())
+
     def projected(self, place: Place) -> tuple[Floats, Floats]:
         """Return the forces to balance, shape (3 f,), and the directions of the multipliers, (h, 3 f)."""
-        n, _ = self._across(place)
-
-        def across(force: Points) -> Floats:
-            return np.asarray((n * np.einsum("ij,ij->i", force, n)[:, None]).ravel())
-
+        across = self.across(place)
         push = place.slopes.copy()
         for row in range(self._first_line, len(push)):
             push[row] = across(push[row].reshape(-1, 3))
