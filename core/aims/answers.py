@@ -1,0 +1,176 @@
+"""Exact answers of a design at other lengths of its lines, each with how it moves with them (ours)."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.aims.readings import Read
+from core.comparison import shape_of
+from core.exact import solve_exact
+from core.mesh import Floats, Points
+from core.pipeline import Stages, targets_of
+from core.solving.body_volume import body_kept, solve_body_exact
+from core.solving.condition import CALM_RANGE
+from core.solving.newton import Balance
+from core.solving.potential import Potential
+from core.solving.sensitivity import Answer, Rates
+
+PERCENT = 0.01
+"""Lengths are sought in percent of those at rest: figures then change by about a millimetre [1]."""
+
+_SHARP = 2000.0  # of the smooth least margin: where ten edges strain alike it is 0.001 too careful
+
+_ALIKE = 1e-3  # two answers that are the same [mm]
+
+
+class NoBalanceError(Exception):
+    """There is no balance at the lengths that were tried."""
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """One exact answer: ``points`` (n, 3) [mm], and figures with their slopes by the p lengths [1 / %].
+
+    ``values`` (m,) [mm] are what is asked for, ``pulls`` (lines,) the tension of each line in the model's
+    unit, ``margin`` [1] how far the shape is from straining beyond CALM_RANGE, negative where it does.
+    """
+
+    points: Points
+    values: Floats
+    by_values: Floats
+    pulls: Floats
+    by_pulls: Floats
+    margin: float
+    by_margin: Floats
+
+
+class Answers:
+    """Worked out on demand and kept: those of a design whose ``groups`` of lines change together.
+
+    ``reads`` are the figures that are looked at. Each answer begins near the one before, which is quicker,
+    until ``checked`` finds that rest leads elsewhere.
+    """
+
+    def __init__(self, stages: Stages, groups: Sequence[tuple[str, ...]], reads: Sequence[Read]) -> None:
+        self._stages, self._reads = stages, reads
+        names = [line.name for line in stages.model.lines]
+        self._groups = [[names.index(name) for name in group] for group in groups]
+        self._ratios = np.array(targets_of(stages.design, stages).ratios)
+        rest = stages.model.sums(stages.model.segments.rest_lengths)
+        self._natural = np.zeros((len(names), len(groups)))
+        for column, group in enumerate(self._groups):
+            self._natural[group, column] = PERCENT * rest[group]
+        self._edges = shape_of(stages.model)
+        self._near: Balance | None = None
+        self._from_rest = False
+        self._looks: dict[bytes, Look] = {}
+        self._count = 0
+
+    def __len__(self) -> int:
+        """The number of answers that were worked out."""
+        return self._count
+
+    def __call__(self, lengths: Floats) -> Look:
+        """Return the exact answer at ``lengths``, one a group, shape (p,) [%]. Raises NoBalanceError."""
+        key = np.asarray(lengths, dtype=np.float64).tobytes()
+        if key not in self._looks:
+            self._looks[key] = self._look(lengths)
+        return self._looks[key]
+
+    def checked(self, lengths: Floats) -> bool:
+        """Tell whether rest leads to the answer at ``lengths`` (p,) [%]; if not, all begin there from now on.
+
+        Under sliding lines there may be several equilibria; what a design is solved to is that from rest.
+        """
+        if not self._from_rest:
+            before, self._near = self(lengths), None
+            try:
+                there = self._look(lengths)
+                self._from_rest = bool(np.abs(there.points - before.points).max() > _ALIKE)
+            except NoBalanceError:
+                self._from_rest = True
+            if self._from_rest:
+                self._looks.clear()
+                return False
+        return True
+
+    def _look(self, lengths: Floats) -> Look:
+        self._count += 1
+        ratios = self._ratios.copy()
+        for group, length in zip(self._groups, lengths, strict=True):
+            ratios[group] = PERCENT * length
+        answer = self._answer(tuple(ratios.tolist()))
+        points = answer.place.points
+        rates = self._rates(answer)
+        figures = [read(points) for read in self._reads]
+        slopes = np.stack([self._by_free(figure.slopes) for figure in figures])
+        return Look(
+            points,
+            np.array([figure.value for figure in figures]),
+            rates.of(slopes),
+            *answer.tensions(rates, self._natural),
+            *self._margin(points, rates),
+        )
+
+    def _answer(self, ratios: tuple[float, ...]) -> Answer:
+        model, excess = self._stages.model, None
+        if self._stages.design.dense_volume:
+            balance = solve_body_exact(model, ratios, self._stages.body_change, near=self._near)
+            points = model.tensegric.expand(balance.state.moved)
+            excess = model.volume.side_volumes(points) - model.rest_sides
+        else:
+            balance = solve_exact(model, ratios, near=self._near)
+        if not balance.found:
+            raise NoBalanceError
+        self._near = None if self._from_rest else balance
+        return Answer(Potential(model, ratios, excess), balance)
+
+    def _rates(self, answer: Answer) -> Rates:
+        """Return the rates by the lengths of the groups, in percent. Raises NoBalanceError."""
+        stages, points = self._stages, answer.place.points
+        try:
+            rates = answer.by_ratio(np.arange(len(stages.model.lines))).summed(self._groups, PERCENT)
+        except ValueError as unbounded:
+            raise NoBalanceError from unbounded
+        if not stages.design.dense_volume:
+            return rates
+        binding, moving = stages.binding, stages.moving
+        places = binding.operator.added(binding.change(points), moving.rest)
+        sides = moving.side_volume_slopes(places)[:, : moving.count]
+        slopes = np.stack([self._by_free(binding.pulled(points, side)) for side in sides])
+        return body_kept(rates, answer.by_excess, slopes, each=stages.model.mechanics.volume_of == "each")
+
+    def _by_free(self, slopes: Points) -> Floats:
+        return np.asarray(slopes[self._stages.model.tensegric.free].ravel())
+
+    def _margin(self, points: Points, rates: Rates) -> tuple[float, Floats]:
+        """Return about how far the edges are from straining and its slopes by the lengths, shape (p,)."""
+        shape = self._edges
+        spans, rest = (at[shape.edges[:, 0]] - at[shape.edges[:, 1]] for at in (points, shape.rest))
+        long, at_rest = np.linalg.norm(spans, axis=1), np.linalg.norm(rest, axis=1)
+        low, high = CALM_RANGE
+        margins = np.concatenate([long / at_rest - low, high - long / at_rest])
+        least = margins.min()
+        share = np.exp(_SHARP * (least - margins))
+        both = np.subtract(*np.split(share / share.sum(), 2)) / (long * at_rest)
+        slopes = np.zeros_like(points)
+        for end, sign in zip(shape.edges.T, (1.0, -1.0), strict=True):
+            np.add.at(slopes, end, sign * both[:, None] * spans)
+        return float(least - np.log(share.sum()) / _SHARP), rates.of(self._by_free(slopes))
+
+
+def free_lines(stages: Stages, kept: Collection[str] = ()) -> Iterator[tuple[str, ...]]:
+    """Yield the worn lines that may change and move anything, linked ones together.
+
+    Those that are locked may not, and none of ``kept``.
+    """
+    design, seen = stages.design, set(kept)
+    moving = {line.name for line in stages.model.lines if line.constrains} & design.worn()
+    for name in sorted(moving):
+        group = tuple(each for each in design.linked(name) if each in moving)
+        if not (seen & set(group) or design.traits_of(name).locked):
+            seen |= set(group)
+            yield group

@@ -1,0 +1,260 @@
+"""The search for the lengths of lines that lead to what is wished, with least tension (ours).
+
+The exact answer tells how each figure moves with each length (``core.solving.sensitivity``), so a few answers
+lead to the wished one. First the nearest that the lines can do is found; if that is what was wished, the
+least tension among all lengths that do it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
+from functools import reduce
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from scipy.optimize import lsq_linear, minimize
+
+from core.aims.answers import PERCENT, Answers, Look, NoBalanceError, free_lines
+from core.aims.readings import reading
+from core.design import Design
+from core.errors import UserError
+from core.lines import RATIO_LIMITS
+from core.mesh import Floats
+from core.pipeline import Stages
+from core.progress import Progress, quiet
+
+NEAR = 0.05
+"""A figure this near to what was asked for is what was asked for [mm]."""
+
+LOOSEST = 1.0
+"""A line is not asked to be longer than at rest: it would push [1]."""
+
+_STEPS = 40  # answers after which a search is given up
+_HALFWAY = 0.9  # ratio at which a search begins anew
+_TRIES, _GOOD = 12, 1e-3  # steps to less tension, and a part of it that is not worth another
+_BOLD, _LAST = 8.0, 1e-4  # the longest step tried and the shortest [%]
+_EXACT = 1e-8  # [mm^2]
+_LAZY = 1e-3  # of several ways that do the same, the shortest [mm / %]
+_STRICT = 10_000.0  # a limit that is broken by a ten-thousandth counts as a figure 1 mm off
+_INSIDE = 2e-4  # so far inside the limit of strain lengths stay [1]
+_BROKEN, _AT_LIMIT = -1e-4, 1e-3  # room to a limit [1]
+_AT_END = 0.01  # [%]
+_SLACK = 0.03  # of the tension at the start: about as much counts as none
+
+Slopes = tuple[float, Floats]
+
+
+@dataclass(frozen=True)
+class Goal:
+    """A figure that is asked for, one of ``readings.NAMES``, and the ``value`` it is to have [mm]."""
+
+    name: str
+    value: float
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """What lines may do: ``shortest`` [1] are least ratios by name; those ``kept`` stay as locked ones do."""
+
+    shortest: Mapping[str, float]
+    kept: Collection[str] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Lengths that were found, with the exact answer there, and what keeps them from going on.
+
+    ``reached`` tells whether the answer is what was asked for. ``at_end`` names the lines as short or as long
+    as they may be, ``pulled`` those with the most tension they may have; ``strained`` tells that the shape
+    would strain beyond what looks natural.
+    """
+
+    design: Design
+    look: Look
+    reached: bool
+    at_end: tuple[str, ...]
+    pulled: tuple[str, ...]
+    strained: bool
+
+
+class Search:
+    """The free lengths of a design as unknowns, shape (p,) [%], and what is wanted of them.
+
+    ``start`` are the lengths that it has; ``hardest`` is the most that lines may pull with, by name, in the
+    model's unit. Raises UserError if no line is free or nothing is asked.
+    """
+
+    hardest: Mapping[str, float] = MappingProxyType({})
+
+    def __init__(
+        self, stages: Stages, goals: Sequence[Goal], bounds: Bounds, progress: Progress = quiet
+    ) -> None:
+        self.stages, self._progress = stages, progress
+        self._groups = list(free_lines(stages, bounds.kept))
+        if not goals or not self._groups:
+            raise UserError(
+                "No line that moves the body may change.", "Wear one that is not locked, and name a figure."
+            )
+        self._answers = Answers(stages, self._groups, [reading(stages, goal.name) for goal in goals])
+        self._wanted = np.array([goal.value for goal in goals])
+        low = [
+            max(RATIO_LIMITS[0], *(bounds.shortest.get(name, 0.0) for name in each)) for each in self._groups
+        ]
+        self._low, self._high = np.array(low) / PERCENT, np.maximum(low, LOOSEST) / PERCENT
+        set_ = [stages.design.ratio(group[0]) / PERCENT for group in self._groups]
+        self.start = np.clip(set_, self._low, self._high)
+
+    def __len__(self) -> int:
+        """The number of answers that were worked out."""
+        return len(self._answers)
+
+    def at(self, lengths: Floats) -> Look:
+        """Return the exact answer at ``lengths``. Raises NoBalanceError, Cancelled."""
+        self._progress("asking", min(len(self) / _STEPS, 1.0))
+        return self._answers(lengths)
+
+    def least(self) -> Floats:
+        """Return the lengths that come nearest to what is wanted, with the least tension if they reach it.
+
+        Raises NoBalanceError if there is no balance at the start, Cancelled.
+        """
+        return self._checked(lambda: self._least_tension(self._near_by()))
+
+    def nearest(self) -> Floats:
+        """Return lengths that come nearest to what is wanted. Raises as ``least`` does."""
+        return self._checked(self._near_by)
+
+    def _checked(self, search: Callable[[], Floats]) -> Floats:
+        lengths = search()
+        return lengths if self._answers.checked(lengths) else search()
+
+    def _near_by(self) -> Floats:
+        """Return the nearest from the start or, if that does not reach what is wanted, from elsewhere."""
+        best = self._nearest(self.start)
+        for other in (1.0, _HALFWAY):
+            if self._reached(self.at(best)):
+                break
+            begin = np.clip(np.full(len(best), other / PERCENT), self._low, self._high)
+            if self._look(begin) is not None:
+                best = min(best, self._nearest(begin), key=lambda lengths: self._amiss(self.at(lengths)))
+        return best
+
+    def _nearest(self, start: Floats) -> Floats:
+        """Return where steps after Gauss and Newton lead from ``start``, none of them too bold."""
+        here, reach, most = start, _BOLD, len(self) + _STEPS
+        look = self.at(here)
+        while reach > _LAST and len(self) < most and self._amiss(look) > _EXACT:
+            there = np.clip(here + self._towards(here, look, reach), self._low, self._high)
+            if np.abs(there - here).max() < _LAST:
+                break
+            seen = self._look(there)
+            if seen is not None and self._amiss(seen) < self._amiss(look):
+                here, look, reach = there, seen, min(2.0 * reach, _BOLD)
+            else:
+                reach /= 4.0
+        return here
+
+    def _least_tension(self, start: Floats) -> Floats:
+        """Return lengths that reach what ``start`` reaches with less tension; ``start`` if none are found."""
+        before = self.at(start)
+        if not self._reached(before) or len(start) <= len(self._wanted):
+            return start
+        unit = max(float(np.abs(before.pulls).sum()), 1e-9)
+
+        def tension(lengths: Floats) -> Slopes:
+            return _tension(self.at(lengths), unit)
+
+        wanted = _constraint("eq", lambda at: (self.at(at).values - self._wanted, self.at(at).by_values))
+        limits = _constraint("ineq", lambda at: [part / PERCENT for part in self._room(self.at(at))])
+        try:
+            found = self._least(tension, start, [wanted, limits])
+            after = self.at(found)
+        except NoBalanceError:
+            return start
+        less = _tension(after, unit)[0] < _tension(before, unit)[0]
+        return found if self._reached(after) and less else start
+
+    def found(self, lengths: Floats) -> Found:
+        """Return what was found at ``lengths``."""
+        look = self.at(lengths)
+        set_ = [round(float(length) * PERCENT, 6) for length in lengths]
+        both = zip(self._groups, set_, strict=True)
+        ratios = [(name, ratio) for group, ratio in both for name in group]
+        design = reduce(lambda design, each: design.with_line(*each), ratios, self.stages.design)
+        ends = np.abs(np.stack([lengths - self._low, lengths - self._high])).min(axis=0) < _AT_END
+        at_end = tuple(
+            name for group, there in zip(self._groups, ends, strict=True) if there for name in group
+        )
+        strain, *pulls = (self._room(look)[0] < _AT_LIMIT).tolist()
+        pulled = tuple(name for name, there in zip(self.hardest, pulls, strict=True) if there)
+        return Found(design, look, self._reached(look), at_end, pulled, strain)
+
+    def _look(self, lengths: Floats) -> Look | None:
+        try:
+            return self.at(lengths)
+        except NoBalanceError:
+            return None
+
+    def _room(self, look: Look) -> tuple[Floats, Floats]:
+        """Return the room to strain and to the most tensions, (k,) [1], and its slopes, (k, p)."""
+        names = [line.name for line in self.stages.model.lines]
+        most = [(names.index(name), pull) for name, pull in self.hardest.items()]
+        rows = [1.0 - look.pulls[line] / pull for line, pull in most]
+        slopes = [-look.by_pulls[line] / pull for line, pull in most]
+        return np.array([look.margin - _INSIDE, *rows]), np.stack([look.by_margin, *slopes])
+
+    def _reached(self, look: Look) -> bool:
+        near = np.abs(look.values - self._wanted).max() < NEAR
+        return bool(near and self._room(look)[0].min() > _BROKEN)
+
+    def _amiss(self, look: Look) -> float:
+        """Return how far a look is from what is wanted, and how far it breaks limits besides [mm^2]."""
+        away, broken = look.values - self._wanted, _STRICT * np.minimum(self._room(look)[0], 0.0)
+        return float(away @ away + broken @ broken)
+
+    def _towards(self, here: Floats, look: Look, reach: float) -> Floats:
+        """Return the step, no longer than ``reach`` [%], that leaves least amiss if all is linear.
+
+        Room that is left to a limit is an unknown of its own, which may not be negative.
+        """
+        room, by_room = self._room(look)
+        count, limits = len(here), len(room)
+        matrix = np.block(
+            [
+                [look.by_values, np.zeros((len(self._wanted), limits))],
+                [_LAZY * np.eye(count), np.zeros((count, limits))],
+                [_STRICT * by_room, -_STRICT * np.eye(limits)],
+            ]
+        )
+        right = np.concatenate([self._wanted - look.values, np.zeros(count), -_STRICT * room])
+        low, high = (np.clip(end - here, -reach, reach) for end in (self._low, self._high))
+        # No line may stand still for lack of room between its ends.
+        low, high = np.minimum(low, -1e-9), np.maximum(high, 1e-9)
+        ends = np.append(low, np.zeros(limits)), np.append(high, np.full(limits, np.inf))
+        return np.asarray(lsq_linear(matrix, right, ends, method="bvls").x[:count])
+
+    def _least(
+        self, figure: Callable[[Floats], Slopes], start: Floats, constraints: list[dict[str, Any]]
+    ) -> Floats:
+        """Return where ``figure`` is least under ``constraints``."""
+        how: dict[str, Any] = {"jac": True, "bounds": list(zip(self._low, self._high, strict=True))}
+        how |= {"constraints": constraints, "options": {"maxiter": _TRIES, "ftol": _GOOD}}
+        found = minimize(figure, start, method="SLSQP", **how)
+        return np.asarray(np.clip(found.x, self._low, self._high))
+
+
+def _tension(look: Look, unit: float) -> Slopes:
+    """Return the sum of all tensions over ``unit`` and its slopes, shape (p,).
+
+    A line that pushes counts as slack; the way from pulling to slack is smooth.
+    """
+    pulls, by_pulls = look.pulls / unit, look.by_pulls / unit
+    size = np.hypot(pulls, _SLACK)
+    return 0.5 * float((pulls + size).sum()), 0.5 * np.asarray((1.0 + pulls / size) @ by_pulls)
+
+
+def _constraint(kind: str, figures: Callable[[Floats], Sequence[Floats]]) -> dict[str, Any]:
+    """Return the constraint that ``figures``, values and slopes, are nothing or at least nothing."""
+    return {"type": kind, "fun": lambda at: figures(at)[0], "jac": lambda at: figures(at)[1]}

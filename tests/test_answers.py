@@ -1,0 +1,72 @@
+"""Exact answers at other lengths with their slopes: against differences; which lines may change."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from slopes import doubled, slope
+
+from app.wording.samples import sample_design
+from core.aims.answers import Answers, free_lines
+from core.aims.readings import reading
+from core.pipeline import Stages, build
+from core.presets import built_in, with_preset
+
+GROUPS = [("mid-bust",), ("full-bust",)]
+HERE = np.array([91.0, 96.0])
+CHOICES = (
+    {},
+    {"line_contact": "sliding"},
+    {"line_hold": "held"},
+    {"member_law": "co-rotated"},
+    {"dense_volume": True},
+    {"dense_volume": True, "volume_of": "both"},
+)
+
+
+@pytest.fixture(scope="module")
+def plain() -> Stages:
+    design = sample_design().with_line("mid-bust", 0.9).with_line("full-bust", 0.95)
+    return build(replace(design, volume="exact"))
+
+
+@pytest.mark.parametrize("choice", CHOICES, ids=str)
+def test_slopes_are_those_of_differences(plain: Stages, choice: dict[str, str | bool]) -> None:
+    stages = doubled(build(replace(plain.design, **choice), plain))
+    answers = Answers(stages, GROUPS, [reading(stages, name) for name in ("lift", "out left", "girth")])
+    look = answers(HERE)
+    for column, way in enumerate(np.eye(2)):
+
+        def figures(t: float, way: np.ndarray = way) -> np.ndarray:
+            there = answers(HERE + t * way)
+            return np.concatenate([there.values, there.pulls, [there.margin]])
+
+        expected = slope(figures, 0.01)
+        told = np.concatenate([look.by_values, look.by_pulls, look.by_margin[None]])[:, column]
+        assert told == pytest.approx(expected, rel=1e-6, abs=1e-6 * np.abs(expected).max())
+
+
+def test_answers_are_those_from_rest_and_worked_out_once(plain: Stages) -> None:
+    answers = Answers(plain, GROUPS, [reading(plain, "out")])
+    assert answers(HERE) is answers(HERE.copy())
+    assert len(answers) == 1
+    assert answers.checked(HERE)
+
+
+def test_locked_kept_and_still_lines_stay_and_linked_ones_go_together(plain: Stages) -> None:
+    straps = next(each for each in built_in() if any("strap" in line.line for line in each.lines))
+    design = with_preset(plain.design, straps)
+    for name in sorted(design.worn()):
+        design = design.with_line(name, 0.95)
+    stages = build(design, plain)
+    groups = list(free_lines(stages))
+    assert ("strap left", "strap right") in groups
+    assert all(line.constrains for group in groups for line in stages.model.lines if line.name in group)
+    assert ("strap left", "strap right") not in list(free_lines(stages, ["strap right"]))
+    locked = design.with_traits(replace(design.traits_of("mid-bust"), locked=True))
+    assert ("mid-bust",) in groups
+    assert ("mid-bust",) not in list(free_lines(build(locked, stages)))
+    alone = design.with_line("strap right", 0.9)
+    assert ("strap left",) in list(free_lines(build(alone, stages)))

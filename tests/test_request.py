@@ -1,0 +1,151 @@
+"""Ask for the result: known designs are met, what cannot be is told with its reason, limits are kept."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from app.wording.samples import sample_design
+from core.aims.reaching import NEAR, Bounds, Goal, Search
+from core.aims.readings import reading
+from core.elastics import find_elastic
+from core.errors import UserError
+from core.pipeline import Stages, build
+from core.progress import Cancelled
+from core.request import Reply, ask
+from core.sewing.comfort import comfort
+from core.solution import run
+from core.solving.newtons import newtons_per_unit
+from core.studies.limits import limits_of
+
+CONTACTS = ("glued", "sliding")
+
+
+@pytest.fixture(scope="module")
+def rest() -> Stages:
+    design = replace(sample_design(), volume="exact")
+    return build(design.with_line("mid-bust", 1.0).with_line("full-bust", 1.0))
+
+
+def wearing(stages: Stages, mid: float, full: float, **choices: object) -> Stages:
+    design = replace(stages.design.with_line("mid-bust", mid).with_line("full-bust", full), **choices)
+    return build(design, stages)
+
+
+def figure(stages: Stages, name: str) -> float:
+    """What a design is solved to, from rest, as every other command does it."""
+    return reading(stages, name)(run(stages).control_points).value
+
+
+def goals_of(stages: Stages, *names: str) -> list[Goal]:
+    return [Goal(name, figure(stages, name)) for name in names]
+
+
+def off(reply: Reply, stages: Stages, goals: list[Goal]) -> float:
+    solved = build(reply.design, stages)
+    return max(abs(figure(solved, goal.name) - goal.value) for goal in goals)
+
+
+@pytest.mark.parametrize("contact", CONTACTS)
+@pytest.mark.parametrize("names", [("girth",), ("out",), ("lift", "girth")], ids=" ".join)
+def test_what_a_known_design_does_is_found(rest: Stages, names: tuple[str, ...], contact: str) -> None:
+    truth = wearing(rest, 0.93, 0.97, line_contact=contact)
+    start = wearing(rest, 1.0, 1.0, line_contact=contact)
+    goals = goals_of(truth, *names)
+    reply = ask(start, goals)
+    assert reply.reachable
+    assert off(reply, start, goals) < 2.0 * NEAR
+    assert reply.miss == pytest.approx(off(reply, start, goals), abs=1e-3)
+    assert reply.design.worn() == start.design.worn()
+
+
+def test_of_all_lengths_that_reach_it_those_with_least_tension_are_taken(rest: Stages) -> None:
+    goals = goals_of(wearing(rest, 0.93, 0.97), "girth")
+    search, best = Search(rest, goals, Bounds({})), ask(rest, goals)
+    newtons = newtons_per_unit(rest.model, rest.design.tissue_stiffness)
+    assert best.tension < 0.99 * newtons * search.at(search.nearest()).pulls.clip(0.0).sum()
+    for mid in (0.95, 0.97, 1.0):
+        alone = ask(wearing(rest, mid, 1.0), goals, kept=["mid-bust"])
+        assert not alone.reachable or best.tension < alone.tension + 0.05
+
+
+@pytest.mark.parametrize("contact", CONTACTS)
+def test_lengths_stay_where_the_body_looks_natural(rest: Stages, contact: str) -> None:
+    start = wearing(rest, 1.0, 1.0, line_contact=contact)
+    reply = ask(start, [Goal("out", -40.0)])
+    assert not reply.reachable
+    assert reply.strained or reply.at_end
+    solved = build(reply.design, start)
+    condition = run(solved).verdict.condition
+    assert condition is not None
+    assert not condition.strained
+    for line in reply.design.lines:
+        limits = limits_of(solved, line.name)
+        begins = limits.begins["strained"]
+        assert "strained" not in limits.beyond
+        # One that begins at rest is the other lines' doing: this one, shorter, takes it away.
+        assert begins is None or begins.ratio == 1.0 or line.ratio > begins.ratio - 0.001
+
+
+def test_lines_that_are_as_short_or_as_long_as_they_may_be_are_named(rest: Stages) -> None:
+    reply = ask(rest, [Goal("girth", 700.0)], shortest={"full-bust": 0.98, "mid-bust": 0.99})
+    assert (reply.reachable, set(reply.at_end)) == (False, {"full-bust", "mid-bust"})
+    assert {line.name: line.ratio for line in reply.design.lines} == {"full-bust": 0.98, "mid-bust": 0.99}
+    wider = ask(rest, [Goal("girth", 1000.0)])
+    assert not wider.reachable
+    assert set(wider.at_end) == {"full-bust", "mid-bust"}
+
+
+def test_locked_and_kept_lines_stay(rest: Stages) -> None:
+    start = wearing(rest, 0.95, 1.0)
+    locked = start.design.with_traits(replace(start.design.traits_of("mid-bust"), locked=True))
+    goals = goals_of(wearing(rest, 0.95, 0.97), "girth")
+    for reply in (ask(build(locked, start), goals), ask(start, goals, kept=["mid-bust"])):
+        assert reply.reachable
+        assert reply.design.ratio("mid-bust") == 0.95
+        assert reply.design.ratio("full-bust") == pytest.approx(0.97, abs=1e-3)
+
+
+def test_what_cannot_be_asked_is_refused(rest: Stages) -> None:
+    with pytest.raises(UserError, match="No line that moves the body may change"):
+        ask(rest, [Goal("out", -1.0)], kept=["mid-bust", "full-bust"])
+    with pytest.raises(UserError, match="cannot be asked for"):
+        ask(rest, [Goal("waist", 700.0)])
+
+
+def test_it_can_be_stopped(rest: Stages) -> None:
+    def stop(what: str, share: float) -> None:
+        raise Cancelled
+
+    with pytest.raises(Cancelled):
+        ask(rest, [Goal("out", -1.0)], progress=stop)
+
+
+def elastics(stages: Stages, mid: float, full: float) -> Stages:
+    design = wearing(stages, mid, full).design.with_elastic("mid-bust", find_elastic("plush 12"))
+    return build(design.with_elastic("full-bust", find_elastic("plush 12")), stages)
+
+
+def test_lines_of_elastic_are_asked_again_until_figures_agree(rest: Stages) -> None:
+    start, truth = elastics(rest, 0.95, 0.95), elastics(rest, 0.8, 0.9)
+    goals = goals_of(truth, "girth", "out")
+    reply = ask(start, goals)
+    assert reply.reachable
+    assert reply.agreed
+    assert off(reply, start, goals) < 2.0 * NEAR
+    assert set(reply.pressure) == {"mid-bust", "full-bust"}
+    assert not reply.unseen
+
+
+def test_no_elastic_presses_more_than_it_may(rest: Stages) -> None:
+    limit = comfort().red_kpa
+    reply = ask(elastics(rest, 0.95, 0.95), [Goal("out", -8.0)])
+    assert not reply.reachable
+    assert reply.pressing
+    assert max(reply.pressure.values()) < 1.02 * limit
+
+
+def test_what_is_not_made_of_elastic_is_not_looked_at_for_pressure(rest: Stages) -> None:
+    reply = ask(rest, [Goal("out", -2.0)])
+    assert (dict(reply.pressure), reply.unseen) == ({}, ("full-bust", "mid-bust"))
