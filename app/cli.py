@@ -109,6 +109,16 @@ def solve(options: argparse.Namespace) -> int:
     return SETTLED if found.settled else NOT_SETTLED
 
 
+def ask(options: argparse.Namespace) -> int:
+    """Find the lengths of lines that bring the body to what is wished, and print them."""
+    from app.commands.asked import AskWishes, asked_text, run_ask
+
+    wishes = AskWishes(options.want, options.lock or [], options.shortest or [], options.out)
+    design = design_of(options.input, options)
+    asked = run_ask(options.input, design, options.line or [], options.elastic or [], wishes)
+    return _told(asked_text(asked, options.json), asked.reply.reachable, [])
+
+
 def limits(options: argparse.Namespace) -> int:
     """Print how short each line can be made before the body strains, folds or turns inside out."""
     from app.commands.limits import limits_text
@@ -261,6 +271,7 @@ def _folder(name: str) -> Path:
 
 COMMANDS: dict[str, Callable[[argparse.Namespace], int]] = {
     "solve": solve,
+    "ask": ask,
     "limits": limits,
     "detect": detect,
     "measure": measure,

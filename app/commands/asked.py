@@ -1,0 +1,192 @@
+"""What ``busk ask`` does: lengths of lines are found that bring the body to what is wished, and told."""
+
+from __future__ import annotations
+
+import json
+import re
+import unicodedata
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from app.commands.settings import dressed, made_of
+from core import __version__
+from core.aims.reaching import Goal
+from core.aims.readings import GIRTH, NAMES
+from core.design import Design
+from core.document import Document
+from core.errors import LineError, UserError
+from core.lines import Line, length_ratio
+from core.pipeline import Stages, build
+from core.project import SUFFIX, is_project, open_project, save_project
+from core.request import Reply, ask
+from core.sewing.comfort import comfort
+
+WANT_HELP = (
+    "what the body is to have, in mm (also cm, in); may be repeated. lift and out: how far the bust points "
+    "rise and come out from where they are at rest; girth: the tape round the body at their height. The "
+    "names are: " + ", ".join(NAMES)
+)
+"""What a user has to know to ask."""
+
+_WANT = re.compile(r"\s*([a-z ]+?)\s*=\s*([+-]?\d+(?:[.,]\d+)?)\s*(mm|cm|in)?\s*")
+_MM = {None: 1.0, "mm": 1.0, "cm": 10.0, "in": 25.4}
+_LARGEST = 10_000.0  # mm
+
+
+@dataclass(frozen=True)
+class AskWishes:
+    """What is asked as it is written: NAME=VALUE, LINE, LINE=LENGTH each; ``out`` a project, or empty."""
+
+    want: Sequence[str]
+    lock: Sequence[str] = ()
+    shortest: Sequence[str] = ()
+    out: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """The ``reply`` to ``goals`` for a design as it was before, ``stages``; ``out`` is where it was saved."""
+
+    stages: Stages
+    goals: tuple[Goal, ...]
+    reply: Reply
+    out: str
+
+
+def run_ask(
+    source: str, design: Design, lengths: Sequence[str], elastics: Sequence[str], wishes: AskWishes
+) -> Asked:
+    """Ask of a design with ``lengths``, NAME=LENGTH, and ``elastics``, LINE=ELASTIC, what is wished.
+
+    ``source`` is the file it came from. Raises UserError, before anything is worked out if a wish cannot be.
+    """
+    goals = goals_of(wishes.want)
+    if wishes.out and not is_project(wishes.out):
+        raise UserError(f"{wishes.out} is no name of a project.", f"Name one: --out design{SUFFIX}.")
+    stages = build(design)
+    design = made_of(dressed(design, stages.model.lines, lengths), elastics)
+    if not design.lines:
+        raise LineError("No line is worn.", "Wear those that may be used: --line mid-bust=100%.")
+    stages = build(design, stages)
+    worn = {line.name.lower(): line for line in stages.model.lines if line.name in design.worn()}
+    kept = [_worn(worn, name, name).name for name in wishes.lock]
+    reply = ask(stages, goals, dict(_shortest(worn, each) for each in wishes.shortest), kept)
+    if wishes.out:
+        document = open_project(source) if is_project(source) else Document.of(reply.design)
+        save_project(wishes.out, document.with_design(reply.design), stages.scan, None)
+    return Asked(stages, goals, reply, wishes.out)
+
+
+def goals_of(wants: Sequence[str]) -> tuple[Goal, ...]:
+    """Return what is wanted: NAME=VALUE each. Raises UserError with the right names."""
+    goals: dict[str, Goal] = {}
+    for want in wants:
+        match = _WANT.fullmatch(unicodedata.normalize("NFKC", want).replace("\N{MINUS SIGN}", "-").lower())
+        name = " ".join(match[1].split()) if match else ""
+        if match is None or name not in NAMES:
+            names = ", ".join(NAMES)
+            raise UserError(f"'{want}' cannot be asked for.", f"Write NAME=12mm; the names are: {names}.")
+        value = float(match[2].replace(",", ".")) * _MM[match[3]]
+        if abs(value) > _LARGEST:
+            raise UserError(f"'{want}' is no length of a body.", "Write millimetres, or cm or in behind it.")
+        if name in goals:
+            raise UserError(f"{name} is asked for twice.", "Ask once.")
+        goals[name] = Goal(name, value)
+    if not goals:
+        raise UserError("Nothing is asked for.", "Name a figure: --want lift=5mm.")
+    return tuple(goals.values())
+
+
+def _worn(worn: Mapping[str, Line], name: str, request: str) -> Line:
+    if name.strip().lower() not in worn:
+        names = ", ".join(line.name for line in worn.values())
+        raise LineError(f"'{request}' names no worn line.", f"Worn are: {names}.")
+    return worn[name.strip().lower()]
+
+
+def _shortest(worn: Mapping[str, Line], request: str) -> tuple[str, float]:
+    name, _, text = request.partition("=")
+    line = _worn(worn, name, request)
+    return line.name, length_ratio(text, line.name, line.rest_length, line.whole_length)
+
+
+def asked_text(asked: Asked, as_json: bool) -> str:
+    """Return what is to be printed: sentences for people, or the same figures as JSON."""
+    return json.dumps(_figures(asked), indent=1) if as_json else "\n".join(_plain(asked))
+
+
+def _plain(asked: Asked) -> Iterator[str]:
+    reply = asked.reply
+    yield f"{'':12}{'asked for':>12}{'reached':>12}"
+    for goal in asked.goals:
+        sign = "" if goal.name == GIRTH else "+"
+        wanted, got = (f"{value:{sign}.1f} mm" for value in (goal.value, reply.reached[goal.name]))
+        yield f"{goal.name:12}{wanted:>12}{got:>12}"
+    for line in asked.stages.model.lines:
+        if line.name in reply.design.worn():
+            ratio, before = (design.ratio(line.name) for design in (reply.design, asked.stages.design))
+            length = f"{100.0 * ratio:.1f} %, {ratio * line.rest_length:.1f} mm of the front part"
+            same = abs(ratio - before) < 5e-4
+            yield f"{line.name}: {length}; {'as before' if same else f'before {100.0 * before:.1f} %'}"
+    yield _verdict(reply)
+    estimate = "" if not reply.unseen else ", an estimate"
+    yield f"All lines together pull with {reply.tension:.1f} N{estimate}."
+    yield from _pressures(reply)
+    if asked.out:
+        yield f"written to {asked.out}"
+
+
+def _verdict(reply: Reply) -> str:
+    if reply.reachable:
+        return "Reached."
+    if not reply.agreed:
+        return "Not reached: lengths, elastics and pressures did not come to agree, so there may be better."
+    return f"Not reachable; this is the nearest, because {' and '.join(_reasons(reply))}."
+
+
+def _reasons(reply: Reply) -> list[str]:
+    """Return why what was asked for is not reached, as parts of a sentence."""
+    reasons = []
+    for name in reply.at_end:
+        long = reply.design.ratio(name) >= 1.0
+        reasons.append(f"{name} is as {'long' if long else 'short'} as it may be")
+    if reply.strained:
+        reasons.append("the body would be strained more than looks natural")
+    reasons += [f"{name} presses as hard as it may" for name in reply.pressing]
+    return reasons or ["these lines do not move the body that way"]
+
+
+def _pressures(reply: Reply) -> Iterator[str]:
+    limit = f"{comfort().red_kpa:g}"
+    for name, kpa in reply.pressure.items():
+        yield f"{name} presses with {kpa:.2f} kPa at most; it may with {limit}."
+    if reply.unseen:
+        yield f"Not looked at for pressure, as only lines made of elastic are: {', '.join(reply.unseen)}."
+
+
+def _figures(asked: Asked) -> dict[str, Any]:
+    reply, before = asked.reply, asked.stages.design
+    lines = {line.name: line for line in asked.stages.model.lines if line.name in reply.design.worn()}
+    return {
+        "figures": {
+            goal.name: {"wanted_mm": goal.value, "reached_mm": reply.reached[goal.name]}
+            for goal in asked.goals
+        },
+        "lines": {
+            name: {
+                "set_percent": 100.0 * reply.design.ratio(name),
+                "set_mm": reply.design.ratio(name) * line.rest_length,
+                "before_percent": 100.0 * before.ratio(name),
+            }
+            for name, line in lines.items()
+        },
+        "reached": reply.reachable,
+        "agreed": reply.agreed,
+        "because": [] if reply.reachable else _reasons(reply),
+        "tension_n": reply.tension,
+        "max_kpa": dict(reply.pressure),
+        "not_looked_at_for_pressure": list(reply.unseen),
+        "written_to": asked.out or None,
+        "versions": {"busk": __version__},
+    }

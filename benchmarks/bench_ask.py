@@ -1,0 +1,189 @@
+"""Ask for what a known design does: how often it is met, how long that takes.
+
+Run: python benchmarks/bench_ask.py [FOLDER] [--cases N] [--elastic N]; scans of a folder come
+to the two samples.
+In each of 200 cases glued or sliding lines, a set of them and their lengths are drawn by chance, such that
+the body looks natural; one to three figures of what comes out are asked for, with all lines at 100 %.
+Then 40 cases with two lines of elastic, from 97 %, that press no more than they may.
+Prints a line for each case, then what is met, what is missed, and processor time; --put puts that table into
+docs/ask.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from pages import put, table
+
+from app.wording.samples import SAMPLES, sample_design
+from core.aims.answers import free_lines
+from core.aims.reaching import Goal
+from core.aims.readings import GIRTH, NAMES, reading
+from core.design import Design, ScanSource
+from core.elastics import find_elastic
+from core.errors import UserError
+from core.pipeline import Stages, build
+from core.presets import built_in, with_preset
+from core.pressure import pressures
+from core.reading.scan_file import FORMATS
+from core.request import ask
+from core.sewing.comfort import comfort
+from core.solution import run
+
+MET = 0.5  # mm
+SHORTEST, SHORTEST_ELASTIC, LOOSE = 0.85, 0.75, 0.97
+ELASTICS = ("plush 12", "picot 10", "picot 12")
+TIMES = ("in the middle", "at 95 %", "at most")
+
+
+@dataclass(frozen=True)
+class Case:
+    """One question: the worst miss [mm], processor time [s], whether it was told to be reached."""
+
+    name: str
+    goals: tuple[Goal, ...]
+    miss: float
+    seconds: float
+    answers: int
+    told: bool
+
+
+def bodies(folder: Path | None) -> Iterator[Stages]:
+    """Yield the bodies, built; a scan on which no bust is found is left out."""
+    found = (
+        []
+        if folder is None
+        else sorted(path for path in folder.iterdir() if path.suffix.removeprefix(".") in FORMATS)
+    )
+    for design in (*map(sample_design, SAMPLES), *(Design(ScanSource(str(path))) for path in found)):
+        try:
+            yield build(replace(design, volume="exact", lines=()))
+        except UserError as why:
+            print(f"left out: {design.scan.name}: {why}")
+
+
+def worn(rng: np.random.Generator, stages: Stages) -> Stages:
+    """Return a design of two to four lines, or pairs of lines, that move anything, all at 100 %."""
+    contact = str(rng.choice(["glued", "sliding"]))
+    base = replace(stages.design, line_contact=contact)
+    while True:
+        presets = [*built_in(), None]
+        preset = presets[rng.integers(len(presets))]
+        design = base if preset is None else with_preset(base, preset)
+        for line in stages.model.lines if preset is None else ():
+            if line.constrains:
+                design = design.with_line(line.name, 1.0)
+        for name in sorted(design.worn()):
+            design = design.with_line(name, 1.0)
+        dressed = build(design, stages)
+        if 2 <= len(list(free_lines(dressed))) <= 4:
+            return dressed
+
+
+def of_elastic(rng: np.random.Generator, stages: Stages) -> Stages:
+    """Return a design of the two lines of the template that move, each of some elastic, at 97 %."""
+    design = replace(stages.design, line_contact=str(rng.choice(["glued", "sliding"])))
+    for line in stages.model.lines:
+        if line.constrains:
+            design = design.with_line(line.name, LOOSE)
+            design = design.with_elastic(line.name, find_elastic(str(rng.choice(ELASTICS))))
+    return build(design, stages)
+
+
+def known(rng: np.random.Generator, start: Stages) -> tuple[Stages, np.ndarray]:
+    """Return a design with lengths by chance, and its control points, where the body looks natural."""
+    while True:
+        design = start.design
+        elastic = start.design.worn_elastics()
+        for group in free_lines(start):
+            low, high = (SHORTEST_ELASTIC, LOOSE) if elastic else (SHORTEST, 1.0)
+            ratio = round(float(rng.uniform(low, high)), 4)
+            for name in group:
+                design = design.with_line(name, ratio)
+        stages = build(design, start)
+        solution = run(stages)
+        condition = solution.verdict.condition
+        if solution.verdict.motion != "settled" or condition is None or condition.strained:
+            continue
+        points = solution.control_points
+        if (
+            not elastic
+            or max(each.largest for each in pressures(stages, points).values()) < comfort().red_kpa
+        ):
+            return stages, points
+
+
+def case(rng: np.random.Generator, start: Stages) -> Case:
+    """Return how one question by chance is answered."""
+    truth, points = known(rng, start)
+    count = int(rng.integers(1, 1 + min(3, len(list(free_lines(start))))))
+    names = rng.choice(NAMES, count, replace=False).tolist()
+    goals = tuple(Goal(name, reading(truth, name)(points).value) for name in names)
+    begun = time.process_time()
+    reply = ask(start, goals)
+    seconds = time.process_time() - begun
+    solved = build(reply.design, start)
+    after = run(solved).control_points
+    miss = max(abs(reading(solved, goal.name)(after).value - goal.value) for goal in goals)
+    lines = ", ".join(f"{line.name} {100.0 * line.ratio:.1f}" for line in truth.design.lines)
+    name = f"{start.design.scan.name}, {start.design.line_contact}, {lines}"
+    return Case(name, goals, miss, seconds, reply.answers, reply.reachable)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", nargs="?", type=Path)
+    parser.add_argument("--cases", type=int, default=200)
+    parser.add_argument("--elastic", type=int, default=40, metavar="N", help="N more with lines of elastic")
+    parser.add_argument("--put", action="store_true", help="put the table into docs/ask.md")
+    options = parser.parse_args()
+    rng = np.random.default_rng(2027)
+    on, cases, made = list(bodies(options.folder)), [], []
+    for number in range(options.cases + options.elastic):
+        elastic = number >= options.cases
+        dressed = (of_elastic if elastic else worn)(rng, on[number % len(on)])
+        (made if elastic else cases).append(done := case(rng, dressed))
+        goals = ", ".join(f"{goal.name} {goal.value:.1f}" for goal in done.goals)
+        told = "" if done.told else ", told not to be reached"
+        print(
+            f"{done.miss:8.4f} mm {1e3 * done.seconds:6.0f} ms {done.answers:3} {done.name}: {goals}{told}",
+            flush=True,
+        )
+    girths = [each for each in cases if GIRTH in {goal.name for goal in each.goals}]
+    groups = {
+        "all": cases,
+        "glued": [each for each in cases if ", glued, " in each.name],
+        "sliding": [each for each in cases if ", sliding, " in each.name],
+        "a girth and another figure": [each for each in girths if len(each.goals) == 2],
+        "beside these: lines of elastic": made,
+    }
+    rows = [(name, *row(chosen)) for name, chosen in groups.items() if chosen]
+    heads = ("", "cases", f"met within {MET} mm", "told to be reached", "largest miss", *TIMES, "answers")
+    told = table(heads, rows)
+    print(told)
+    if options.put:
+        put("ask.md", "asked", told)
+
+
+def row(cases: list[Case]) -> tuple[str, ...]:
+    """Return what holds for some cases."""
+    ms = [1e3 * each.seconds for each in cases]
+    figures = statistics.median(ms), float(np.quantile(ms, 0.95)), max(ms)
+    return (
+        str(len(cases)),
+        str(sum(each.miss <= MET for each in cases)),
+        str(sum(each.told for each in cases)),
+        f"{max(each.miss for each in cases):.3f} mm",
+        *(f"{each:.0f} ms" for each in figures),
+        f"{statistics.median(each.answers for each in cases):.0f}",
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,85 @@
+"""busk ask: what is printed and saved, how it ends, and what is refused."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from shapes import SAMPLES
+
+from app.cli import BAD_INPUT, NOT_SETTLED, SETTLED, main
+from app.commands.asked import goals_of
+from core.aims.reaching import Goal
+from core.errors import UserError
+from core.project import open_project
+
+SCAN = str(SAMPLES / "mannequin.ply")
+WORN = ("--unit", "mm", "--up", "+z", "--front", "-y", "--line", "mid-bust=100%", "--line", "full-bust=100%")
+
+
+def test_wishes_are_read_as_people_write_them() -> None:
+    goals = goals_of(["lift=12mm", "out  left = -0,5 cm", "GIRTH=34.5in", "out right=−３"])
+    told = [(goal.name, pytest.approx(goal.value)) for goal in goals]
+    assert told == [("lift", 12.0), ("out left", -5.0), ("girth", 876.3), ("out right", -3.0)]
+    assert goals_of(["lift=1"]) == (Goal("lift", 1.0),)
+
+
+@pytest.mark.parametrize(
+    ("wants", "sentence"),
+    [
+        (["lift"], "cannot be asked for"),
+        (["lift=much"], "cannot be asked for"),
+        (["lift=nan"], "cannot be asked for"),
+        (["waist=700mm"], "the names are: lift, lift left"),
+        (["girth=88000mm"], "no length of a body"),
+        (["lift=1mm", "lift=2mm"], "asked for twice"),
+        ([], "Nothing is asked for"),
+    ],
+)
+def test_what_is_no_wish_is_refused(wants: list[str], sentence: str) -> None:
+    with pytest.raises(UserError) as refused:
+        goals_of(wants)
+    assert sentence in f"{refused.value.message} {refused.value.hint}"
+
+
+def test_what_is_reached_is_told_and_saved(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "found.busk"
+    assert main(["ask", SCAN, *WORN, "--want", "girth=870mm", "--out", str(out)]) == SETTLED
+    told = capsys.readouterr().out
+    assert re.search(r"^girth +870\.0 mm +870\.0 mm$", told, re.M)
+    assert "Reached." in told
+    design = open_project(out).design
+    for line in design.lines:
+        assert f"{line.name}: {100.0 * line.ratio:.1f} %" in told
+    assert main(["ask", str(out), "--want", "girth=870mm", "--json"]) == SETTLED
+    again = json.loads(capsys.readouterr().out)
+    assert again["figures"]["girth"]["reached_mm"] == pytest.approx(870.0, abs=0.05)
+    assert again["lines"]["mid-bust"]["before_percent"] == pytest.approx(100.0 * design.ratio("mid-bust"))
+
+
+def test_what_is_not_reached_ends_with_three_and_says_why(capsys: pytest.CaptureFixture[str]) -> None:
+    wishes = ("--want", "girth=700mm", "--lock", "mid-bust", "--shortest", "full-bust=99%")
+    assert main(["ask", SCAN, *WORN, *wishes]) == NOT_SETTLED
+    told = capsys.readouterr().out
+    assert "Not reachable; this is the nearest, because full-bust is as short as it may be." in told
+    assert "mid-bust: 100.0 %, 374.9 mm of the front part; as before" in told
+    assert "Not looked at for pressure" in told
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ((), "No line is worn"),
+        ((*WORN, "--lock", "wing"), "'wing' names no worn line. Worn are: mid-bust, full-bust."),
+        ((*WORN, "--shortest", "mid-bust=soon"), "is not a length for mid-bust"),
+        ((*WORN, "--lock", "mid-bust", "--lock", "full-bust"), "No line that moves the body may change"),
+        ((*WORN, "--out", "found.ply"), "no name of a project"),
+    ],
+)
+def test_what_cannot_be_asked_is_refused(
+    words: tuple[str, ...], sentence: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["ask", SCAN, *words, "--want", "lift=1mm"]) == BAD_INPUT
+    assert sentence in capsys.readouterr().err
