@@ -61,11 +61,13 @@ class Pointer(QObject):
         self._grip = self._drags = ""
         self._pin = ""
         self._hovered = self._hovered_pin = ""
+        self._reads = False
+        # Now, though there is no scene yet: what listens to the canvas after this one comes before it.
+        canvas.installEventFilter(self)
 
     def look_at(self, scene: Scene) -> None:
         """Read the pointer over this scene from now on."""
-        self._scene = scene
-        self._canvas.installEventFilter(self)
+        self._scene, self._reads = scene, True
 
     def let_go(self) -> None:
         """Read the pointer no longer."""
@@ -73,7 +75,7 @@ class Pointer(QObject):
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
         """Take the pointer over the canvas."""
-        if watched is not self._canvas:
+        if watched is not self._canvas or not self._reads:
             return super().eventFilter(watched, event)
         kind = event.type()
         handlers: dict[QEvent.Type, Callable[..., None]] = {
