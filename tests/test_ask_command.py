@@ -11,7 +11,9 @@ from shapes import SAMPLES
 
 from app.cli import BAD_INPUT, NOT_SETTLED, SETTLED, main
 from app.commands.asked import goals_of
+from app.commands.settings import WANT_HELP
 from core.aims.reaching import Goal
+from core.aims.readings import NAMES
 from core.errors import UserError
 from core.project import open_project
 
@@ -83,3 +85,8 @@ def test_what_cannot_be_asked_is_refused(
 ) -> None:
     assert main(["ask", SCAN, *words, "--want", "lift=1mm"]) == BAD_INPUT
     assert sentence in capsys.readouterr().err
+
+
+def test_the_help_names_what_can_be_asked_for() -> None:
+    # The help stands apart from the search: the command line loads nothing of that before it is asked for.
+    assert WANT_HELP.endswith(f"The names are: {', '.join(NAMES)}")

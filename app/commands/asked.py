@@ -22,13 +22,6 @@ from core.project import SUFFIX, is_project, open_project, save_project
 from core.request import Reply, ask
 from core.sewing.comfort import comfort
 
-WANT_HELP = (
-    "what the body is to have, in mm (also cm, in); may be repeated. lift and out: how far the bust points "
-    "rise and come out from where they are at rest; girth: the tape round the body at their height. The "
-    "names are: " + ", ".join(NAMES)
-)
-"""What a user has to know to ask."""
-
 _WANT = re.compile(r"\s*([a-z ]+?)\s*=\s*([+-]?\d+(?:[.,]\d+)?)\s*(mm|cm|in)?\s*")
 _MM = {None: 1.0, "mm": 1.0, "cm": 10.0, "in": 25.4}
 _LARGEST = 10_000.0  # mm

@@ -7,8 +7,7 @@ import re
 from collections.abc import Sequence
 from typing import NoReturn
 
-from app.commands.asked import WANT_HELP
-from app.commands.settings import ELASTIC_HELP, help_text
+from app.commands.settings import ELASTIC_HELP, WANT_HELP, help_text
 from app.wording.scan_formats import KINDS, PACKED
 from core import __version__
 from core.design_measures import HELP as MEASURE_HELP

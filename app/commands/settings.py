@@ -55,6 +55,13 @@ def dressed(design: Design, lines: Sequence[Line], requests: Sequence[str]) -> D
     return design
 
 
+WANT_HELP = (
+    "what the body is to have, in mm (also cm, in); may be repeated. lift and out: how far the bust points "
+    "rise and come out from where they are at rest; girth: the tape round the body at their height. The "
+    "names are: lift, lift left, lift right, out, out left, out right, girth"
+)
+"""What a user has to know to ask for a result."""
+
 ELASTIC_HELP = (
     "what a worn line is made of: an elastic of the library, by its name or by words that only it has "
     "('mid-bust=plush 12'), or a table of your own ('mid-bust=roll.csv'); the line's length is then that of "
