@@ -16,6 +16,7 @@ from window_tools import Script, run_main, settled
 
 import app.window
 from app.asking.housekeeping import Housekeeping
+from app.asking.jobs import Jobs
 from app.dress import first_paint
 from app.main_window import MainWindow
 from app.showing.viewport import Viewport
@@ -168,3 +169,21 @@ class Ring:
     """Something that only the search for garbage takes away."""
 
     itself: Ring
+
+
+def test_a_window_that_is_closed_at_once_begins_nothing(qtbot: QtBot) -> None:
+    begun: list[str] = []
+    window = QWidget()
+    qtbot.addWidget(window)
+    first_paint.when_painted(window, lambda: begun.append("libraries"))
+    window.show()
+    window.repaint()
+    window.close()
+    qtbot.wait(20)
+    assert begun == []
+    jobs = Jobs(window)
+    jobs.close()
+    job = jobs.run("Loading", lambda _: begun.append("job"), lambda _: None)
+    assert not job.wanted
+    assert begun == []
+    assert jobs.at_work() == []

@@ -63,6 +63,7 @@ class Jobs(QObject):
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._threads: dict[Job, threading.Thread] = {}
+        self._open = True
         self._clock = QTimer(self, interval=LOOKS)
         self._clock.timeout.connect(self.changed)
         self._ended.connect(self._end)
@@ -86,6 +87,9 @@ class Jobs(QObject):
         hears that the user has let go of it, see ``leave``.
         """
         job = Job(words, waited, done, failed, left)
+        if not self._open:  # a thread that nobody waits for would tell its end to what is no more
+            job.wanted = False
+            return job
         thread = threading.Thread(target=self._work, args=(job, work), name="busk-job", daemon=True)
         self._threads[job] = thread
         thread.start()
@@ -135,7 +139,8 @@ class Jobs(QObject):
             job.left()
 
     def close(self) -> None:
-        """Let go of all jobs, and wait until their threads have ended."""
+        """Let go of all jobs, and wait until their threads have ended; none begins after that."""
+        self._open = False
         self._clock.stop()
         self._between.stop()
         for pieces in self._pieces.values():

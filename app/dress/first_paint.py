@@ -12,7 +12,10 @@ _PATIENCE = 1000
 
 
 def when_painted(window: QWidget, do: Callable[[], None]) -> None:
-    """Call ``do`` once, from the event loop, when ``window`` has been painted for the first time."""
+    """Call ``do`` once, from the event loop, when ``window`` has been painted for the first time.
+
+    It is not called of a window that has been closed before.
+    """
     _FirstPaint(window, do)
 
 
@@ -34,5 +37,6 @@ class _FirstPaint(QObject):
 
     def _call(self) -> None:
         self._window.removeEventFilter(self)
-        self._do()
+        if self._window.isVisible():  # a closed one has let its threads go: none may begin after that
+            self._do()
         self.deleteLater()
