@@ -31,12 +31,12 @@ class _FirstPaint(QObject):
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
         if event.type() == QEvent.Type.Paint:
             # The rest of the window is painted in the same go; what is due comes after it.
-            self._window.removeEventFilter(self)
             self._due.start(0)
+        elif event.type() == QEvent.Type.Hide:
+            self._due.stop()  # closed, it has let its threads go: none may begin after that
         return False
 
     def _call(self) -> None:
         self._window.removeEventFilter(self)
-        if self._window.isVisible():  # a closed one has let its threads go: none may begin after that
-            self._do()
+        self._do()
         self.deleteLater()
