@@ -9,8 +9,9 @@ from pathlib import Path
 
 import pytest
 from PySide6.QtCore import Qt
+from PySide6.QtGui import QPaintEvent
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QAbstractButton, QWidget
+from PySide6.QtWidgets import QAbstractButton, QApplication, QWidget
 from pytestqt.qtbot import QtBot
 from window_tools import Script, run_main, settled
 
@@ -177,13 +178,16 @@ def test_a_window_that_is_closed_at_once_begins_nothing(qtbot: QtBot) -> None:
     qtbot.addWidget(window)
     first_paint.when_painted(window, lambda: begun.append("libraries"))
     window.show()
-    window.repaint()
+    QApplication.sendEvent(window, QPaintEvent(window.rect()))
     window.close()
-    qtbot.wait(20)
+    qtbot.wait(50)
     assert begun == []
     jobs = Jobs(window)
     jobs.close()
     job = jobs.run("Loading", lambda _: begun.append("job"), lambda _: None)
+    in_pieces = jobs.run_pieces("Drawing", (begun.append("piece") for _ in range(1)), lambda _: None)
+    qtbot.wait(20)
     assert not job.wanted
+    assert not in_pieces.wanted
     assert begun == []
     assert jobs.at_work() == []

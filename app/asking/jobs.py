@@ -87,8 +87,8 @@ class Jobs(QObject):
         hears that the user has let go of it, see ``leave``.
         """
         job = Job(words, waited, done, failed, left)
-        if not self._open:  # a thread that nobody waits for would tell its end to what is no more
-            job.wanted = False
+        job.wanted = self._open  # a thread that nobody waits for would tell its end to what is no more
+        if not job.wanted:
             return job
         thread = threading.Thread(target=self._work, args=(job, work), name="busk-job", daemon=True)
         self._threads[job] = thread
@@ -113,6 +113,10 @@ class Jobs(QObject):
         ends or is cancelled.
         """
         job = Job(words, waited, done, failed, left)
+        job.wanted = self._open
+        if not job.wanted:
+            pieces.close()
+            return job
         self._pieces[job] = pieces
         self._between.start()
         self._clock.start()
