@@ -13,14 +13,13 @@ from PySide6.QtGui import QPaintEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QApplication, QWidget
 from pytestqt.qtbot import QtBot
-from window_tools import Script, run_main, settled
+from window_tools import Script, run_main, settled, small_view
 
 import app.window
 from app.asking.housekeeping import Housekeeping
 from app.asking.jobs import Jobs
 from app.dress import first_paint
 from app.main_window import MainWindow
-from app.showing.viewport import Viewport
 
 ROOT = Path(__file__).parent.parent
 LATER = ("pyvista", "vtkmodules", "pyvistaqt", "matplotlib", "PIL", "ezdxf", "trimesh", "pyqtgraph", "numba")
@@ -123,12 +122,7 @@ def use_it(window: MainWindow) -> None:
 
 
 def test_an_empty_view_is_the_ground_of_the_scene_to_come(qtbot: QtBot) -> None:
-    view = Viewport()
-    qtbot.addWidget(view)
-    view.motion = False
-    view.resize(200, 150)
-    view.show()
-    qtbot.waitExposed(view)
+    view = small_view(qtbot, 200, 150)
     before, after = view.grab().toImage(), view.picture()
     for x, y in ((100, 75), (5, 5), (20, 140), (100, 5)):
         shades = [before.pixelColor(x, y), after.pixelColor(x, y)]

@@ -14,6 +14,7 @@ from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
 from PySide6.QtGui import QImage, QMouseEvent, QWheelEvent
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
+from window_tools import small_view
 
 from app.dress.theme import apply_theme
 from app.seeing.band import Band
@@ -33,12 +34,7 @@ def view(qtbot: QtBot) -> Iterator[Viewport]:
     app = QApplication.instance()
     assert isinstance(app, QApplication)
     apply_theme(app, dark=False)
-    view = Viewport()
-    qtbot.addWidget(view)
-    view.motion = False
-    view.resize(360, 270)
-    view.show()
-    qtbot.waitExposed(view)
+    view = small_view(qtbot, 360, 270)
     ball = pv.Icosphere(radius=RADIUS, nsub=4)
     view.scene.show_body(Mesh(ball.points, ball.regular_faces))
     turn = np.radians(np.linspace(-60.0, 60.0, 9))

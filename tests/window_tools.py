@@ -9,10 +9,12 @@ import numpy as np
 from PySide6.QtCore import QCoreApplication, QPoint, Qt, QTimer
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
 from shiboken6 import isValid
 
 from app.cli import main
 from app.main_window import MainWindow
+from app.showing.viewport import Viewport
 
 PATIENCE = 90.0
 Script = Generator[Callable[[], bool], None, None]
@@ -116,3 +118,14 @@ class _Player:
             self._window.close()
         else:
             QApplication.quit()
+
+
+def small_view(qtbot: QtBot, width: int, height: int) -> Viewport:
+    """A 3D view of its own that is shown, in which the camera jumps where it would fly."""
+    view = Viewport()
+    qtbot.addWidget(view)
+    view.motion = False
+    view.resize(width, height)
+    view.show()
+    qtbot.waitExposed(view)
+    return view
