@@ -87,6 +87,22 @@ def test_quick_steps_that_are_refused_leave_those_that_were_held(
     assert not session.design.lines
 
 
+def test_what_a_drag_was_refused_late_is_no_news_of_the_length_it_ended_at(session: Session) -> None:
+    before, told, designs = session.design, [], []
+    session.failed.connect(lambda error: (told.append(str(error)), designs.append(session.design)))
+    session.preview_line("mid-bust", 0.76)
+    first = session._revision + 1
+    session._fail(Failure(first, LineError("It cannot be held at 76.")))
+    session.preview_line("mid-bust", 0.75)
+    session.commit_line("mid-bust", "Mid-bust line", 0.75)
+    session._fail(Failure(first + 1, LineError("It cannot be held at 75.")))
+    session._fail(Failure(session._revision, LineError("It cannot be held at 75.")))
+    # One notice, told while the design was what it is again: a frame of that does not take it away.
+    assert [each.split(" at ")[1] for each in told] == ["76."]
+    assert designs == [before]
+    assert session.design == before
+
+
 def test_a_restored_document_does_not_pass_over_a_project_that_was_saved_since(
     session: Session, other: Path, qtbot: QtBot
 ) -> None:

@@ -240,6 +240,8 @@ class Session(Editing):
             if isinstance(stuck, StuckError) and (self.design is None or stuck.kind == "unsure"):
                 self.asked.emit(stuck)
                 return
+        elif failure.revision < self._revision:
+            return  # of what was tried before the last decision, which has an answer of its own
         elif failure.revision > self._revision and self._preview is not None:
             # One notice for a drag is enough, however far it goes on.
             told, self._told = self._told, True
