@@ -7,7 +7,7 @@ import gc
 import json
 import os
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -15,18 +15,16 @@ from pathlib import Path
 import scipy.linalg  # noqa: F401  its BLAS must be there to be held to one thread
 from threadpoolctl import threadpool_limits
 
+from app.commands.advice import ADVICE
 from app.commands.cli_parser import command_options, window_options
-from app.commands.settings import dressed, settings_of
+from app.commands.ending import NOT_SETTLED, SETTLED, told, warn
+from app.commands.source import design_of
 from app.commands.surroundings import is_seen_in_window, path_of, settle_in, tell
-from core.design import Design, ScanSource
 from core.design_measures import own_measure
 from core.errors import UserError
-from core.own_lines import own_line
-from core.placing import placed_mark
-from core.project import is_project, open_project
-from core.template import read_template
+from core.project import is_project
 
-SETTLED, PIPE_CLOSED, BAD_INPUT, NOT_SETTLED = 0, 1, 2, 3
+PIPE_CLOSED, BAD_INPUT = 1, 2
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -64,36 +62,8 @@ def _run(words: list[str]) -> int:
     return run_window(file, options.safe_mode)
 
 
-def design_of(path: str, options: argparse.Namespace) -> Design:
-    """Return the design of a project, or a new one for a scan, with what the options overrule."""
-    design = open_project(path).design if is_project(path) else Design(ScanSource(path))
-    axes = {key: getattr(options, key) for key in ("unit", "up", "front") if getattr(options, key, None)}
-    if axes:
-        design = replace(design, scan=replace(design.scan, **axes))
-    settings = settings_of(getattr(options, "settings", None) or [])
-    design = replace(design.with_template(settings.pop("template", design.template)), **settings)
-    for text in getattr(options, "path", None) or []:
-        design = design.with_own_line(own_line(text, read_template(design.template)))
-    for mark in map(placed_mark, getattr(options, "landmark", None) or []):
-        design = design.with_placed(mark.name, mark.position)
-    return design
-
-
 def _form(options: argparse.Namespace) -> str:
     return "csv" if options.csv else "json" if options.json else ""
-
-
-def _told(text: str, settled: bool, warnings: Iterable[str]) -> int:
-    """Print a text unless it went to a file, and return how the command ends."""
-    if text:
-        print(text, flush=True)
-    _warn(warnings)
-    return SETTLED if settled else NOT_SETTLED
-
-
-def _warn(sentences: Iterable[str]) -> None:
-    for sentence in sentences:
-        print(f"busk: {sentence}", file=sys.stderr)
 
 
 def solve(options: argparse.Namespace) -> int:
@@ -104,32 +74,9 @@ def solve(options: argparse.Namespace) -> int:
     design = replace(design, volume=options.volume or design.volume)
     place = partial(_folder, options.out)
     found = run_solve(design, options.line or [], options.elastic or [], options.turns, place)
-    _warn(found.warnings)
+    warn(found.warnings)
     print(*found.lines, sep="\n")
     return SETTLED if found.settled else NOT_SETTLED
-
-
-def ask(options: argparse.Namespace) -> int:
-    """Find the lengths of lines that bring the body to what is wished, and print them."""
-    from app.commands.asked import AskWishes, asked_text, run_ask
-
-    wishes = AskWishes(options.want, options.lock or [], options.shortest or [], options.out)
-    design = design_of(options.input, options)
-    asked = run_ask(options.input, design, options.line or [], options.elastic or [], wishes)
-    return _told(asked_text(asked, options.json), asked.reply.reachable, [])
-
-
-def limits(options: argparse.Namespace) -> int:
-    """Print how short each line can be made before the body strains, folds or turns inside out."""
-    from app.commands.limits import limits_text
-    from core.pipeline import build
-    from core.studies.limits import all_limits
-
-    design = design_of(options.input, options)
-    stages = build(design)
-    stages = build(dressed(design, stages.model.lines, options.line or []), stages)
-    print(limits_text(list(all_limits(stages)), stages, options.json))
-    return SETTLED
 
 
 def sweep(options: argparse.Namespace) -> int:
@@ -151,7 +98,7 @@ def detect(options: argparse.Namespace) -> int:
     _, body = read_body(design.scan)
     found = detection(body, find(body, design.placed))
     print(json.dumps(found, indent=1) if options.json else found_text(found), flush=True)
-    _warn(found["warnings"])
+    warn(found["warnings"])
     return SETTLED
 
 
@@ -163,7 +110,7 @@ def measure(options: argparse.Namespace) -> int:
     for own in map(own_measure, options.own or []):
         design = design.with_own_measure(own)
     found = run_measure(design, solved=is_project(options.input))
-    return _told(measured_text(found, _form(options), options.out), found.settled, found.warnings)
+    return told(measured_text(found, _form(options), options.out), found.settled, found.warnings)
 
 
 def cut(options: argparse.Namespace) -> int:
@@ -172,7 +119,7 @@ def cut(options: argparse.Namespace) -> int:
 
     design = design_of(options.input, options)
     found = run_cut(design, options.line or [], options.elastic or [], options.as_worn)
-    return _told(cut_text(found, _form(options), options.out), found.settled, found.warnings)
+    return told(cut_text(found, _form(options), options.out), found.settled, found.warnings)
 
 
 def press(options: argparse.Namespace) -> int:
@@ -181,7 +128,7 @@ def press(options: argparse.Namespace) -> int:
 
     design = design_of(options.input, options)
     found = run_press(design, options.line or [], options.elastic or [])
-    return _told(press_text(found, _form(options), options.out), found.settled, found.warnings)
+    return told(press_text(found, _form(options), options.out), found.settled, found.warnings)
 
 
 def report(options: argparse.Namespace) -> int:
@@ -192,7 +139,7 @@ def report(options: argparse.Namespace) -> int:
     design = design_of(options.input, options)
     found = run_report(options.input, design, options.line or [], options.elastic or [], wishes)
     print(f"written to {', '.join(found.files)}", flush=True)
-    _warn(found.warnings)
+    warn(found.warnings)
     return SETTLED if found.settled else NOT_SETTLED
 
 
@@ -206,7 +153,7 @@ def export(options: argparse.Namespace) -> int:
     manner = Manner(options.file_unit, **{name: getattr(options, name) for name in told})
     design = design_of(options.input, options)
     done = run_export(design, options.line or [], options.elastic or [], files, manner, print)
-    _warn(done.warnings)
+    warn(done.warnings)
     return SETTLED if done.settled else NOT_SETTLED
 
 
@@ -271,8 +218,7 @@ def _folder(name: str) -> Path:
 
 COMMANDS: dict[str, Callable[[argparse.Namespace], int]] = {
     "solve": solve,
-    "ask": ask,
-    "limits": limits,
+    **ADVICE,
     "detect": detect,
     "measure": measure,
     "export": export,

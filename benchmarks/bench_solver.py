@@ -23,6 +23,7 @@ import numpy as np
 from scipy.optimize import NonlinearConstraint, minimize
 from threadpoolctl import threadpool_limits
 
+from core.advice.limits import shortest
 from core.body import read_scan
 from core.control_mesh import fit_control_mesh
 from core.exact import solve_exact
@@ -33,7 +34,6 @@ from core.solver import Targets, at_rest, turn
 from core.solving.gain import gain_limit
 from core.solving.layout import layout_of
 from core.solving.potential import Place, Potential
-from core.studies.limits import shortest
 from core.template import read_template
 
 try:

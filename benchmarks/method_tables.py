@@ -19,13 +19,13 @@ from threadpoolctl import threadpool_limits
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from app.wording.samples import SAMPLES, sample_design
+from core.advice.limits import Length, all_limits
 from core.design import Design
 from core.design_lines import WornLine
 from core.exact import solve_exact
 from core.own_lines import ready_made
 from core.pipeline import Stages, build
 from core.solution import Solution, run
-from core.studies.limits import Length, all_limits
 from core.template import read_template
 from core.watch import Marks
 

@@ -18,7 +18,7 @@ PAGE = (ROOT / "ARCHITECTURE.md").read_text("utf-8")
 # From the ground up, each floor in order: a module may import what stands to its left or on a floor below.
 # The rooms stand in ARCHITECTURE.md: `folder/` holds what follows in its row, but for **`nouns`**.
 CORE_FLOORS = ("ground", "reading", "cleaning", "standing", "slicing", "finding", "fitting", "measuring")
-CORE_FLOORS += ("mechanics", "solving", "document", "tailoring", "aims")
+CORE_FLOORS += ("mechanics", "solving", "document", "tailoring", "aims", "advice")
 APP_FLOORS = (
     "seeing",
     "wording",
@@ -58,6 +58,7 @@ OUTSIDE = {
     "document": NUMBERS | {"trimesh", "threadpoolctl", "platformdirs", "potpourri3d"},
     "tailoring": NUMBERS | {"ezdxf", "platformdirs"},
     "aims": NUMBERS | {"threadpoolctl"},
+    "advice": NUMBERS | {"threadpoolctl"},
     "seeing": NUMBERS | {"pyvista", "vtkmodules"},
     "wording": set(),
     "printing": NUMBERS | {"pyvista", "vtkmodules", "matplotlib", "PIL"},

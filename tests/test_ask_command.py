@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 from shapes import SAMPLES
 
-from app.cli import BAD_INPUT, NOT_SETTLED, SETTLED, main
+from app.cli import BAD_INPUT, main
 from app.commands.asked import goals_of
+from app.commands.ending import NOT_SETTLED, SETTLED
 from app.commands.settings import WANT_HELP
 from core.aims.reaching import Goal
 from core.aims.readings import NAMES

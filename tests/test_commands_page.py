@@ -21,8 +21,8 @@ from page_commands import (
     words_of,
 )
 
-from app.cli import SETTLED
 from app.commands.cli_parser import COMMANDS, command_options, command_parser, window_options
+from app.commands.ending import SETTLED
 from app.commands.self_test import PARTS
 from core.errors import UserError
 

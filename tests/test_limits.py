@@ -9,6 +9,7 @@ from shapes import fitted, torso
 
 from app.cli import main
 from app.lining.limits_desk import feasible_of
+from core.advice.limits import PRECISION, SIGNS, all_limits, limits_of, shortest
 from core.comparison import shape_of
 from core.elastics import find_elastic
 from core.errors import LineError
@@ -17,7 +18,6 @@ from core.lines import RATIO_LIMITS
 from core.mechanics import Mechanics
 from core.model import constrained_model
 from core.pipeline import build
-from core.studies.limits import PRECISION, SIGNS, all_limits, limits_of, shortest
 
 WORN = ("mid-bust", "full-bust")
 CHOICES = {

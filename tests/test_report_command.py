@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 from pdf_tools import Pdf
 
-from app.cli import BAD_INPUT, SETTLED, main
+from app.cli import BAD_INPUT, main
+from app.commands.ending import SETTLED
 from core.design import Design, ScanSource
 from core.document import Document
 from core.project import read_scan_file, save_project

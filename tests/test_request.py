@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from app.wording.samples import sample_design
+from core.advice.limits import limits_of
 from core.aims.reaching import NEAR, Bounds, Goal, Search
 from core.aims.readings import reading
 from core.elastics import find_elastic
@@ -17,7 +18,6 @@ from core.request import Reply, ask
 from core.sewing.comfort import comfort
 from core.solution import run
 from core.solving.newtons import newtons_per_unit
-from core.studies.limits import limits_of
 
 CONTACTS = ("glued", "sliding")
 

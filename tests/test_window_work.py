@@ -22,8 +22,8 @@ import app.view_area
 import core.body
 from app.asking.jobs import Jobs
 from app.main_window import MainWindow
+from core.advice.limits import SIGNS, all_limits
 from core.progress import Pieces, Progress
-from core.studies.limits import SIGNS, all_limits
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 

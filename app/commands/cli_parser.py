@@ -7,7 +7,8 @@ import re
 from collections.abc import Sequence
 from typing import NoReturn
 
-from app.commands.settings import ELASTIC_HELP, WANT_HELP, help_text
+from app.commands.advice_words import add_wishes
+from app.commands.settings import ELASTIC_HELP, help_text
 from app.wording.scan_formats import KINDS, PACKED
 from core import __version__
 from core.design_measures import HELP as MEASURE_HELP
@@ -161,21 +162,10 @@ def _add_design(parser: argparse.ArgumentParser, command: str) -> None:
     if command in ("solve", "ask", "cut", "press", "report", "export"):
         parser.add_argument("--elastic", action="append", metavar="LINE=ELASTIC", help=ELASTIC_HELP)
     if command == "ask":
-        _add_wishes(parser)
+        add_wishes(parser)
     if command == "cut":
         same = "let lines of elastic reach what they reach without it: lengths are then those on the body"
         parser.add_argument("--as-worn", action="store_true", help=same)
-
-
-def _add_wishes(parser: argparse.ArgumentParser) -> None:
-    """Add what can be asked for, and what lines may do for it."""
-    parser.add_argument("--want", action="append", required=True, metavar="NAME=VALUE", help=WANT_HELP)
-    parser.add_argument(
-        "--lock", action="append", metavar="LINE", help="a worn line that is to stay as it is"
-    )
-    shortest = "a worn line is not to be shorter than this: a length as for --line"
-    parser.add_argument("--shortest", action="append", metavar="LINE=LENGTH", help=shortest)
-    parser.add_argument("--out", default="", metavar="FILE", help="save what was found as a project: .busk")
 
 
 def _add_scan(parser: argparse.ArgumentParser) -> None:

@@ -6,10 +6,10 @@ import json
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from core.advice.limits import Length, Limits
 from core.lines import RATIO_LIMITS
 from core.pipeline import Stages
 from core.report import still_lines
-from core.studies.limits import Length, Limits
 
 MEANING = {
     "strained": "edges outside 80 to 120 %",

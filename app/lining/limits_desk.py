@@ -13,9 +13,9 @@ from PySide6.QtCore import QObject
 from app.asking.jobs import Job
 from app.panels.length_groove import Feasible
 from app.wording.words import tr
+from core.advice.limits import Limits, limits_of
 from core.design import Design
 from core.live import Frame
-from core.studies.limits import Limits, limits_of
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow

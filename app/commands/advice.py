@@ -1,0 +1,37 @@
+"""The commands that advise: how far lines can go, what to change, which lengths lead to what is wished."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+
+from app.commands.ending import SETTLED, told
+from app.commands.settings import dressed
+from app.commands.source import design_of
+
+
+def ask(options: argparse.Namespace) -> int:
+    """Find the lengths of lines that bring the body to what is wished, and print them."""
+    from app.commands.asked import AskWishes, asked_text, run_ask
+
+    wishes = AskWishes(options.want, options.lock or [], options.shortest or [], options.out)
+    design = design_of(options.input, options)
+    asked = run_ask(options.input, design, options.line or [], options.elastic or [], wishes)
+    return told(asked_text(asked, options.json), asked.reply.reachable, [])
+
+
+def limits(options: argparse.Namespace) -> int:
+    """Print how short each line can be made before the body strains, folds or turns inside out."""
+    from app.commands.limits import limits_text
+    from core.advice.limits import all_limits
+    from core.pipeline import build
+
+    design = design_of(options.input, options)
+    stages = build(design)
+    stages = build(dressed(design, stages.model.lines, options.line or []), stages)
+    print(limits_text(list(all_limits(stages)), stages, options.json))
+    return SETTLED
+
+
+ADVICE: dict[str, Callable[[argparse.Namespace], int]] = {"ask": ask, "limits": limits}
+"""Each command that advises, with what does it."""

@@ -1,0 +1,18 @@
+"""The words that the commands which advise take besides those of a scan and its design."""
+
+from __future__ import annotations
+
+import argparse
+
+from app.commands.settings import WANT_HELP
+
+
+def add_wishes(parser: argparse.ArgumentParser) -> None:
+    """Add what can be asked for, and what lines may do for it."""
+    parser.add_argument("--want", action="append", required=True, metavar="NAME=VALUE", help=WANT_HELP)
+    parser.add_argument(
+        "--lock", action="append", metavar="LINE", help="a worn line that is to stay as it is"
+    )
+    shortest = "a worn line is not to be shorter than this: a length as for --line"
+    parser.add_argument("--shortest", action="append", metavar="LINE=LENGTH", help=shortest)
+    parser.add_argument("--out", default="", metavar="FILE", help="save what was found as a project: .busk")

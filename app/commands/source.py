@@ -1,0 +1,28 @@
+"""The design that a command is about: that of a project or a scan, with what its options overrule."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+
+from app.commands.settings import settings_of
+from core.design import Design, ScanSource
+from core.own_lines import own_line
+from core.placing import placed_mark
+from core.project import is_project, open_project
+from core.template import read_template
+
+
+def design_of(path: str, options: argparse.Namespace) -> Design:
+    """Return the design of a project, or a new one for a scan, with what the options overrule."""
+    design = open_project(path).design if is_project(path) else Design(ScanSource(path))
+    axes = {key: getattr(options, key) for key in ("unit", "up", "front") if getattr(options, key, None)}
+    if axes:
+        design = replace(design, scan=replace(design.scan, **axes))
+    settings = settings_of(getattr(options, "settings", None) or [])
+    design = replace(design.with_template(settings.pop("template", design.template)), **settings)
+    for text in getattr(options, "path", None) or []:
+        design = design.with_own_line(own_line(text, read_template(design.template)))
+    for mark in map(placed_mark, getattr(options, "landmark", None) or []):
+        design = design.with_placed(mark.name, mark.position)
+    return design
