@@ -146,7 +146,7 @@ def scan_name(name: str) -> str:
 def _surface(name: str, scan: RawScan, progress: Progress) -> tuple[Points, Faces]:
     if len(scan.vertices) < FEWEST_POINTS:
         raise ScanError(
-            f"{name} has no sound triangles: it is a cloud of only {len(scan.vertices):,} points.",
+            f"{name} has no sound triangles, and too few points for a surface: {len(scan.vertices):,}.",
             f"Scan with at least {FEWEST_POINTS:,} points, better 30,000.",
         )
     try:

@@ -175,7 +175,7 @@ def _measures(path: str, outcome: Outcome, manner: Manner) -> Ready:
 
 def _turns(path: str, outcome: Outcome, manner: Manner) -> Ready:
     records = outcome.records
-    told = tr("{count} turns").format(count=number(len(records), 0))
+    told = tr("Turns: {count}").format(count=number(len(records), 0))
     return Ready(told, "", lambda at, _, hear: write_turns(at, records, outcome.stages))
 
 
