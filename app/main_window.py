@@ -33,6 +33,7 @@ from app.keeping.recovery_desk import RecoveryDesk
 from app.keeping.variant_desk import VariantDesk
 from app.keeping.variant_figures import VariantFigures
 from app.layout import Layout
+from app.lining.ask_desk import AskDesk
 from app.lining.band_pull import BandPull
 from app.lining.elastic_choice import ElasticChoice
 from app.lining.elastics_desk import ElasticsDesk
@@ -110,7 +111,7 @@ class MainWindow(QMainWindow):
         self.line_drawing, self.line_routing = LineDrawing(self), LineRouting(self)
         self.preset_desk, self.band_pull = PresetDesk(self), BandPull(self)
         self.garment_desk, self.elastic_choice = GarmentDesk(self, self.garment), ElasticChoice(self)
-        self.elastics_desk = ElasticsDesk(self)
+        self.elastics_desk, self.ask_desk = ElasticsDesk(self), AskDesk(self)
         self.help = HelpDesk(self)
         self.preferences = PreferencesDesk(self)
         self.rescuer = Rescue(self)

@@ -23,8 +23,9 @@ from pages import put, table
 
 from app.wording.samples import SAMPLES, sample_design
 from core.aims.answers import free_lines
-from core.aims.reaching import Goal
-from core.aims.readings import GIRTH, NAMES, reading
+from core.aims.figure import Goal
+from core.aims.girth import GIRTH
+from core.aims.readings import NAMES, reading
 from core.design import Design, ScanSource
 from core.elastics import find_elastic
 from core.errors import UserError

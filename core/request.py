@@ -14,7 +14,8 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from core.aims.answers import Look, NoBalanceError
-from core.aims.reaching import NEAR, Bounds, Found, Goal, Search
+from core.aims.figure import Goal
+from core.aims.reaching import NEAR, Bounds, Found, Search
 from core.cutting import goes_on
 from core.design import Design, cannot_hold, no_balance
 from core.errors import LineError

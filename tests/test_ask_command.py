@@ -13,7 +13,7 @@ from app.cli import BAD_INPUT, main
 from app.commands.asked import goals_of
 from app.commands.ending import NOT_SETTLED, SETTLED
 from app.commands.settings import WANT_HELP
-from core.aims.reaching import Goal
+from core.aims.figure import Goal
 from core.aims.readings import NAMES
 from core.errors import UserError
 from core.project import open_project

@@ -8,7 +8,8 @@ import pytest
 
 from app.wording.samples import sample_design
 from core.advice.limits import limits_of
-from core.aims.reaching import NEAR, Bounds, Goal, Search
+from core.aims.figure import Goal
+from core.aims.reaching import NEAR, Bounds, Search
 from core.aims.readings import reading
 from core.elastics import find_elastic
 from core.errors import UserError

@@ -11,8 +11,9 @@ from typing import Any
 
 from app.commands.settings import dressed, made_of
 from core import __version__
-from core.aims.reaching import Goal
-from core.aims.readings import GIRTH, NAMES
+from core.aims.figure import Goal
+from core.aims.girth import GIRTH
+from core.aims.readings import NAMES
 from core.design import Design
 from core.document import Document
 from core.errors import LineError, UserError

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.aims.readings import Read
+from core.aims.figure import Read
 from core.comparison import shape_of
 from core.exact import solve_exact
 from core.mesh import Floats, Points

@@ -17,6 +17,7 @@ import numpy as np
 from scipy.optimize import lsq_linear, minimize
 
 from core.aims.answers import PERCENT, Answers, Look, NoBalanceError, free_lines
+from core.aims.figure import Goal
 from core.aims.readings import reading
 from core.design import Design
 from core.errors import UserError
@@ -44,14 +45,6 @@ _AT_END = 0.01  # [%]
 _SLACK = 0.03  # of the tension at the start: about as much counts as none
 
 Slopes = tuple[float, Floats]
-
-
-@dataclass(frozen=True)
-class Goal:
-    """A figure that is asked for, one of ``readings.NAMES``, and the ``value`` it is to have [mm]."""
-
-    name: str
-    value: float
 
 
 @dataclass(frozen=True)

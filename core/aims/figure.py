@@ -1,0 +1,50 @@
+"""A figure of the body that can be asked for, with its slopes by the control points (ours)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.mesh import Points
+from core.pipeline import Stages
+
+SIDES = {"": np.array([0.5, 0.5]), " left": np.array([1.0, 0.0]), " right": np.array([0.0, 1.0])}
+"""What the left and the right count for [1], by the end of a figure's name."""
+
+
+@dataclass(frozen=True)
+class Goal:
+    """A figure that is asked for, by its ``name`` in ``readings``, and the ``value`` it is to have [mm]."""
+
+    name: str
+    value: float
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """A figure [mm] and its slopes by the control points, shape (n, 3) [1]."""
+
+    value: float
+    slopes: Points
+
+
+Read = Callable[[Points], Reading]
+"""Reads a figure off control points, shape (n, 3) [mm]."""
+
+
+@dataclass(frozen=True)
+class Family:
+    """Figures that are read alike: their ``names``, and what makes a ``read`` for one of them.
+
+    Names that begin with the word ``numbered`` go on with numbers, which ``read`` looks at itself.
+    """
+
+    names: tuple[str, ...]
+    read: Callable[[Stages, str], Read]
+    numbered: str = ""
+
+    def has(self, name: str) -> bool:
+        """Tell whether a figure of that name is of this family."""
+        return name in self.names or (bool(self.numbered) and name.startswith(f"{self.numbered} "))
