@@ -4,15 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
+from scipy import sparse
 from scipy.ndimage import gaussian_filter1d
 
-from core.centre_line import NO_BACK, USUAL_WIDTH, Surface, centre_line
-from core.mesh import Flags, Floats, Points, unit
+from core.centre_line import NO_BACK, USUAL_WIDTH, CentreLine, Surface, centre_line
+from core.mesh import Flags, Floats, Mesh, Points, unit
 from core.pipeline import Stages
 from core.sewing.tensions import LineTension
-from core.tffd import deform
+
+_KEPT = 64
+"""Bands that are kept as they lie on one body at rest."""
+
+_LAID: WeakKeyDictionary[Mesh, dict[tuple[bytes, float, bytes], _Laid]] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +68,27 @@ def _beyond(rows: Floats, more: int, sigma: float) -> Floats:
     return np.concatenate([end + (back[:, :3] - end) @ mirror, back[:, 3:] @ mirror], axis=1)
 
 
+@dataclass(frozen=True, eq=False)
+class _Laid:
+    """A band on the body at rest: ``line``, and ``follow`` (k, n), which takes it along with the vertices."""
+
+    line: CentreLine
+    follow: sparse.csr_array
+
+    def course(self, tension: LineTension, shift: Points, normals: Points) -> Course:
+        """Return it on a body whose vertices went by ``shift`` and have ``normals`` now, both (n, 3)."""
+        line, part = self.line, self.line.part
+        newtons = np.where(part >= 0, tension.segments[part.clip(0)], tension.mean)
+        return Course(
+            line.points + self.follow @ shift, unit(self.follow @ normals), newtons, part >= 0, line.closed
+        )
+
+
+def _lay(path: Points, surface: Surface, width: float, back: Points) -> _Laid:
+    line = centre_line(path, surface, back, width)
+    return _Laid(line, surface.follow(line.points))
+
+
 def course_of(
     path: Points, tension: LineTension, surface: Surface, moved: Points, width: float, back: Points = NO_BACK
 ) -> Course:
@@ -70,14 +97,9 @@ def course_of(
     Both have shape (k, 3) [mm] on the body at rest, which is ``surface``; ``moved`` (n, 3) are its vertices
     as reshaped. The back is pulled as the front is in the mean.
     """
-    laid = centre_line(path, surface, back, width)
-    follow = surface.follow(laid.points)
     mesh = surface.mesh
-    points = laid.points + follow @ (moved - mesh.vertices)
-    normals = unit(follow @ mesh.moved(moved).vertex_normals)
-    front = laid.part >= 0
-    newtons = np.where(front, tension.segments[laid.part.clip(0)], tension.mean)
-    return Course(points, normals, newtons, front, laid.closed)
+    shift, normals = moved - mesh.vertices, mesh.moved(moved).vertex_normals
+    return _lay(path, surface, width, back).course(tension, shift, normals)
 
 
 def courses(
@@ -87,11 +109,24 @@ def courses(
 
     Each comes as name, course and width [mm].
     """
-    mesh = stages.body.mesh
-    surface, moved = Surface(mesh), deform(stages.binding, control_points)
+    mesh, moving = stages.body.mesh, stages.moving
+    shift, normals = np.zeros_like(mesh.vertices), mesh.vertex_normals.copy()
+    places, normals[moving.vertices] = stages.shape(control_points)
+    shift[moving.vertices] = places - moving.rest
     for line in stages.model.lines:
         if line.name in tensions:
             back = stages.backs[line.name].path if line.name in stages.backs else NO_BACK
             path = stages.control.mesh.vertices[line.path]
             width = stages.design.traits_of(line.name).width or USUAL_WIDTH
-            yield line.name, course_of(path, tensions[line.name], surface, moved, width, back), width
+            laid = _known(mesh, path, width, back)
+            yield line.name, laid.course(tensions[line.name], shift, normals), width
+
+
+def _known(mesh: Mesh, path: Points, width: float, back: Points) -> _Laid:
+    """Return how a band lies on the body at rest: as it does whatever the body is shaped to."""
+    known, key = _LAID.setdefault(mesh, {}), (path.tobytes(), width, back.tobytes())
+    if key not in known:
+        while len(known) >= _KEPT:
+            known.pop(next(iter(known)), None)
+        known[key] = _lay(path, Surface(mesh), width, back)
+    return known[key]

@@ -1,0 +1,35 @@
+"""Bands are laid on the body at rest once, and follow it as if they were laid anew."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from app.wording.samples import sample_design
+from core.centre_line import NO_BACK, USUAL_WIDTH, Surface
+from core.pipeline import build
+from core.sewing.course import course_of, courses
+from core.sewing.tensions import line_tensions
+from core.solution import run
+from core.tffd import deform
+
+
+def test_a_course_that_was_laid_before_is_that_of_the_shape_that_is_asked_for() -> None:
+    design = replace(sample_design(), volume="exact").with_line("mid-bust", 0.9).with_line("full-bust", 0.97)
+    stages = build(design)
+    other = build(design.with_line("mid-bust", 1.0), stages)
+    for each in (other, stages):
+        points = run(each).control_points
+        tensions = line_tensions(each, points)
+        lines = {line.name: line for line in each.model.lines}
+        surface, moved = Surface(each.body.mesh), deform(each.binding, points)
+        for name, course, width in courses(each, points, tensions):
+            path = each.control.mesh.vertices[lines[name].path]
+            back = each.backs[name].path if name in each.backs else NO_BACK
+            anew = course_of(path, tensions[name], surface, moved, USUAL_WIDTH, back)
+            assert width == USUAL_WIDTH
+            assert np.allclose(course.points, anew.points, atol=1e-9)
+            assert np.allclose(course.normals, anew.normals, atol=1e-9)
+            assert np.array_equal(course.tension, anew.tension)
+        assert len(tensions) == 2
