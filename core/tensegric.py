@@ -75,6 +75,11 @@ class TensegricModel:
         ground = np.zeros(len(self.free)) if self.ground is None else self.ground
         return compact(sparse.csr_array(sparse.diags_array(ground)))
 
+    @property
+    def cable_springs(self) -> Springs | None:
+        """The cables as springs under the prestressed law, None under the others."""
+        return self._springs
+
     @cached_property
     def _springs(self) -> Springs | None:
         if self.mechanics.member_law != "prestressed":
@@ -193,9 +198,8 @@ SOFT_DEPTH, SKIN_DEPTH = 40.0, 4.0
 
 def _grounded(model: TensegricModel, mesh: Mesh) -> TensegricModel:
     """Tie each free point to its rest, the more the thinner the tissue under it (firm chest; ours)."""
-    depth = tissue_depth(model, mesh)
     mechanics = model.mechanics
-    ground = mechanics.firm_chest * model.mean_stiffness * (SOFT_DEPTH / (depth + SKIN_DEPTH)) ** 2
+    ground = mechanics.firm_chest * firm_ground(model, mesh)
     return TensegricModel(
         model.rest,
         model.free,
@@ -206,6 +210,12 @@ def _grounded(model: TensegricModel, mesh: Mesh) -> TensegricModel:
         model.held,
         model.held_density,
     )
+
+
+def firm_ground(model: TensegricModel, mesh: Mesh) -> Floats:
+    """Return what ties each free point to its rest where ``firm_chest`` is 1, shape (f,) [1]."""
+    depth = tissue_depth(model, mesh)
+    return np.asarray(model.mean_stiffness * (SOFT_DEPTH / (depth + SKIN_DEPTH)) ** 2)
 
 
 def tissue_depth(model: TensegricModel, mesh: Mesh) -> Floats:

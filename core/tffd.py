@@ -142,6 +142,22 @@ class Binding:
             np.add.at(found, corner, share)
         return found
 
+    def pushed(self, control_points: Points, moved: Points) -> Floats:
+        """Return how fast ``change`` changes at ``control_points`` as they move by ``moved``, both (n, 3)."""
+        v0, v1, v2 = control_points[self._corners]
+        w0, w1, w2 = moved[self._corners]
+        across = np.cross(v1 - v0, v2 - v0)
+        by_move = np.cross(w1 - w0, v2 - v0) + np.cross(v1 - v0, w2 - w0)
+        length = np.where((size := np.linalg.norm(across, axis=1)) > 0.0, size, 1.0)[:, None]
+        unit = across / length
+        along = np.sum(unit * by_move, axis=1, keepdims=True) * unit
+        if self.scaled_normals:
+            rest = 2.0 * self.control.face_areas[self.triangles, None]
+            by_normal = (by_move - 0.5 * along) / np.sqrt(length * np.where(rest > 0.0, rest, 1.0))
+        else:
+            by_normal = (by_move - along) / length
+        return np.concatenate([moved[self.points], by_normal])
+
     @cached_property
     def _rest_frames(self) -> Floats:
         return self._frames(self.control.vertices)

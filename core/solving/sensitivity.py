@@ -55,12 +55,20 @@ class Answer:
         """Return the rates by the natural lengths of ``lines`` (p,), over their lengths at rest [mm / 1]."""
         model, place = self.potential.model, self.place
         pull = -self.potential.tape * model.segments.rest_lengths / place.lengths
-        forces = self._by_line(pull, lines)
+        forces = self.by_line(pull, lines)
         held = np.zeros((len(self.potential.wanted), len(lines)))
         of_line = model.sums(model.segments.rest_lengths)
         for row, line in enumerate(self.potential.held_lines, start=len(self.potential.sides)):
             held[row] = np.where(lines == line, -of_line[line], 0.0)
         return self._rates(forces, held)
+
+    def by_pull(self, pull: Floats, lines: Indices) -> Rates:
+        """Return the rates by the share to which ``pull`` (s,) is added to the segments of ``lines`` (p,).
+
+        It is a force over the length of each segment that draws its ends together.
+        """
+        held = np.zeros((len(self.potential.wanted), len(lines)))
+        return self._rates(self._by_line(pull, lines), held)
 
     @cached_property
     def by_excess(self) -> Rates:
@@ -87,7 +95,11 @@ class Answer:
         longer = model.sums(self.place.lengths - potential.natural)
         return model.tapes * longer, model.tapes[:, None] * (rates.of(np.stack(slopes)) - natural)
 
-    def _by_line(self, pull: Floats, lines: Indices) -> Floats:
+    def by_forces(self, forces: Floats) -> Rates:
+        """Return the rates by p settings one unit of which adds ``forces`` (3 f, p) to the energy's slope."""
+        return self._rates(forces, np.zeros((len(self.potential.wanted), forces.shape[1])))
+
+    def by_line(self, pull: Floats, lines: Indices) -> Floats:
         """Return the forces of the segments' ``pull`` (s,) along them, each line by itself, (3 f, p)."""
         segments, owner = self.potential.model.segments, self.potential.model.owner
         each = [
