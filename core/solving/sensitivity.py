@@ -62,14 +62,6 @@ class Answer:
             held[row] = np.where(lines == line, -of_line[line], 0.0)
         return self._rates(forces, held)
 
-    def by_pull(self, pull: Floats, lines: Indices) -> Rates:
-        """Return the rates by the share to which ``pull`` (s,) is added to the segments of ``lines`` (p,).
-
-        It is a force over the length of each segment that draws its ends together.
-        """
-        held = np.zeros((len(self.potential.wanted), len(lines)))
-        return self._rates(self._by_line(pull, lines), held)
-
     @cached_property
     def by_excess(self) -> Rates:
         """The rates by what the left and the right volume have beyond rest [mm / mm^3]."""

@@ -1,0 +1,90 @@
+"""Rates by what lines are made of: against differences of answers, with and without elastics."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+import pytest
+from models import LAWS, law_of, small
+from slopes import slope
+
+from core.design_elastics import Elastic
+from core.exact import solve_exact
+from core.mechanics import Mechanics
+from core.model import ConstrainedModel, assemble
+from core.solving.elastic_lines import ElasticLines, fit_elastics
+from core.solving.potential import Potential
+from core.solving.sensitivity import Answer
+from core.solving.stiffness import Changes, answers_to, by_stiffness
+
+RATIOS = (1.0, 0.93, 0.96)
+STEP = 5e-5
+ELASTIC = Elastic("curved", 12.0, ((0.0, 0.0), (0.02, 0.4), (0.3, 1.5), (0.9, 3.0)))
+
+
+def choices() -> list[Mechanics]:
+    return [
+        replace(law, line_contact=contact, volume_of=of)
+        for law, contact, of in product(LAWS, ("glued", "sliding"), ("each", "both"))
+    ]
+
+
+def answered(model: ConstrainedModel, ratios: tuple[float, ...] = RATIOS) -> Answer:
+    balance = solve_exact(model, ratios)
+    assert balance.found
+    return Answer(Potential(model, ratios), balance)
+
+
+def stiffened(model: ConstrainedModel, line: int, change: float) -> ConstrainedModel:
+    """Return the model with one line's stiffness greater by so much of its logarithm."""
+    usual = model.mechanics.line_stiffness
+    own = {each.name: usual * np.exp(change * (at == line)) for at, each in enumerate(model.lines)}
+    return assemble(model.tensegric, model.lines, model.volume, [line.name for line in model.lines], own)
+
+
+def pulls(answer: Answer) -> np.ndarray:
+    return answer.potential.tape * (answer.place.lengths - answer.potential.natural)
+
+
+@pytest.mark.parametrize("mechanics", choices(), ids=law_of)
+def test_rates_by_stiffness_are_those_of_differences(mechanics: Mechanics) -> None:
+    model = small(mechanics)
+    here = answered(model)
+    rates, every = by_stiffness(here, model.pulling), np.eye(len(model.lines))
+    followed = answers_to(here, Changes(every, 0.0 * every), {}, np.array(RATIOS))
+    for column, line in enumerate(model.pulling):
+        at = [answered(stiffened(model, int(line), change)) for change in (-STEP, STEP)]
+        moved, pull = (
+            (read(at[1]) - read(at[0])) / (2.0 * STEP)
+            for read in (lambda answer: answer.place.moved.ravel(), pulls)
+        )
+        assert np.abs(rates.moved[:, column] - moved).max() < 1e-6 * np.abs(moved).max()
+        assert np.abs(followed.pulls[:, line] - pull).max() < 1e-6 * np.abs(pull).max()
+
+
+@pytest.mark.parametrize("contact", ["glued", "sliding"])
+@pytest.mark.parametrize("what", ["force", "length"])
+def test_an_elastic_follows_its_curve(contact: str, what: str) -> None:
+    model = small(Mechanics(line_contact=contact))
+    names = [line.name for line in model.lines]
+    chosen = int(model.pulling[0])
+
+    def solved(change: float) -> Answer:
+        ratios = [ratio + change * (what == "length") * (at == chosen) for at, ratio in enumerate(RATIOS)]
+        grown = np.exp(change * (what == "force"))
+        elastic = replace(ELASTIC, curve=tuple((e, f * grown) for e, f in ELASTIC.curve))
+        wish = ElasticLines(model, dict(zip(names, ratios, strict=True)), {names[chosen]: elastic}, 2e-3, {})
+        fitted = fit_elastics(wish, lambda each: solve_exact(each, tuple(ratios)))
+        assert fitted.agreed
+        return answered(fitted.model, tuple(ratios))
+
+    here = solved(0.0)
+    setting = np.eye(len(names))[:, [chosen]]
+    forced, longer = (setting, 0.0 * setting) if what == "force" else (0.0 * setting, setting)
+    found = answers_to(here, Changes(forced, longer), {chosen: ELASTIC}, np.array(RATIOS))
+    both = slope(lambda step: np.concatenate([(a := solved(step)).place.moved.ravel(), pulls(a)]), 1e-3)
+    moved, pull = np.split(both, [found.moved.shape[0]])
+    assert np.abs(found.moved[:, 0] - moved).max() < 1e-6 * np.abs(moved).max()
+    assert np.abs(found.pulls[:, 0] - pull).max() < 1e-6 * np.abs(pull).max()
