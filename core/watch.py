@@ -54,9 +54,25 @@ class BodyWatch:
         """Return slopes by the control points, (n, 3), of both bust points times ``weights``, summed."""
         return self._binding.by_points(control_points, self._operator[:2].T @ weights)
 
+    def apexes(self, control_points: Points) -> Points:
+        """Return y and z of the left and the right apex, shape (2, 2) [mm]."""
+        places = self._places(control_points)
+        return np.stack([_apex(places[side]) for side in (self._left, self._right)])
+
+    def apex_slopes(self, control_points: Points, weights: Points) -> Points:
+        """Return slopes by the control points, (n, 3), of both apexes times ``weights`` (2, 2), summed."""
+        places = self._places(control_points)
+        slopes = np.zeros_like(places)
+        for side, weight in zip((self._left, self._right), weights, strict=True):
+            slopes[side, 1:] = _apex_slopes(places[side], weight)
+        return self._binding.by_points(control_points, self._operator.T @ slopes)
+
+    def _places(self, control_points: Points) -> Points:
+        return np.asarray(self._rest + self._operator @ self._binding.change(control_points))
+
     def __call__(self, control_points: Points) -> Marks:
         """Return the marks for control points, shape (n, 3) [mm]."""
-        places = self._rest + self._operator @ self._binding.change(control_points)
+        places = self._places(control_points)
         apex = np.mean([_apex(places[self._left]), _apex(places[self._right])], axis=0)
         (left_y, left_z), (right_y, right_z) = (places[:2] + self._away)[:, 1:].tolist()
         apex_out, outs = self._back - float(apex[0]), (self._back - left_y, self._back - right_y)
@@ -81,6 +97,14 @@ def _apex(places: Points) -> Points:
     """Return y and z of the apex, shape (2,) [mm]: a mean that favours what lies foremost."""
     weight = np.exp((places[:, 1].min() - places[:, 1]) / _SHARPNESS)
     return np.asarray(weight @ places[:, 1:] / weight.sum())
+
+
+def _apex_slopes(places: Points, by: Floats) -> Floats:
+    """Return slopes by y and z of the places, (k, 2), of the apex' y and z times ``by`` (2,), summed."""
+    weight = np.exp((places[:, 1].min() - places[:, 1]) / _SHARPNESS)
+    share = weight / weight.sum()
+    away = (places[:, 1:] - share @ places[:, 1:]) @ by
+    return np.asarray(share[:, None] * (by - away[:, None] / _SHARPNESS * [1.0, 0.0]))
 
 
 class Tapes:

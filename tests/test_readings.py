@@ -9,11 +9,14 @@ import pytest
 from slopes import doubled, slope
 
 from app.wording.samples import sample_design
+from core.aims.outline import profile_name, section_at
 from core.aims.readings import NAMES, reading
 from core.errors import UserError
 from core.measures import before_after
 from core.pipeline import Stages, build
+from core.profile import Plane, Slicer
 from core.solution import run
+from core.tffd import deform
 
 
 @pytest.fixture(scope="module")
@@ -21,7 +24,10 @@ def stages() -> Stages:
     return build(replace(sample_design(), volume="exact").with_line("mid-bust", 0.9))
 
 
-@pytest.mark.parametrize("name", NAMES)
+PROFILES = ("profile left 340", "profile right 320.125", "profile 60.5 375")
+
+
+@pytest.mark.parametrize("name", [*NAMES, *PROFILES])
 def test_slopes_are_those_of_differences(stages: Stages, name: str) -> None:
     here = run(stages).control_points
     way = np.random.default_rng(4).normal(size=here.shape) * ~stages.control.fixed[:, None]
@@ -44,7 +50,38 @@ def test_figures_are_those_of_the_marks_and_measures(stages: Stages) -> None:
     assert figures["girth"] == pytest.approx(after["bust_girth"].value, abs=0.2)
 
 
+def test_apexes_are_those_of_the_marks(stages: Stages) -> None:
+    points = run(stages).control_points
+    marks, rest = stages.watch(points), stages.rest_marks
+    assert reading(stages, "apex lift")(points).value == pytest.approx(marks.apex_z - rest.apex_z)
+    assert reading(stages, "apex out")(points).value == pytest.approx(marks.apex_protrusion - rest.apex_protrusion)
+    for what in ("apex lift", "apex out"):
+        both = [reading(stages, f"{what} {side}")(points).value for side in ("left", "right")]
+        assert reading(stages, what)(points).value == pytest.approx(sum(both) / 2.0)
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_profile_is_the_foremost_skin_of_the_section(stages: Stages, side: str) -> None:
+    points, at = run(stages).control_points, section_at(stages, side)
+    mesh = stages.body.mesh.moved(deform(stages.binding, points))
+    curves = Slicer(mesh, Plane("x", at)).curves(mesh.vertices)
+    middle = stages.landmarks.position(f"bust_point_{side}")[2]
+    for height in middle + np.arange(-90.0, 91.0, 15.0):
+        crossed = [
+            a[0] + (height - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
+            for curve in curves
+            for a, b in zip(curve.places[:-1], curve.places[1:], strict=True)
+            if (a[1] - height) * (b[1] - height) < 0.0
+        ]
+        out = reading(stages, profile_name(side, height))(points).value
+        assert out == pytest.approx(max(crossed), abs=1e-3)
+
+
 def test_what_cannot_be_asked_for_is_refused(stages: Stages) -> None:
     for name in ("lift upwards", "left", "", "girth left"):
         with pytest.raises(UserError, match="cannot be asked for"):
             reading(stages, name)
+    with pytest.raises(UserError, match="names no place of a profile"):
+        reading(stages, "profile left high")
+    with pytest.raises(UserError, match="no skin at a height of 9000 mm"):
+        reading(stages, "profile left 9000")

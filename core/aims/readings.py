@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from core.aims.apex import APEX
 from core.aims.bust import BUST
+from core.aims.even import EVEN
 from core.aims.figure import Family, Read
 from core.aims.girth import GIRTHS
 from core.aims.outline import OUTLINE
 from core.errors import UserError
 from core.pipeline import Stages
 
-FAMILIES: tuple[Family, ...] = (BUST, APEX, GIRTHS, OUTLINE)
+FAMILIES: tuple[Family, ...] = (BUST, APEX, GIRTHS, EVEN, OUTLINE)
 """A family of figures more is one row more; each has a file of its own beside this one."""
 
 NAMES = tuple(name for family in FAMILIES for name in family.names)
