@@ -31,8 +31,7 @@ def measures(mesh: Mesh, landmarks: Landmarks, own: Iterable[OwnMeasure] = ()) -
 
     One that the scan does not show is there with the value None and the reason.
     """
-    subject = subject_of(mesh, landmarks)
-    return _with_own(_ordered(_usual(subject)), subject, own)
+    return of_subject(subject_of(mesh, landmarks), own)
 
 
 def before_after(stages: Stages, control_points: Points) -> tuple[Measures, Measures]:
@@ -42,11 +41,17 @@ def before_after(stages: Stages, control_points: Points) -> tuple[Measures, Meas
     Raises ValueError unless there are as many control points as the control mesh has.
     """
     mesh, landmarks, own = stages.body.calm, stages.landmarks, stages.design.own_measures
-    rest, before = _rest(mesh, landmarks), _at_rest(mesh, landmarks)
-    after = _reshaped(rest, stages, control_points)
-    usual = dict(_usual(after))
-    usual["apex_lift"] = _lift(after, rest)
-    return _with_own(before, rest, own), _with_own(_ordered(usual), after, own)
+    rest, before = subject_at_rest(mesh, landmarks), _at_rest(mesh, landmarks)
+    after = reshaped(rest, stages, control_points)
+    return _with_own(before, rest, own), of_subject(after, own, rest)
+
+
+def of_subject(subject: Subject, own: Iterable[OwnMeasure] = (), rest: Subject | None = None) -> Measures:
+    """Return what a subject measures; told who it was at ``rest``, the lift of its apex too."""
+    usual = dict(_usual(subject))
+    if rest is not None:
+        usual["apex_lift"] = _lift(subject, rest)
+    return _with_own(_ordered(usual), subject, own)
 
 
 def own_before_after(stages: Stages, control_points: Points, own: OwnMeasure) -> tuple[Measure, Measure]:
@@ -54,24 +59,26 @@ def own_before_after(stages: Stages, control_points: Points, own: OwnMeasure) ->
 
     It need not belong to the design yet. Raises ValueError as ``before_after`` does.
     """
-    rest = _rest(stages.body.calm, stages.landmarks)
+    rest = subject_at_rest(stages.body.calm, stages.landmarks)
     before, after = (
-        next(own_measures(subject, (own,))) for subject in (rest, _reshaped(rest, stages, control_points))
+        next(own_measures(subject, (own,))) for subject in (rest, reshaped(rest, stages, control_points))
     )
     return before, after
 
 
 @lru_cache(maxsize=2)  # while a line is dragged, the body at rest is one and the same
-def _rest(mesh: Mesh, landmarks: Landmarks) -> Subject:
+def subject_at_rest(mesh: Mesh, landmarks: Landmarks) -> Subject:
+    """Return who is measured, at rest: the calm skin, ``body.calm``, with its landmarks."""
     return subject_of(mesh, landmarks)
 
 
 @lru_cache(maxsize=2)
 def _at_rest(mesh: Mesh, landmarks: Landmarks) -> Measures:
-    return _ordered(_usual(_rest(mesh, landmarks)))
+    return _ordered(_usual(subject_at_rest(mesh, landmarks)))
 
 
-def _reshaped(rest: Subject, stages: Stages, control_points: Points) -> Subject:
+def reshaped(rest: Subject, stages: Stages, control_points: Points) -> Subject:
+    """Return a subject as ``control_points``, shape (n, 3) [mm], reshape it."""
     moves = deform(stages.binding, control_points) - stages.body.mesh.vertices
     left, right = stages.body_change(control_points).tolist()
     return rest.moved(rest.mesh.vertices + calm_moves(stages.body, moves), (left, right))
