@@ -39,15 +39,16 @@ def mirror_plane(body: Mesh, still: Flags, start: float) -> float:
 class Sides:
     """Lays one side of a body over the other at x = ``middle`` [mm], again and again while it moves.
 
-    ``rows`` are the vertices whose answer changes when those of ``moving`` (k,) move.
+    ``rows`` are the vertices whose answer changes when those of ``moving`` (k,) move. ``partner`` (n,) is the
+    vertex across from each, of no meaning for those that are ``alone`` (n,).
     """
 
     def __init__(self, rest: Mesh, moving: Indices, middle: float) -> None:
         self.middle = middle
-        self._partner, self._alone = self._counterparts(rest)
+        self.partner, self.alone = self._counterparts(rest)
         moves = np.zeros(len(rest.vertices), dtype=bool)
         moves[moving] = True
-        self.rows = np.flatnonzero(moves | moves[self._partner])
+        self.rows = np.flatnonzero(moves | moves[self.partner])
 
     def differ(self, places: Points, normals: Points, rows: Indices | None = None) -> Floats:
         """Return how far the skin at ``rows`` (all if None) stands out beyond the other side, mirrored [mm].
@@ -55,8 +56,8 @@ class Sides:
         ``places`` [mm] and ``normals`` [1] are those of all vertices, (n, 3); NaN without a counterpart.
         """
         rows = np.arange(len(places)) if rows is None else rows
-        off = _stand_out(places, normals, rows, self._partner[rows], self.middle)
-        return np.where(self._alone[rows], np.nan, off)
+        off = _stand_out(places, normals, rows, self.partner[rows], self.middle)
+        return np.where(self.alone[rows], np.nan, off)
 
     def _counterparts(self, rest: Mesh) -> tuple[Indices, Flags]:
         found = cKDTree(rest.vertices).query(_mirrored(rest.vertices, self.middle))

@@ -1,4 +1,4 @@
-"""How much higher and further out the left bust point is than the right: figures that are even at 0 (ours)."""
+"""How much higher and further out the left bust point is than the right: even is 0 (ours)."""
 
 from __future__ import annotations
 
@@ -31,4 +31,4 @@ def _read(stages: Stages, name: str) -> Read:
 
 
 EVEN = Family(tuple(_MORE), _read)
-"""How much higher and further out the left bust point is than the right, as they lie and not since rest [mm]."""
+"""How much higher and further out the left bust point is than the right, as they lie now [mm]."""

@@ -1,0 +1,126 @@
+"""How left and right differ, at rest and reshaped: bust points, volumes and skin of both breasts (ours)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from math import hypot
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from core.advice.mirrored import MM3_PER_ML, Mirrored, SkinGap
+from core.body import Body
+from core.control_mesh import ControlMesh
+from core.landmark import SIDES
+from core.measures import calm_moves, subject_at_rest
+from core.measuring.subject import Subject, shows_breast
+from core.mesh import Points
+from core.patch import Patch
+from core.pipeline import Stages
+from core.tffd import deform
+
+NO_BREAST = "On one side no breast stands out: its bust point only mirrors the other one."
+NO_VOLUME = "The root of a breast does not show on both sides, so their volumes are not known."
+
+
+@dataclass(frozen=True)
+class Volumes:
+    """The volumes of both breasts [ml], each an estimate that may be off by its ``spread`` [ml]."""
+
+    left: float
+    right: float
+    left_spread: float
+    right_spread: float
+
+    @property
+    def more(self) -> float:
+        """By how much the left is larger [ml]."""
+        return self.left - self.right
+
+    @property
+    def spread(self) -> float:
+        """How far that may be off [ml]: nothing says that both roots are taken wrong alike."""
+        return hypot(self.left_spread, self.right_spread)
+
+
+@dataclass(frozen=True)
+class Evenness:
+    """How left and right differ in one shape of a body.
+
+    ``higher`` and ``further_out`` are how much higher and further to the front the left bust point is than
+    the right one, ``further_aside`` how much further from the mirror [mm]; ``volumes`` those of the breasts,
+    None where they are not known, and ``skin`` how one lies beside the other. ``gained`` is what the skin of
+    the left has gained since rest more than that of the right [ml].
+    """
+
+    higher: float
+    further_out: float
+    further_aside: float
+    gained: float
+    volumes: Volumes | None
+    skin: SkinGap | None
+
+    @property
+    def furthest(self) -> float:
+        """The larger one of what the bust points differ by in height and to the front [mm]."""
+        return max(abs(self.higher), abs(self.further_out))
+
+
+@dataclass(frozen=True)
+class BeforeAfter:
+    """How left and right differ ``before``, at rest, and ``after``; ``notes`` say what is not known."""
+
+    before: Evenness
+    after: Evenness
+    notes: tuple[str, ...]
+
+
+def evenness(stages: Stages, control_points: Points) -> BeforeAfter:
+    """Return how left and right differ at rest, and reshaped by ``control_points``, shape (n, 3) [mm].
+
+    Raises ValueError unless there are as many control points as the control mesh has.
+    """
+    before, after = (_of(stages, points) for points in (stages.control.mesh.vertices, control_points))
+    shown = all(shows_breast(stages.landmarks, side) for side in SIDES)
+    notes = (*(() if shown else (NO_BREAST,)), *(() if before.volumes else (NO_VOLUME,)))
+    return BeforeAfter(before, after, notes)
+
+
+def _of(stages: Stages, control_points: Points) -> Evenness:
+    mirrored = _mirrored(stages.body, stages.control, stages.patch)
+    left, right = stages.watch.bust_points(control_points)
+    aside = (left[0] - mirrored.middle) - (mirrored.middle - right[0])
+    gains = stages.body_change(control_points) / MM3_PER_ML
+    calm = stages.body.calm.vertices
+    moves = deform(stages.binding, control_points) - stages.body.mesh.vertices
+    return Evenness(
+        float(left[2] - right[2]),
+        float(right[1] - left[1]),
+        float(aside),
+        float(gains[0] - gains[1]),
+        _volumes(subject_at_rest(stages.body.calm, stages.landmarks), *gains.tolist()),
+        mirrored.gap(calm + calm_moves(stages.body, moves)),
+    )
+
+
+def _volumes(subject: Subject, *gains: float) -> Volumes | None:
+    """Return the volumes of breasts [ml] whose skin has gained so much: both measured at rest."""
+    if not all(side in subject.breasts and subject.fold_seen(side) for side in SIDES):
+        return None
+    left, right = (
+        subject.breasts[side].volume / MM3_PER_ML + gain for side, gain in zip(SIDES, gains, strict=True)
+    )
+    return Volumes(left, right, *(subject.spreads[side] / MM3_PER_ML for side in SIDES))
+
+
+@lru_cache(maxsize=2)  # while lines change, the body at rest and what of it moves are the same
+def _mirrored(body: Body, control: ControlMesh, patch: Patch) -> Mirrored:
+    """Return the breasts of a body: its skin nearest to control points that can move."""
+    calm, fade = body.calm, patch.fade
+    if len(calm.vertices) != len(fade):  # of a giant scan the calm skin is coarser
+        fade = fade[cKDTree(body.mesh.vertices).query(calm.vertices)[1]]
+    nearest = np.asarray(cKDTree(control.mesh.vertices).query(calm.vertices)[1])
+    breasts = ~control.fixed[nearest] & (fade > 0.0)
+    middle = float(control.mesh.vertices[control.border, 0].mean())
+    return Mirrored(calm, fade == 0.0, breasts, middle)

@@ -1,0 +1,123 @@
+"""Make even: what is asked for, what is parted for it, and what a solve makes of the reply."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from app.wording.samples import sample_design
+from core.advice.evening import (
+    ENOUGH,
+    EVEN,
+    even_goals,
+    make_even,
+    moves_one_side,
+    partable,
+    parted,
+)
+from core.aims.readings import reading
+from core.design_lines import LineTraits
+from core.errors import UserError
+from core.evenness import NO_BREAST, evenness
+from core.finding.bust_point import ACROSS
+from core.own_lines import ready_made
+from core.pipeline import Stages, build
+from core.solution import run
+from core.splitting import split
+from core.template import read_template
+
+TEMPLATE = read_template("168")
+
+
+@pytest.fixture(scope="module")
+def plain() -> Stages:
+    """The mannequin with a pair of straps, nothing worn."""
+    design = replace(sample_design("mannequin"), volume="exact", lines=())
+    for line in ready_made(TEMPLATE)["straps"]:
+        design = design.with_own_line(line)
+    return build(design)
+
+
+@pytest.fixture(scope="module")
+def uneven(plain: Stages) -> Stages:
+    """Straps of two lengths under a split mid-bust line."""
+    design = split(plain.design.with_line("mid-bust", 0.95), TEMPLATE, "mid-bust")
+    design = design.with_line("strap left", 0.9).with_line("strap right", 0.97)
+    return build(design, plain)
+
+
+def test_lines_across_both_sides_and_pairs_move_no_side_alone(plain: Stages) -> None:
+    design = plain.design.with_line("mid-bust", 0.95).with_line("under-bust", 0.95)
+    assert not moves_one_side(build(design, plain))
+    for name in ("strap left", "strap right"):
+        design = design.with_line(name, 0.95)
+    assert not moves_one_side(build(design, plain))
+    assert partable(design, TEMPLATE) == ("mid-bust", "strap left", "strap right")
+    after = parted(design, TEMPLATE)
+    assert after.worn() == {"mid-bust left", "mid-bust right", "strap left", "strap right", "under-bust"}
+    assert moves_one_side(build(after, plain))
+    assert not any(len(after.linked(name)) > 1 for name in after.worn())
+    apart = design.with_line("strap left", 0.9)
+    assert moves_one_side(build(apart, plain))
+    locked = design.with_traits(LineTraits("mid-bust", locked=True))
+    assert "mid-bust" not in partable(locked, TEMPLATE)
+    assert "mid-bust" in parted(locked, TEMPLATE).worn()
+
+
+def test_as_much_is_kept_as_there_are_lengths_left(plain: Stages, uneven: Stages) -> None:
+    points = run(uneven).control_points
+    goals = even_goals(uneven, points)
+    assert goals[:2] == EVEN
+    assert [goal.name for goal in goals[2:]] == ["lift", "out"]
+    assert all(goal.value == reading(uneven, goal.name)(points).value for goal in goals[2:])
+    two = build(split(plain.design.with_line("mid-bust", 0.95), TEMPLATE, "mid-bust"), plain)
+    assert even_goals(two, points) == EVEN
+
+
+def test_an_uneven_design_is_made_even_and_keeps_its_lift(uneven: Stages) -> None:
+    here = run(uneven).control_points
+    assert evenness(uneven, here).after.furthest > 2.0 * ENOUGH
+    made = make_even(uneven)
+    assert made.parted == ()
+    assert made.even
+    solved = run(build(made.reply.design, uneven)).control_points
+    told = evenness(uneven, solved).after
+    assert told.furthest < 0.1
+    assert made.after.higher == pytest.approx(told.higher, abs=1e-6)
+    assert made.before == evenness(uneven, here).after
+    assert made.reply.design.volume == uneven.design.volume
+    for name in ("lift", "out"):
+        assert reading(uneven, name)(solved).value == pytest.approx(
+            reading(uneven, name)(here).value, abs=0.1
+        )
+
+
+def test_what_hinders_is_parted_first_and_what_remains_is_told() -> None:
+    whole = build(replace(sample_design("person"), volume="exact", lines=()).with_line("mid-bust", 0.93))
+    made = make_even(whole)
+    assert made.parted == ("mid-bust",)
+    assert made.reply.design.worn() == {"mid-bust left", "mid-bust right"}
+    assert not made.even
+    assert made.reply.strained or made.reply.at_end
+    assert abs(made.after.higher) < abs(made.before.higher)
+    assert made.rest.higher == pytest.approx(-11.8, abs=0.1)
+
+
+def test_without_a_line_for_one_side_it_is_refused(plain: Stages) -> None:
+    for design in (
+        plain.design,
+        plain.design.with_line("under-bust", 0.95),
+        plain.design.with_line("mid-bust", 0.95).with_traits(LineTraits("mid-bust", locked=True)),
+    ):
+        with pytest.raises(UserError, match="one side alone"):
+            make_even(build(design, plain))
+
+
+def test_a_breast_that_does_not_show_is_not_made_even(uneven: Stages) -> None:
+    marks = uneven.landmarks
+    across = replace(marks.points["bust_point_left"], rule=ACROSS)
+    one = replace(marks, points={**marks.points, "bust_point_left": across})
+    with pytest.raises(UserError) as refusal:
+        make_even(replace(uneven, landmarks=one))
+    assert refusal.value.message == NO_BREAST
