@@ -136,10 +136,10 @@ def _verdict(reply: Reply) -> str:
         return "Reached."
     if not reply.agreed:
         return "Not reached: lengths, elastics and pressures did not come to agree, so there may be better."
-    return f"Not reachable; this is the nearest, because {' and '.join(_reasons(reply))}."
+    return f"Not reachable; this is the nearest, because {' and '.join(reasons(reply))}."
 
 
-def _reasons(reply: Reply) -> list[str]:
+def reasons(reply: Reply) -> list[str]:
     """Return why what was asked for is not reached, as parts of a sentence."""
     reasons = []
     for name in reply.at_end:
@@ -177,7 +177,7 @@ def _figures(asked: Asked) -> dict[str, Any]:
         },
         "reached": reply.reachable,
         "agreed": reply.agreed,
-        "because": [] if reply.reachable else _reasons(reply),
+        "because": [] if reply.reachable else reasons(reply),
         "tension_n": reply.tension,
         "max_kpa": dict(reply.pressure),
         "not_looked_at_for_pressure": list(reply.unseen),
