@@ -7,19 +7,19 @@ there with what was learnt, until figures and pressures agree.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
 from core.aims.answers import Look, NoBalanceError
-from core.aims.figure import Goal
+from core.aims.figure import Goal, Read
 from core.aims.reaching import NEAR, Bounds, Found, Search
+from core.aims.readings import reading
 from core.cutting import goes_on
 from core.design import Design, cannot_hold, no_balance
 from core.errors import LineError
-from core.mesh import Floats
 from core.pipeline import Stages, build
 from core.pressure import pressures
 from core.progress import Progress, quiet
@@ -29,6 +29,7 @@ from core.solving.newtons import newtons_per_unit
 
 _ROUNDS = 6
 _TOO_MUCH = 1.01  # over the limit of pressure, at which it counts as kept
+_SHOWN = 0.5  # how near to what was expected a hurried answer with elastics need be [mm]
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,9 +40,9 @@ class Reply:
     there is a reason: lines ``at_end`` are as short or as long as they may be, lines that are ``pressing`` do
     so as hard as they may, ``strained`` is a shape that would strain beyond what looks natural; without any
     the lines do not move it that way. ``agreed`` is False where lengths, elastics and pressures did not come
-    to agree: there may be better. ``pressure`` [kPa] is the largest of
-    each line that was looked at, ``unseen`` are the worn lines that were not. ``tension`` [N] is the sum over
-    the lines, an estimate where they are made of no elastic; ``answers`` how many were worked out.
+    to agree: there may be better. ``pressure`` [kPa] is the largest of each line that was looked at, and
+    ``limit`` what it may be; ``unseen`` are the worn lines that were not looked at. ``tension`` [N] is the
+    sum over the lines, an estimate where they are made of no elastic; ``answers`` how many were worked out.
     """
 
     design: Design
@@ -53,6 +54,7 @@ class Reply:
     strained: bool
     agreed: bool
     pressure: Mapping[str, float]
+    limit: float
     unseen: tuple[str, ...]
     tension: float
     answers: int
@@ -64,75 +66,137 @@ def ask(
     shortest: Mapping[str, float] | None = None,
     kept: Collection[str] = (),
     progress: Progress = quiet,
+    most_kpa: float | None = None,
 ) -> Reply:
     """Return the lengths of the worn lines that bring the body to ``goals``, or as near as they can.
 
     ``shortest`` [1] are ratios that named lines may not go below; locked lines and those ``kept`` stay.
-    Lines made of elastic press no more than the red light begins with. Raises UserError if no worn line is
-    free, nothing is asked, or nothing balances at the start; Cancelled.
+    Lines made of elastic press no more than ``most_kpa``, or than the red light begins with. Raises UserError
+    if no worn line is free, nothing is asked, or nothing balances at the start; Cancelled.
     """
-    bounds = Bounds(shortest or {}, kept)
-    # Two BLAS threads make these small products many times slower.
-    with threadpool_limits(1):
-        try:
-            return _Rounds(stages, goals, bounds, progress).reply()
-        except NoBalanceError:
-            held = stages.design.line_hold == "held"
-            raise (cannot_hold(stages.design) if held else no_balance()) from None
+    return Asking(stages, Bounds(shortest or {}, kept), most_kpa).reply(goals, progress)
 
 
-class _Rounds:
-    """Asked again and again, each time from the design that was found last."""
+class Asking:
+    """One design that is asked again and again: what one answer needed is there for the next.
 
-    def __init__(self, stages: Stages, goals: Sequence[Goal], bounds: Bounds, progress: Progress) -> None:
-        self._goals, self._progress = goals, progress
-        self._made = {} if stages.design.line_hold == "held" else stages.design.worn_elastics()
+    ``bounds`` and ``most_kpa`` are those of ``ask``.
+    """
+
+    def __init__(self, stages: Stages, bounds: Bounds | None = None, most_kpa: float | None = None) -> None:
+        self._stages, design = stages, stages.design
+        self._made = {} if design.line_hold == "held" else design.worn_elastics()
+        self._limit = comfort().red_kpa if most_kpa is None else most_kpa
+        bounds = bounds or Bounds({})
         shortest = dict(bounds.shortest)
         for name, elastic in self._made.items():
             # As if the line did not move the body: beyond that its elastic is not known.
             shortest[name] = max(shortest.get(name, 0.0), 1.0 / (1.0 + elastic.reach))
         self._bounds = replace(bounds, shortest=shortest)
+        self._newtons = newtons_per_unit(stages.model, design.tissue_stiffness)
+        self._reads: dict[str, Read] = {}
+        self._goals: Sequence[Goal] = ()
+        self._progress: Progress = quiet
+        self._search: Search | None = None
         self._hardest: dict[str, float] = {}
         self._pressure: dict[str, float] = {}
-        self._newtons = newtons_per_unit(stages.model, stages.design.tissue_stiffness)
-        self._answers = 0
-        self._search = self._begun(stages)
+        self._used: list[tuple[Search, int]] = []
 
-    def reply(self) -> Reply:
+    def reply(self, goals: Sequence[Goal], progress: Progress = quiet) -> Reply:
+        """Return the answer to ``goals``, which depends on them and the design alone; see ``ask``."""
+        return self._told(self._answered, goals, progress)
+
+    def hurried(self, goals: Sequence[Goal], progress: Progress = quiet) -> Reply:
+        """Return an answer near the last one, for a hand on its way: lengths that do it, not the best.
+
+        It is neither sought elsewhere nor checked from rest, and pressures are looked at once. Raises as
+        ``ask`` does.
+        """
+        return self._told(self._near_the_last, goals, progress)
+
+    def _told(self, answered: Callable[[], Reply], goals: Sequence[Goal], progress: Progress) -> Reply:
+        same = [goal.name for goal in goals] == [goal.name for goal in self._goals]
+        self._goals, self._progress, self._used = goals, progress, []
+        if not same:
+            self._search = None
+        # Two BLAS threads make these small products many times slower.
+        with threadpool_limits(1):
+            try:
+                return answered()
+            except NoBalanceError:
+                self._search = None
+                held = self._stages.design.line_hold == "held"
+                raise (cannot_hold(self._stages.design) if held else no_balance()) from None
+
+    # -- the answer
+
+    def _answered(self) -> Reply:
         """Return what was found; of what elastics make of it, the nearest that was seen."""
-        stages, found = self._search.stages, self._found(self._search.least())
+        self._hardest, self._pressure = {}, {}
+        search = self._begun(self._stages)
+        found = search.found(search.least())
         if not self._made:
-            return self._reply(found, agreed=True)
-        best = self._reply(found, agreed=False)
+            return self._kept(search, found, agreed=True)
+        stages, best = search.stages, self._reply(found, agreed=False)
         for _ in range(_ROUNDS):
             try:
                 stages = build(found.design, stages)
             except LineError:  # beyond the curve of an elastic, or no balance with it
                 break
-            self._search = self._begun(stages)
-            well = self._presses_well(stages, self._search.at(self._search.start))
-            seen = self._search.found(self._search.start)
+            search = self._begun(stages)
+            well = self._presses_well(search, search.at(search.start))
+            seen = search.found(search.start)
             if well and (not best.agreed or self._miss(seen) < best.miss):
-                best = self._reply(seen, agreed=True)
-            found = self._found(self._search.nearest())
-            if well and (seen.reached or np.abs(found.look.values - seen.look.values).max() < NEAR):
+                best = self._kept(search, seen, agreed=True)
+            if well and seen.reached:  # a first look is from rest, so this is what the design is solved to
+                return best
+            found = search.found(search.nearest())
+            if well and np.abs(found.look.values - seen.look.values).max() < NEAR:
                 return best
         return replace(best, agreed=False)
 
+    def _near_the_last(self) -> Reply:
+        if self._search is None:
+            return self._answered()
+        search = self._search
+        self._used.append((search, len(search)))
+        search.want(self._goals)
+        search.progress = self._progress
+        found = search.found(search.from_here(search.start))
+        if not self._made:
+            return self._kept(search, found, agreed=True)
+        try:
+            search = self._begun(build(found.design, search.stages))
+        except LineError:
+            return self._reply(found, agreed=False)
+        well = self._presses_well(search, search.at(search.start))
+        seen = search.found(search.start)
+        if not well or np.abs(seen.look.values - found.look.values).max() > _SHOWN:
+            seen = search.found(search.from_here(search.start))
+        return self._kept(search, seen, agreed=True)
+
+    # -- its parts
+
     def _begun(self, stages: Stages) -> Search:
-        return Search(stages, self._goals, self._bounds, self._progress)
+        reads = [self._read(goal.name) for goal in self._goals]
+        search = Search(stages, self._goals, self._bounds, self._progress, reads)
+        search.hardest = self._hardest
+        self._used.append((search, 0))
+        return search
 
-    def _found(self, lengths: Floats) -> Found:
-        self._answers += len(self._search)
-        return self._search.found(lengths)
+    def _read(self, name: str) -> Read:
+        # Figures hang on the body and its control mesh, not on the lines.
+        if name not in self._reads:
+            self._reads[name] = reading(self._stages, name)
+        return self._reads[name]
 
-    def _presses_well(self, stages: Stages, look: Look) -> bool:
+    def _presses_well(self, search: Search, look: Look) -> bool:
         """Look at what lines press with, limit what those that press too much may pull, and tell if none did.
 
         Only lines whose tension is known from an elastic are looked at, and for which the limit was set.
         """
-        limit, lines = comfort().red_kpa, stages.model.lines
-        tensions = line_tensions(stages, look.points)
+        stages, limit = search.stages, self._limit
+        lines, tensions = stages.model.lines, line_tensions(stages, look.points)
         seen = {line.name for line in lines if not goes_on(stages, line)} & set(self._made)
         worn = pressures(stages, look.points)
         self._pressure = {name: worn[name].largest for name in sorted(seen) if not tensions[name].estimate}
@@ -140,11 +204,16 @@ class _Rounds:
         for name, kpa in self._pressure.items():
             if pulls[name] > 0.0 and (kpa > limit or name in self._hardest):
                 self._hardest[name] = pulls[name] * limit / kpa
-        self._search.hardest = self._hardest
+        search.hardest = dict(self._hardest)
         return all(kpa < _TOO_MUCH * limit for kpa in self._pressure.values())
 
+    def _kept(self, search: Search, found: Found, *, agreed: bool) -> Reply:
+        """Return what was found, and go on from there when the next wish is in a hurry."""
+        search.start, self._search = found.lengths, search
+        return self._reply(found, agreed=agreed)
+
     def _reply(self, found: Found, *, agreed: bool) -> Reply:
-        design, limit = found.design, comfort().red_kpa / _TOO_MUCH**2
+        design, limit = found.design, self._limit / _TOO_MUCH**2
         values = found.look.values.tolist()
         return Reply(
             design,
@@ -156,9 +225,10 @@ class _Rounds:
             found.strained,
             agreed,
             dict(self._pressure),
+            self._limit,
             tuple(sorted(design.worn() - set(self._pressure))),
             self._newtons * float(np.maximum(found.look.pulls, 0.0).sum()),
-            self._answers,
+            sum(len(search) - before for search, before in self._used),
         )
 
     def _miss(self, found: Found) -> float:

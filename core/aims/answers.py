@@ -23,6 +23,8 @@ PERCENT = 0.01
 
 _SHARP = 2000.0  # of the smooth least margin: where ten edges strain alike it is 0.001 too careful
 
+_KEPT = 200  # answers, so that a hand may drag for as long as it likes
+
 _ALIKE = 1e-3  # two answers that are the same [mm]
 
 
@@ -77,6 +79,8 @@ class Answers:
         """Return the exact answer at ``lengths``, one a group, shape (p,) [%]. Raises NoBalanceError."""
         key = np.asarray(lengths, dtype=np.float64).tobytes()
         if key not in self._looks:
+            while len(self._looks) >= _KEPT:
+                del self._looks[next(iter(self._looks))]
             self._looks[key] = self._look(lengths)
         return self._looks[key]
 

@@ -32,6 +32,11 @@ def profile_name(section: str, height: float) -> str:
     return f"{PROFILE} {section} {height:.3f}"
 
 
+def section_of(name: str) -> str:
+    """Return the name of a profile's figure without its height; nothing for a figure of another kind."""
+    return name.rpartition(" ")[0] if name.startswith(f"{PROFILE} ") else ""
+
+
 def section_at(stages: Stages, section: str) -> float:
     """Return the x of a section [mm]: "left" and "right" go through the bust points at rest."""
     if section in ("left", "right"):

@@ -17,7 +17,8 @@ import numpy as np
 from scipy.optimize import lsq_linear, minimize
 
 from core.aims.answers import PERCENT, Answers, Look, NoBalanceError, free_lines
-from core.aims.figure import Goal
+from core.aims.figure import Goal, Read
+from core.aims.outline import section_of
 from core.aims.readings import reading
 from core.design import Design
 from core.errors import UserError
@@ -37,6 +38,7 @@ _HALFWAY = 0.9  # ratio at which a search begins anew
 _TRIES, _GOOD = 12, 1e-3  # steps to less tension, and a part of it that is not worth another
 _BOLD, _LAST = 8.0, 1e-4  # the longest step tried and the shortest [%]
 _EXACT = 1e-8  # [mm^2]
+_LITTLE = 1e-6  # a step that brings no more than this is the last one [mm^2]
 _LAZY = 1e-3  # of several ways that do the same, the shortest [mm / %]
 _STRICT = 10_000.0  # a limit that is broken by a ten-thousandth counts as a figure 1 mm off
 _INSIDE = 2e-4  # so far inside the limit of strain lengths stay [1]
@@ -57,7 +59,7 @@ class Bounds:
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """Lengths that were found, with the exact answer there, and what keeps them from going on.
+    """A design with the ``lengths`` that were found [%], the exact answer there, and what keeps it there.
 
     ``reached`` tells whether the answer is what was asked for. ``at_end`` names the lines as short or as long
     as they may be, ``pulled`` those with the most tension they may have; ``strained`` tells that the shape
@@ -65,6 +67,7 @@ class Found:
     """
 
     design: Design
+    lengths: Floats
     look: Look
     reached: bool
     at_end: tuple[str, ...]
@@ -82,16 +85,23 @@ class Search:
     hardest: Mapping[str, float] = MappingProxyType({})
 
     def __init__(
-        self, stages: Stages, goals: Sequence[Goal], bounds: Bounds, progress: Progress = quiet
+        self,
+        stages: Stages,
+        goals: Sequence[Goal],
+        bounds: Bounds,
+        progress: Progress = quiet,
+        reads: Sequence[Read] | None = None,
     ) -> None:
-        self.stages, self._progress = stages, progress
+        self.stages, self.progress = stages, progress
         self._groups = list(free_lines(stages, bounds.kept))
         if not goals or not self._groups:
             raise UserError(
                 "No line that moves the body may change.", "Wear one that is not locked, and name a figure."
             )
-        self._answers = Answers(stages, self._groups, [reading(stages, goal.name) for goal in goals])
-        self._wanted = np.array([goal.value for goal in goals])
+        reads = [reading(stages, goal.name) for goal in goals] if reads is None else reads
+        self._answers = Answers(stages, self._groups, reads)
+        self._weights = _weights([goal.name for goal in goals])
+        self.want(goals)
         low = [
             max(RATIO_LIMITS[0], *(bounds.shortest.get(name, 0.0) for name in each)) for each in self._groups
         ]
@@ -103,9 +113,13 @@ class Search:
         """The number of answers that were worked out."""
         return len(self._answers)
 
+    def want(self, goals: Sequence[Goal]) -> None:
+        """Look for other values of the same figures from now on."""
+        self._wanted = np.array([goal.value for goal in goals])
+
     def at(self, lengths: Floats) -> Look:
         """Return the exact answer at ``lengths``. Raises NoBalanceError, Cancelled."""
-        self._progress("asking", min(len(self) / _STEPS, 1.0))
+        self.progress("asking", min(len(self) / _STEPS, 1.0))
         return self._answers(lengths)
 
     def least(self) -> Floats:
@@ -125,17 +139,21 @@ class Search:
 
     def _near_by(self) -> Floats:
         """Return the nearest from the start or, if that does not reach what is wanted, from elsewhere."""
-        best = self._nearest(self.start)
+        best = self.from_here(self.start)
         for other in (1.0, _HALFWAY):
             if self._reached(self.at(best)):
                 break
             begin = np.clip(np.full(len(best), other / PERCENT), self._low, self._high)
             if self._look(begin) is not None:
-                best = min(best, self._nearest(begin), key=lambda lengths: self._amiss(self.at(lengths)))
+                best = min(best, self.from_here(begin), key=lambda lengths: self._amiss(self.at(lengths)))
         return best
 
-    def _nearest(self, start: Floats) -> Floats:
-        """Return where steps after Gauss and Newton lead from ``start``, none of them too bold."""
+    def from_here(self, start: Floats) -> Floats:
+        """Return where steps after Gauss and Newton lead from ``start``, none of them too bold.
+
+        Nothing is looked for elsewhere or from rest. Raises NoBalanceError if nothing balances at the start,
+        Cancelled.
+        """
         here, reach, most = start, _BOLD, len(self) + _STEPS
         look = self.at(here)
         while reach > _LAST and len(self) < most and self._amiss(look) > _EXACT:
@@ -144,7 +162,10 @@ class Search:
                 break
             seen = self._look(there)
             if seen is not None and self._amiss(seen) < self._amiss(look):
+                little = self._amiss(look) - self._amiss(seen) < _LITTLE
                 here, look, reach = there, seen, min(2.0 * reach, _BOLD)
+                if little:
+                    break
             else:
                 reach /= 4.0
         return here
@@ -182,7 +203,7 @@ class Search:
         )
         strain, *pulls = (self._room(look)[0] < _AT_LIMIT).tolist()
         pulled = tuple(name for name, there in zip(self.hardest, pulls, strict=True) if there)
-        return Found(design, look, self._reached(look), at_end, pulled, strain)
+        return Found(design, lengths, look, self._reached(look), at_end, pulled, strain)
 
     def _look(self, lengths: Floats) -> Look | None:
         try:
@@ -204,7 +225,8 @@ class Search:
 
     def _amiss(self, look: Look) -> float:
         """Return how far a look is from what is wanted, and how far it breaks limits besides [mm^2]."""
-        away, broken = look.values - self._wanted, _STRICT * np.minimum(self._room(look)[0], 0.0)
+        away = self._weights * (look.values - self._wanted)
+        broken = _STRICT * np.minimum(self._room(look)[0], 0.0)
         return float(away @ away + broken @ broken)
 
     def _towards(self, here: Floats, look: Look, reach: float) -> Floats:
@@ -216,12 +238,13 @@ class Search:
         count, limits = len(here), len(room)
         matrix = np.block(
             [
-                [look.by_values, np.zeros((len(self._wanted), limits))],
+                [self._weights[:, None] * look.by_values, np.zeros((len(self._wanted), limits))],
                 [_LAZY * np.eye(count), np.zeros((count, limits))],
                 [_STRICT * by_room, -_STRICT * np.eye(limits)],
             ]
         )
-        right = np.concatenate([self._wanted - look.values, np.zeros(count), -_STRICT * room])
+        away = self._weights * (self._wanted - look.values)
+        right = np.concatenate([away, np.zeros(count), -_STRICT * room])
         low, high = (np.clip(end - here, -reach, reach) for end in (self._low, self._high))
         # No line may stand still for lack of room between its ends.
         low, high = np.minimum(low, -1e-9), np.maximum(high, 1e-9)
@@ -236,6 +259,12 @@ class Search:
         how |= {"constraints": constraints, "options": {"maxiter": _TRIES, "ftol": _GOOD}}
         found = minimize(figure, start, method="SLSQP", **how)
         return np.asarray(np.clip(found.x, self._low, self._high))
+
+
+def _weights(names: Sequence[str]) -> Floats:
+    """Return what each figure counts for: all heights of one section together as much as another one."""
+    sections = [section_of(name) or name for name in names]
+    return 1.0 / np.sqrt([float(sections.count(section)) for section in sections])
 
 
 def _tension(look: Look, unit: float) -> Slopes:
