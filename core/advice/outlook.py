@@ -1,0 +1,127 @@
+"""How a run will end, known before it is made: where its turns come to rest, and whether they stay (ours).
+
+Turns of each control come to rest where the forces balance at the volume that the control then keeps. From
+there some dozen turns after a small push tell whether a swing fades or grows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from core.comparison import shape_of
+from core.exact import solve_exact
+from core.mesh import Floats
+from core.model import ConstrainedModel
+from core.pipeline import Stages, targets_of
+from core.solver import Record, State, Targets, iterate
+from core.solving.body_volume import solve_body_exact
+from core.solving.condition import Condition
+from core.solving.newton import Balance
+from core.volume import Pressure
+
+FADES = 0.975
+"""Growth of a swing per turn below which it is gone within the turns that a run is watched [1]; ours."""
+
+PUSH = 0.02
+"""How far the push moves a point at most [mm]: small enough for turns to answer in proportion."""
+
+_SPAN = 30
+_ROUNDS = 12
+_NEAR = 1e-7  # volume errors this far apart are the same [1]
+
+
+@dataclass(frozen=True, eq=False)
+class Outlook:
+    """Where the turns of a design come to rest, and in what ``condition`` the control mesh is there."""
+
+    model: ConstrainedModel
+    targets: Targets
+    balance: Balance
+    condition: Condition
+
+    @cached_property
+    def growth(self) -> float:
+        """By how much a small swing about it grows in a turn [1]; 0 where nothing swings."""
+        if self.targets.control == "exact":
+            return 0.0
+        return swing_growth(self.model, self.targets, self.balance)
+
+    @property
+    def stays(self) -> bool:
+        """Whether the run comes to rest there."""
+        return self.growth < FADES
+
+
+def outlook(stages: Stages) -> Outlook | None:
+    """Return how the run of a design will end, None where there is nothing for it to rest at."""
+    model, targets = stages.model, targets_of(stages.design, stages)
+    balance = _resting(stages, model, targets)
+    if not balance.found:
+        return None
+    condition = shape_of(model).condition(model.tensegric.expand(balance.state.moved))
+    return Outlook(model, targets, balance, condition)
+
+
+def _resting(stages: Stages, model: ConstrainedModel, targets: Targets) -> Balance:
+    if targets.control == "exact":
+        if stages.design.dense_volume:
+            return solve_body_exact(model, targets.ratios, stages.body_change)
+        return solve_exact(model, targets.ratios)
+    # Turns measure both breasts together, whatever the exact answer holds.
+    both = replace(model.tensegric, mechanics=replace(model.mechanics, volume_of="both"))
+    return _kept(replace(model, tensegric=both), targets)
+
+
+def _kept(model: ConstrainedModel, targets: Targets) -> Balance:
+    """Return the balance at the volume that a control keeps: another than at rest where it has no memory.
+
+    There the pressure is the gain times what is missing; that is closed in on by secants.
+    """
+    here = solve_exact(model, targets.ratios)
+    if targets.control in ("adaptive", "accumulating") or not here.found:
+        return here
+    gain = targets.gain if targets.control == "conventional" else 0.0
+
+    def missing(balance: Balance, excess: float) -> float:
+        return float(balance.pressures[0]) / model.pressure_unit + gain * excess
+
+    before, excess, amiss_before = 0.0, 0.0, missing(here, 0.0)
+    excess = -amiss_before / (gain + 0.3)
+    for _ in range(_ROUNDS):
+        here = solve_exact(
+            model, targets.ratios, excess=np.full(2, 0.5 * excess * model.volume.rest_volume), near=here
+        )
+        amiss = missing(here, excess)
+        if not here.found or abs(excess - before) < _NEAR or amiss == amiss_before:
+            return here
+        slope = (amiss - amiss_before) / (excess - before)
+        before, amiss_before, excess = excess, amiss, excess - amiss / slope
+    return here
+
+
+def swing_growth(model: ConstrainedModel, targets: Targets, balance: Balance) -> float:
+    """Return by how much a small swing about ``balance`` grows in a turn [1]; 0 if there is none."""
+    outward = model.rest_gradient
+    push = outward * (PUSH / np.linalg.norm(outward, axis=1).max())
+    pressure = Pressure(float(balance.pressures[0]) / model.pressure_unit)
+    error = float(model.volume.volume(model.tensegric.expand(balance.state.moved)))
+    error = (model.volume.rest_volume - error) / model.volume.rest_volume
+    start = State(balance.state.moved + push, replace(pressure, error=error), 0, balance.tensions)
+    records = [measured for _, measured in iterate(model, lambda: targets, start, turns=2 * _SPAN + 2)]
+    course = _course(records)
+    if len(course) < 2 * _SPAN + 2 or not np.isfinite(course).all():
+        return np.inf
+    bend = course[:-2] - 2.0 * course[1:-1] + course[2:]
+    early, late = np.linalg.norm(bend[:_SPAN]), np.linalg.norm(bend[_SPAN:])
+    return float((late / early) ** (1.0 / _SPAN)) if late > 1e-12 else 0.0
+
+
+def _course(records: list[Record]) -> Floats:
+    """Return what swings: volume error and lengths of lines in parts of their size, one row per turn."""
+    course = np.array([(record.error, *record.lengths) for record in records])
+    if len(course):
+        course[:, 1:] /= course[0, 1:]
+    return course

@@ -1,0 +1,82 @@
+"""How a design stands when it is run from rest as the window runs it: well, or with what complaint."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from core.comparison import Run, carried, shape_of
+from core.exact import solve_exact
+from core.pipeline import Stages, targets_of
+from core.solution import Solution, run
+from core.solver import turn
+from core.solving.body_volume import solve_body_exact
+from core.verdict import Verdict
+
+COMPLAINTS = ("strained", "settling", "overstrained", "folded", "vibrating", "diverging", "unreachable")
+"""What can be wrong, from the mildest to the worst: what a run is told as, and lengths without a balance."""
+
+
+@dataclass(frozen=True, eq=False)
+class Standing:
+    """A design that was run; ``complaint`` is one of COMPLAINTS, or empty if it is well."""
+
+    solution: Solution
+    complaint: str
+
+    @property
+    def stages(self) -> Stages:
+        """What was run."""
+        return self.solution.stages
+
+    @property
+    def verdict(self) -> Verdict:
+        """How the run ended."""
+        return self.solution.verdict
+
+    @property
+    def rank(self) -> int:
+        """How bad it is: 0 if it is well."""
+        return COMPLAINTS.index(self.complaint) + 1 if self.complaint else 0
+
+
+def standing(stages: Stages) -> Standing:
+    """Run a design from rest and tell how it stands.
+
+    As in the window a design whose lengths are held, or that asks for the exact answer, must have one.
+    """
+    solution = run(stages)
+    told = solution.verdict.told
+    complaint = "" if told == "settled" else told
+    held, exact = stages.design.line_hold == "held", stages.design.volume == "exact"
+    if (exact and solution.verdict.motion != "settled") or (
+        held and (told == "diverging" or not has_balance(stages))
+    ):
+        complaint = "unreachable"
+    return Standing(solution, complaint)
+
+
+def has_balance(stages: Stages) -> bool:
+    """Return whether an exact answer is found from rest."""
+    ratios = targets_of(stages.design, stages).ratios
+    if stages.design.dense_volume:
+        return solve_body_exact(stages.model, ratios, stages.body_change).found
+    return solve_exact(stages.model, ratios).found
+
+
+def gone_on(before: Standing, stages: Stages) -> Verdict | None:
+    """Return how turns end that go on under a changed design from where a run stands, as in the window.
+
+    None where they do not: an exact answer starts from rest, and so does what follows a refusal or a run that
+    ran away.
+    """
+    control, old = stages.design.volume, before.stages.model
+    never = before.complaint in ("unreachable", "diverging")
+    if never or control == "exact" or before.stages.design.volume != control:
+        return None
+    model, targets = stages.model, targets_of(stages.design, stages)
+    state = replace(carried(before.solution.state, old, model), turn=0)
+    again = Run(model, control, state, None)
+    while not again.resting:
+        again.take(*turn(model, targets, again.state))
+    points = model.tensegric.expand(again.state.moved)
+    return replace(again.verdict, condition=shape_of(model).condition(points))

@@ -1,0 +1,140 @@
+"""The doctor: what fights in a design that does not rest or strains, and the least that ends it (ours).
+
+A change is named only after the design was run with it as the window runs it, and ended well.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import chain
+
+from threadpoolctl import threadpool_limits
+
+from core.advice.fight import Fight, fight_of
+from core.advice.outlook import outlook
+from core.advice.remedy import (
+    Change,
+    Cure,
+    Search,
+    free_groups,
+    line_ways,
+    off_changes,
+    settings,
+    single_ways,
+    together_ways,
+    with_setting,
+)
+from core.advice.standing import Standing, standing
+from core.lines import Line
+from core.pipeline import Stages
+from core.progress import Progress, quiet
+from core.verdict import Verdict
+
+__all__ = ["Change", "Cure", "Diagnosis", "diagnose"]
+
+_MOST_GAIN = 10.0
+_GAIN_PRECISION = 0.005
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """What is wrong with a design, and what ends it.
+
+    ``complaint`` is one of ``standing.COMPLAINTS``, empty if the design is well. ``fight`` tells what pulls
+    against what. ``bears`` is the conventional gain at which the shape that the lines make begins to vibrate
+    (probe units [1]), None where that is not asked or not known. ``cure`` was run and ends it; ``others``
+    look as if they would too, and were not run. If there is no cure, ``nearest`` is the mildest of what was
+    run, and ``locked`` names worn lines that may not be changed.
+    """
+
+    standing: Standing
+    fight: Fight
+    bears: float | None = None
+    cure: Cure | None = None
+    others: tuple[Change, ...] = ()
+    nearest: Cure | None = None
+    locked: tuple[str, ...] = ()
+
+    @property
+    def stages(self) -> Stages:
+        """What was looked at."""
+        return self.standing.stages
+
+    @property
+    def complaint(self) -> str:
+        """What is wrong, or nothing."""
+        return self.standing.complaint
+
+    @property
+    def verdict(self) -> Verdict:
+        """How its run ended, with period and growth if it swings."""
+        return self.standing.verdict
+
+    def line(self, name: str) -> Line:
+        """Return a line of the design by name."""
+        return next(line for line in self.stages.model.lines if line.name == name)
+
+    def longer_mm(self, change: Change) -> float:
+        """Return by how much the first line of a change is set longer, negative if shorter [mm]."""
+        name, before = change.lines[0], self.stages.design
+        return (change.design.ratio(name) - before.ratio(name)) * self.line(name).rest_length
+
+
+def diagnose(stages: Stages, progress: Progress = quiet) -> Diagnosis:
+    """Return what is wrong with the design of ``stages``, and the smallest change that ends it.
+
+    First a single line or the gain; if none does, a choice of the model, then that and a line; then all lines
+    nearer to rest, alone or with such a choice; last a line taken off. ``progress`` hears each step; raises
+    Cancelled.
+    """
+    # Two BLAS threads make these small products many times slower.
+    with threadpool_limits(1):
+        progress("diagnosing", 0.0)
+        found = Diagnosis(standing(stages), fight_of(stages, progress))
+        if not found.complaint:
+            return found
+        if stages.design.volume == "conventional" and found.complaint in ("vibrating", "diverging"):
+            found = replace(found, bears=borne_gain(stages, progress))
+        return _treated(found, Search(found.standing, progress))
+
+
+def _treated(found: Diagnosis, search: Search) -> Diagnosis:
+    stages = found.stages
+    cure, others = search.smallest(single_ways(stages))
+    choices = list(settings(stages.design, found.complaint))
+    cure = cure or search.first_of(iter(choices))
+    for ways in (line_ways, together_ways):
+        if cure is None and ways is together_ways:
+            cure, _ = search.smallest(together_ways(stages))
+        for choice in choices:
+            chosen = replace(stages, design=choice.design)
+            cure = cure or search.smallest(with_setting(choice, ways(chosen)))[0]
+    cure = cure or search.first_of(off_changes(stages))
+    if cure is not None:
+        return replace(found, cure=cure, others=tuple(others))
+    worn = (line.name for line in stages.model.lines if line.constrains)
+    free = set(chain.from_iterable(free_groups(stages)))
+    locked = tuple(name for name in worn if name in stages.design.worn() and name not in free)
+    milder = [each for each in search.tried if each.standing.rank < found.standing.rank]
+    nearest = min(milder, key=lambda each: (each.standing.rank, each.change.size), default=None)
+    return replace(found, nearest=nearest, locked=locked)
+
+
+def borne_gain(stages: Stages, progress: Progress = quiet) -> float | None:
+    """Return the conventional gain at which the shape that the lines make begins to vibrate, None if unknown.
+
+    Where the turns of a gain come to rest is worked out anew for each that is tried.
+    """
+
+    def grows(gain: float) -> bool:
+        progress("diagnosing", 0.0)
+        seen = outlook(replace(stages, design=replace(stages.design, gain=gain)))
+        return seen is None or seen.growth > 1.0
+
+    low, high = 0.0, min(2.0 * stages.gain_limit, _MOST_GAIN)
+    if grows(low) or not grows(high):
+        return None
+    while high - low > _GAIN_PRECISION:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if grows(middle) else (middle, high)
+    return low
