@@ -124,3 +124,50 @@ def _mirrored(body: Body, control: ControlMesh, patch: Patch) -> Mirrored:
     breasts = ~control.fixed[nearest] & (fade > 0.0)
     middle = float(control.mesh.vertices[control.border, 0].mean())
     return Mirrored(calm, fade == 0.0, breasts, middle)
+
+
+@dataclass(frozen=True)
+class EvenRow:
+    """One figure ``before`` and ``after`` in ``unit``, None where it is not known.
+
+    A ``sided`` one is positive where it is the left that is higher, further or larger, negative where it is
+    the right; it may be off by ``spread``.
+    """
+
+    key: str
+    unit: str
+    before: float | None
+    after: float | None
+    sided: bool = True
+    spread: float = 0.0
+
+
+def even_rows(before: Evenness, after: Evenness) -> list[EvenRow]:
+    """Return how left and right differ as a table, two shapes side by side."""
+    found = [_values(each) for each in (before, after)]
+    spread = after.volumes.spread if after.volumes else 0.0
+    units = {key: "ml" if key in ("larger", "left_more", "right_more") else "mm" for key in found[0]}
+    return [
+        EvenRow(
+            key,
+            units[key],
+            *(each[key] for each in found),
+            sided=key not in ("mean", "left_more", "right_more"),
+            spread=spread if key == "larger" else 0.0,
+        )
+        for key in found[0]
+    ]
+
+
+def _values(told: Evenness) -> dict[str, float | None]:
+    skin, volumes = told.skin, told.volumes
+    return {
+        "higher": told.higher,
+        "further_out": told.further_out,
+        "further_aside": told.further_aside,
+        "larger": volumes.more if volumes else None,
+        "mean": skin.mean if skin else None,
+        "largest": (skin.largest if skin.side == "left" else -skin.largest) if skin else None,
+        "left_more": skin.left_more if skin else None,
+        "right_more": skin.right_more if skin else None,
+    }

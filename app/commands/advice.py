@@ -14,10 +14,21 @@ def ask(options: argparse.Namespace) -> int:
     """Find the lengths of lines that bring the body to what is wished, and print them."""
     from app.commands.asked import AskWishes, asked_text, run_ask
 
-    wishes = AskWishes(options.want, options.lock or [], options.shortest or [], options.out)
+    bounds = options.lock or [], options.shortest or [], options.pressure
+    wishes = AskWishes(options.want or [], options.profile or [], *bounds, options.out)
     design = design_of(options.input, options)
     asked = run_ask(options.input, design, options.line or [], options.elastic or [], wishes)
     return told(asked_text(asked, options.json), asked.reply.reachable, [])
+
+
+def even(options: argparse.Namespace) -> int:
+    """Tell how left and right differ, and find the lengths that make them alike."""
+    from app.commands.even import even_text, run_even
+
+    design, lengths, elastics = design_of(options.input, options), options.line or [], options.elastic or []
+    found = run_even(options.input, design, lengths, elastics, make=options.make, out=options.out)
+    well = found.settled and (found.enough or not options.make)
+    return told(even_text(found, options.json, made=options.make), well, found.warnings)
 
 
 def limits(options: argparse.Namespace) -> int:
@@ -33,5 +44,5 @@ def limits(options: argparse.Namespace) -> int:
     return SETTLED
 
 
-ADVICE: dict[str, Callable[[argparse.Namespace], int]] = {"ask": ask, "limits": limits}
+ADVICE: dict[str, Callable[[argparse.Namespace], int]] = {"ask": ask, "even": even, "limits": limits}
 """Each command that advises, with what does it."""

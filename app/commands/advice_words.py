@@ -4,12 +4,21 @@ from __future__ import annotations
 
 import argparse
 
-from app.commands.settings import WANT_HELP
+from app.commands.settings import PRESSURE_HELP, PROFILE_HELP, WANT_HELP
+
+
+def add_evening(parser: argparse.ArgumentParser) -> None:
+    """Add that left and right are to be made even, and where to."""
+    make = "find the lengths that make left and right even; lines across both sides are split for it"
+    parser.add_argument("--make", action="store_true", help=make)
+    parser.add_argument("--out", default="", metavar="FILE", help="save what was found as a project: .busk")
 
 
 def add_wishes(parser: argparse.ArgumentParser) -> None:
     """Add what can be asked for, and what lines may do for it."""
-    parser.add_argument("--want", action="append", required=True, metavar="NAME=VALUE", help=WANT_HELP)
+    parser.add_argument("--want", action="append", metavar="NAME=VALUE", help=WANT_HELP)
+    parser.add_argument("--profile", action="append", metavar="[SECTION=]FILE.csv", help=PROFILE_HELP)
+    parser.add_argument("--pressure", type=float, metavar="KPA", help=PRESSURE_HELP)
     parser.add_argument(
         "--lock", action="append", metavar="LINE", help="a worn line that is to stay as it is"
     )
