@@ -29,7 +29,6 @@ from core.solving.newtons import newtons_per_unit
 
 _ROUNDS = 6
 _TOO_MUCH = 1.01  # over the limit of pressure, at which it counts as kept
-_SHOWN = 0.5  # how near to what was expected a hurried answer with elastics need be [mm]
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,7 +170,7 @@ class Asking:
             return self._reply(found, agreed=False)
         well = self._presses_well(search, search.at(search.start))
         seen = search.found(search.start)
-        if not well or np.abs(seen.look.values - found.look.values).max() > _SHOWN:
+        if not (well and seen.reached):
             seen = search.found(search.from_here(search.start))
         return self._kept(search, seen, agreed=True)
 

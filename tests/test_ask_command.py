@@ -38,7 +38,6 @@ def test_wishes_are_read_as_people_write_them() -> None:
         (["waist=700mm"], "the names are: lift, lift left"),
         (["girth=88000mm"], "no length of a body"),
         (["lift=1mm", "lift=2mm"], "asked for twice"),
-        ([], "Nothing is asked for"),
     ],
 )
 def test_what_is_no_wish_is_refused(wants: list[str], sentence: str) -> None:
@@ -71,6 +70,25 @@ def test_what_is_not_reached_ends_with_three_and_says_why(capsys: pytest.Capture
     assert "Not looked at for pressure" in told
 
 
+def test_a_profile_is_asked_for_from_a_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    table = tmp_path / "wish.csv"
+    table.write_text("height_mm;out_mm\n330,0;135,5\n350;140\n370;138\n")
+    assert main(["ask", SCAN, *WORN, "--profile", f"right={table}", "--pressure", "2.5"]) == NOT_SETTLED
+    told = capsys.readouterr().out
+    assert re.search(
+        r"^profile right: 3 heights, off by \d+\.\d mm in the mean, \d+\.\d mm at most\.$", told, re.M
+    )
+    assert main(["ask", SCAN, *WORN, "--profile", str(table), "--want", "lift=0mm", "--json"]) == NOT_SETTLED
+    figures = json.loads(capsys.readouterr().out)["figures"]
+    assert list(figures) == ["lift", *(f"profile left {height}.000" for height in (330, 350, 370))]
+    assert figures["profile left 330.000"]["wanted_mm"] == 135.5
+
+
+def test_something_has_to_be_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["ask", SCAN, *WORN]) == BAD_INPUT
+    assert "Nothing is asked for. Name a figure" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
@@ -79,6 +97,8 @@ def test_what_is_not_reached_ends_with_three_and_says_why(capsys: pytest.Capture
         ((*WORN, "--shortest", "mid-bust=soon"), "is not a length for mid-bust"),
         ((*WORN, "--lock", "mid-bust", "--lock", "full-bust"), "No line that moves the body may change"),
         ((*WORN, "--out", "found.ply"), "no name of a project"),
+        ((*WORN, "--profile", "missing.csv"), "cannot be read as a table"),
+        ((*WORN, "--pressure", "0"), "no pressure to keep to"),
     ],
 )
 def test_what_cannot_be_asked_is_refused(

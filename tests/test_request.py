@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from app.wording.samples import sample_design
 from core.advice.limits import limits_of
 from core.aims.figure import Goal
+from core.aims.outline import profile_name
 from core.aims.reaching import NEAR, Bounds, Search
 from core.aims.readings import reading
 from core.elastics import find_elastic
 from core.errors import UserError
 from core.pipeline import Stages, build
 from core.progress import Cancelled
-from core.request import Reply, ask
+from core.request import Asking, Reply, ask
 from core.sewing.comfort import comfort
 from core.solution import run
 from core.solving.newtons import newtons_per_unit
@@ -49,7 +51,9 @@ def off(reply: Reply, stages: Stages, goals: list[Goal]) -> float:
 
 
 @pytest.mark.parametrize("contact", CONTACTS)
-@pytest.mark.parametrize("names", [("girth",), ("out",), ("lift", "girth")], ids=" ".join)
+@pytest.mark.parametrize(
+    "names", [("girth",), ("out",), ("lift", "girth"), ("apex lift", "apex out left")], ids=" ".join
+)
 def test_what_a_known_design_does_is_found(rest: Stages, names: tuple[str, ...], contact: str) -> None:
     truth = wearing(rest, 0.93, 0.97, line_contact=contact)
     start = wearing(rest, 1.0, 1.0, line_contact=contact)
@@ -145,6 +149,53 @@ def test_no_elastic_presses_more_than_it_may(rest: Stages) -> None:
     assert not reply.reachable
     assert reply.pressing
     assert max(reply.pressure.values()) < 1.02 * limit
+
+
+def test_a_lower_limit_of_pressure_is_kept_too(rest: Stages) -> None:
+    start, wish = elastics(rest, 0.85, 0.85), [Goal("out", -8.0)]
+    usual, eased = ask(start, wish), ask(start, wish, most_kpa=1.5)
+    assert (usual.limit, eased.limit) == (comfort().red_kpa, 1.5)
+    assert max(eased.pressure.values()) < 1.02 * 1.5 < max(usual.pressure.values())
+    assert eased.pressing
+    assert eased.miss > usual.miss
+
+
+@pytest.mark.parametrize("contact", CONTACTS)
+def test_a_profile_is_met_and_what_is_left_of_it_is_told(rest: Stages, contact: str) -> None:
+    truth = wearing(rest, 0.92, 0.96, line_contact=contact)
+    start = wearing(rest, 1.0, 1.0, line_contact=contact)
+    names = [
+        profile_name(side, height) for side in ("left", "right") for height in np.arange(300.0, 401.0, 10.0)
+    ]
+    goals = goals_of(truth, *names)
+    reply = ask(start, goals)
+    assert reply.reachable
+    assert off(reply, start, goals) < 2.0 * NEAR
+    # Nowhere on the way from rest to the truth: as near as lines can come, in the mean square.
+    further = [Goal(goal.name, goal.value + 4.0 * (goal.value > goals[3].value)) for goal in goals]
+    nearest = ask(start, further)
+    assert not nearest.reachable
+    here = sum((nearest.reached[goal.name] - goal.value) ** 2 for goal in further)
+    for mid, full in ((0.92, 0.96), (1.0, 1.0), (1.0, 0.96), (0.92, 1.0)):
+        other = wearing(rest, mid, full, line_contact=contact)
+        assert here < sum((figure(other, goal.name) - goal.value) ** 2 for goal in further) + 1e-6
+
+
+@pytest.mark.parametrize("made", [False, True], ids=["springs", "elastics"])
+def test_a_hurried_answer_goes_on_from_the_last_one(rest: Stages, made: bool) -> None:
+    start = elastics(rest, 0.95, 0.95) if made else wearing(rest, 0.98, 0.98)
+    begin = figure(start, "girth")
+    asking = Asking(start)
+    first = asking.reply([Goal("girth", begin - 1.0)])
+    for further in (1.5, 2.0, 2.5):
+        goals = [Goal("girth", begin - further)]
+        quick = asking.hurried(goals)
+        assert quick.reachable
+        assert quick.answers < (8 if made else 5)
+        assert off(quick, start, goals) < 2.0 * NEAR
+    # In no hurry the answer hangs on the wish alone.
+    again = asking.reply([Goal("girth", begin - 1.0)])
+    assert again.design.lines == first.design.lines
 
 
 def test_what_is_not_made_of_elastic_is_not_looked_at_for_pressure(rest: Stages) -> None:

@@ -9,32 +9,43 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from app.commands.settings import dressed, made_of
 from core import __version__
+from core.aims.curve_file import profile_goals, read_profile
 from core.aims.figure import Goal
 from core.aims.girth import GIRTH
+from core.aims.outline import profiles_off, section_of
 from core.aims.readings import NAMES
 from core.design import Design
 from core.document import Document
 from core.errors import LineError, UserError
 from core.lines import Line, length_ratio
+from core.mesh import Floats
 from core.pipeline import Stages, build
 from core.project import SUFFIX, is_project, open_project, save_project
 from core.request import Reply, ask
-from core.sewing.comfort import comfort
 
 _WANT = re.compile(r"\s*([a-z ]+?)\s*=\s*([+-]?\d+(?:[.,]\d+)?)\s*(mm|cm|in)?\s*")
 _MM = {None: 1.0, "mm": 1.0, "cm": 10.0, "in": 25.4}
+_SECTION = re.compile(r"\s*(left|right|[+-]?\d+(?:\.\d+)?)\s*=", re.IGNORECASE)
 _LARGEST = 10_000.0  # mm
+_HARDEST = 50.0  # kPa
 
 
 @dataclass(frozen=True)
 class AskWishes:
-    """What is asked as it is written: NAME=VALUE, LINE, LINE=LENGTH each; ``out`` a project, or empty."""
+    """What is asked as it is written: NAME=VALUE, SECTION=FILE, LINE, LINE=LENGTH each.
+
+    ``pressure`` [kPa] is the most that elastics may press with; ``out`` a project, or empty.
+    """
 
     want: Sequence[str]
+    profile: Sequence[str] = ()
     lock: Sequence[str] = ()
     shortest: Sequence[str] = ()
+    pressure: float | None = None
     out: str = ""
 
 
@@ -55,7 +66,11 @@ def run_ask(
 
     ``source`` is the file it came from. Raises UserError, before anything is worked out if a wish cannot be.
     """
-    goals = goals_of(wishes.want)
+    goals, curves = goals_of(wishes.want), [_curve(each) for each in wishes.profile]
+    if not goals and not curves:
+        raise UserError("Nothing is asked for.", "Name a figure: --want lift=5mm.")
+    if wishes.pressure is not None and not 0.0 < wishes.pressure < _HARDEST:
+        raise UserError("That is no pressure to keep to.", f"Write kPa between 0 and {_HARDEST:g}.")
     if wishes.out and not is_project(wishes.out):
         raise UserError(f"{wishes.out} is no name of a project.", f"Name one: --out design{SUFFIX}.")
     stages = build(design)
@@ -65,7 +80,10 @@ def run_ask(
     stages = build(design, stages)
     worn = {line.name.lower(): line for line in stages.model.lines if line.name in design.worn()}
     kept = [_worn(worn, name, name).name for name in wishes.lock]
-    reply = ask(stages, goals, dict(_shortest(worn, each) for each in wishes.shortest), kept)
+    for section, curve in curves:
+        goals += profile_goals(stages, section, curve)
+    shortest = dict(_shortest(worn, each) for each in wishes.shortest)
+    reply = ask(stages, goals, shortest, kept, most_kpa=wishes.pressure)
     if wishes.out:
         document = open_project(source) if is_project(source) else Document.of(reply.design)
         save_project(wishes.out, document.with_design(reply.design), stages.scan, None)
@@ -87,9 +105,14 @@ def goals_of(wants: Sequence[str]) -> tuple[Goal, ...]:
         if name in goals:
             raise UserError(f"{name} is asked for twice.", "Ask once.")
         goals[name] = Goal(name, value)
-    if not goals:
-        raise UserError("Nothing is asked for.", "Name a figure: --want lift=5mm.")
     return tuple(goals.values())
+
+
+def _curve(request: str) -> tuple[str, Floats]:
+    """Return the section and the curve, (k, 2) [mm], of one request. Raises UserError."""
+    match = _SECTION.match(request)
+    section = match[1].lower() if match else "left"
+    return section, read_profile(request[match.end() :] if match else request)
 
 
 def _worn(worn: Mapping[str, Line], name: str, request: str) -> Line:
@@ -112,11 +135,17 @@ def asked_text(asked: Asked, as_json: bool) -> str:
 
 def _plain(asked: Asked) -> Iterator[str]:
     reply = asked.reply
-    yield f"{'':12}{'asked for':>12}{'reached':>12}"
-    for goal in asked.goals:
+    single = [goal for goal in asked.goals if not section_of(goal.name)]
+    wide = max([12, *(len(goal.name) + 1 for goal in single)])
+    if single:
+        yield f"{'':{wide}}{'asked for':>12}{'reached':>12}"
+    for goal in single:
         sign = "" if goal.name == GIRTH else "+"
         wanted, got = (f"{value:{sign}.1f} mm" for value in (goal.value, reply.reached[goal.name]))
-        yield f"{goal.name:12}{wanted:>12}{got:>12}"
+        yield f"{goal.name:{wide}}{wanted:>12}{got:>12}"
+    for section, off in profiles_off(asked.goals, reply.reached).items():
+        mean, most = np.sqrt((off**2).mean()), np.abs(off).max()
+        yield f"{section}: {len(off)} heights, off by {mean:.1f} mm in the mean, {most:.1f} mm at most."
     for line in asked.stages.model.lines:
         if line.name in reply.design.worn():
             ratio, before = (design.ratio(line.name) for design in (reply.design, asked.stages.design))
@@ -152,7 +181,7 @@ def reasons(reply: Reply) -> list[str]:
 
 
 def _pressures(reply: Reply) -> Iterator[str]:
-    limit = f"{comfort().red_kpa:g}"
+    limit = f"{reply.limit:g}"
     for name, kpa in reply.pressure.items():
         yield f"{name} presses with {kpa:.2f} kPa at most; it may with {limit}."
     if reply.unseen:
@@ -180,6 +209,7 @@ def _figures(asked: Asked) -> dict[str, Any]:
         "because": [] if reply.reachable else reasons(reply),
         "tension_n": reply.tension,
         "max_kpa": dict(reply.pressure),
+        "limit_kpa": reply.limit,
         "not_looked_at_for_pressure": list(reply.unseen),
         "written_to": asked.out or None,
         "versions": {"busk": __version__},

@@ -7,12 +7,13 @@ front to back through the left bust point at rest; ``profile 85.5 1150`` that on
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
 import numpy as np
 from scipy import sparse
 
-from core.aims.figure import Family, Read, Reading
+from core.aims.figure import Family, Goal, Read, Reading
 from core.errors import UserError
 from core.mesh import Floats, Indices, Mesh, Points
 from core.pipeline import Stages
@@ -35,6 +36,15 @@ def profile_name(section: str, height: float) -> str:
 def section_of(name: str) -> str:
     """Return the name of a profile's figure without its height; nothing for a figure of another kind."""
     return name.rpartition(" ")[0] if name.startswith(f"{PROFILE} ") else ""
+
+
+def profiles_off(goals: Sequence[Goal], reached: Mapping[str, float]) -> dict[str, Floats]:
+    """Return by how much what is ``reached`` stands out further than asked for, (k,) [mm], by section."""
+    off: dict[str, list[float]] = {}
+    for goal in goals:
+        if section_of(goal.name):
+            off.setdefault(section_of(goal.name), []).append(reached[goal.name] - goal.value)
+    return {section: np.array(each) for section, each in off.items()}
 
 
 def section_at(stages: Stages, section: str) -> float:
