@@ -144,18 +144,19 @@ class EvenRow:
 
 def even_rows(before: Evenness, after: Evenness) -> list[EvenRow]:
     """Return how left and right differ as a table, two shapes side by side."""
-    found = [_values(each) for each in (before, after)]
+    first, last = _values(before), _values(after)
     spread = after.volumes.spread if after.volumes else 0.0
-    units = {key: "ml" if key in ("larger", "left_more", "right_more") else "mm" for key in found[0]}
+    units = {key: "ml" if key in ("larger", "left_more", "right_more") else "mm" for key in first}
     return [
         EvenRow(
             key,
             units[key],
-            *(each[key] for each in found),
+            first[key],
+            last[key],
             sided=key not in ("mean", "left_more", "right_more"),
             spread=spread if key == "larger" else 0.0,
         )
-        for key in found[0]
+        for key in first
     ]
 
 

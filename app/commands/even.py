@@ -94,11 +94,11 @@ def even_text(even: Even, as_json: bool, *, made: bool) -> str:
 
 def _plain(even: Even, made: bool) -> Iterator[str]:
     rows = even_rows(even.told.before, even.told.after)
-    last = _made_rows(even) or [None] * len(rows)
+    made_rows = {row.key: row.after for row in _made_rows(even)}
     heading = ("before", "after", *(["made even"] if even.made else []))
     yield f"{'':26}" + "".join(f"{each:>17}" for each in heading)
-    for row, third in zip(rows, last, strict=True):
-        values = [row.before, row.after, *([third.after] if third else [])]
+    for row in rows:
+        values = [row.before, row.after, *([made_rows[row.key]] if made_rows else [])]
         spread = f"  ± {row.spread:.0f}, an estimate" if row.spread else ""
         yield f"{TITLES[row.key]:26}" + "".join(f"{_said(row, each):>17}" for each in values) + spread
     yield from even.told.notes
@@ -108,8 +108,8 @@ def _plain(even: Even, made: bool) -> Iterator[str]:
         yield f"written to {even.out}"
 
 
-def _made_rows(even: Even) -> list[EvenRow] | None:
-    return even_rows(even.made.rest, even.made.after) if even.made else None
+def _made_rows(even: Even) -> list[EvenRow]:
+    return even_rows(even.made.rest, even.made.after) if even.made else []
 
 
 def _said(row: EvenRow, value: float | None) -> str:
@@ -161,7 +161,7 @@ def _figures(even: Even) -> dict[str, Any]:
         "made": None
         if made is None
         else {
-            "rows": {row.key: row.after for row in _made_rows(even) or []},
+            "rows": {row.key: row.after for row in _made_rows(even)},
             "even": made.even,
             "lines": {line.name: 100.0 * line.ratio for line in made.reply.design.lines},
             "parted": list(made.parted),

@@ -1,0 +1,68 @@
+"""busk even: what is printed and saved, how it ends, and what is refused."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from shapes import SAMPLES
+
+from app.cli import BAD_INPUT, main
+from app.commands.ending import NOT_SETTLED, SETTLED
+from core.project import open_project
+
+STANDING = ("--unit", "mm", "--up", "+z", "--front", "-y")
+PERSON = (str(SAMPLES / "person.ply"), *STANDING, "--line", "mid-bust=93%")
+STRAPS = ("--path", "strap left=r2c3:r6c3", "--path", "strap right=r2c-3:r6c-3")
+WORN = (*PERSON, *STRAPS, "--line", "full-bust=97%", "--line", "strap left=97%", "--line", "strap right=97%")
+
+
+def test_how_left_and_right_differ_is_told_side_by_side(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["even", *PERSON]) == SETTLED
+    told = capsys.readouterr().out
+    assert re.search(r"^bust point higher +right 11\.8 mm +right 11\.\d mm$", told, re.M)
+    assert re.search(r"^breast larger +right \d\.\d ml +right \d\.\d ml  ± \d+, an estimate$", told, re.M)
+    assert re.search(r"^left stands out more +5\d\.\d ml +5\d\.\d ml$", told, re.M)
+    assert "made even" not in told
+    assert main(["even", *PERSON, "--json"]) == SETTLED
+    figures = json.loads(capsys.readouterr().out)
+    assert figures["rows"]["higher"]["before"] == pytest.approx(-11.8, abs=0.1)
+    assert figures["rows"]["left_more"]["unit"] == "ml"
+    assert figures["made"] is None
+
+
+def test_what_makes_it_even_is_found_and_saved(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "even.busk"
+    assert main(["even", *WORN, "--make", "--out", str(out)]) == SETTLED
+    told = capsys.readouterr().out
+    names = "full-bust, mid-bust, strap left, strap right"
+    assert f"Left and right now change each by itself: {names}." in told
+    assert re.search(r"^mid-bust left: \d+\.\d %; before 93\.0 %$", told, re.M)
+    assert re.search(r"^Even: 0\.\d mm in height and 0\.\d mm to the front remain\.$", told, re.M)
+    design = open_project(out).design
+    assert {"mid-bust left", "mid-bust right", "full-bust left", "full-bust right"} < design.worn()
+    assert main(["even", str(out), "--make", "--json"]) == SETTLED
+    figures = json.loads(capsys.readouterr().out)
+    assert abs(figures["rows"]["higher"]["after"]) < 0.5
+    assert figures["made"] is None  # it is even already
+
+
+def test_what_remains_is_told_with_the_reason(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["even", *PERSON, "--make"]) == NOT_SETTLED
+    told = capsys.readouterr().out
+    assert re.search(r"^1\d\.\d mm in height and \d\.\d mm to the front remain: .* strained", told, re.M)
+
+
+def test_what_makes_no_sense_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for words, sentence in (
+        (["--out", str(tmp_path / "a.busk")], "nothing to be saved"),
+        (["--make", "--out", "a.ply"], "no name of a project"),
+    ):
+        assert main(["even", *PERSON, *words]) == BAD_INPUT
+        assert sentence in capsys.readouterr().err
+    still = (*PERSON[:-1], "under-bust=95%")
+    assert main(["even", *still, "--make"]) == BAD_INPUT
+    assert "one side alone" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
