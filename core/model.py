@@ -82,6 +82,14 @@ class ConstrainedModel:
         """Where the second derivatives lie that the exact answer needs."""
         return layout_of(self.tensegric, self.segments, self.volume)
 
+    def laid_as(self, other: ConstrainedModel) -> ConstrainedModel:
+        """Return this model with the layout of ``other``, whose members join the same points.
+
+        It does not depend on any stiffness, and takes longer than a balance.
+        """
+        self.__dict__["layout"] = other.layout  # what would be worked out when first asked for
+        return self
+
     @property
     def pressure_unit(self) -> float:
         """The pressure that would change the whole volume by 100 % in one turn, linearised."""

@@ -39,12 +39,15 @@ class Stretchy(Protocol):
 class Fitted:
     """A ``model`` whose lines pull as their elastics do, with their ``elongations`` [1] by name.
 
-    ``agreed`` tells whether it has an exact answer at all, and force and length agree there.
+    ``agreed`` tells whether it has an exact answer at all, and force and length agree there; ``balance`` is
+    that answer. ``log_ea`` (e,) are the logarithms of the lines' EA [N].
     """
 
     model: ConstrainedModel
     elongations: Mapping[str, float]
     agreed: bool
+    balance: Balance
+    log_ea: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +78,7 @@ class ElasticLines:
         }
         worn = [model.lines[at].name for at in model.pulling]
         stiffness = {**self.own_stiffness, **own}
-        return assemble(model.tensegric, model.lines, model.volume, worn, stiffness)
+        return assemble(model.tensegric, model.lines, model.volume, worn, stiffness).laid_as(model)
 
     def elongations(self, model: ConstrainedModel, balance: Balance) -> dict[str, float]:
         """Return how far the front of each elastic is stretched [1], by line."""
@@ -94,13 +97,17 @@ class ElasticLines:
         return np.array([elastic.secant(elongations[name]) for name, elastic in self.elastics.items()])
 
 
-def fit_elastics(lines: ElasticLines, solve: Solve) -> Fitted:
+def fit_elastics(
+    lines: ElasticLines, solve: Solve, begin: Floats | None = None, precision: float = PRECISION
+) -> Fitted:
     """Return the model in which each elastic's force and length are a point of its curve.
 
-    EA is sought in logarithms, for each line with the slope that its last two rounds showed.
+    EA is sought in logarithms, for each line with the slope that its last two rounds showed, from ``begin``
+    (e,) on, until forces differ by no more than ``precision``, in parts.
     """
-    # At first as if the lines did not move the body.
-    log_ea = np.log(lines.secants({name: 1.0 / lines.ratios[name] - 1.0 for name in lines.elastics}))
+    log_ea = begin
+    if log_ea is None:  # as if the lines did not move the body
+        log_ea = np.log(lines.secants({name: 1.0 / lines.ratios[name] - 1.0 for name in lines.elastics}))
     slope = np.full(len(log_ea), -1.0)
     step, before = np.zeros_like(log_ea), np.zeros_like(log_ea)
     for _ in range(_ROUNDS):
@@ -109,11 +116,11 @@ def fit_elastics(lines: ElasticLines, solve: Solve) -> Fitted:
         stretched = lines.elongations(model, balance)
         misfit = np.log(lines.secants(stretched)) - log_ea
         worst = float(np.abs(misfit).max(initial=0.0))
-        if not balance.found or worst < PRECISION:
+        if not balance.found or worst < precision:
             break
         seen = np.abs(step) > 1e-12
         slope = np.where(seen, (misfit - before) / np.where(seen, step, 1.0), slope)
         slope = np.clip(slope, _STEEPEST, _FLATTEST)
         before, step = misfit, -misfit / slope
         log_ea = log_ea + step
-    return Fitted(model, stretched, balance.found and worst < _GOOD)
+    return Fitted(model, stretched, balance.found and worst < max(_GOOD, precision), balance, log_ea)

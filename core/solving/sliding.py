@@ -66,6 +66,10 @@ class Skin:
         n[self.nodes] = outward[self.nodes] / size[self.nodes, None]
         return n, size
 
+    def normals(self, place: Place) -> Points:
+        """Return the directions across the skin at the points of the lines, 0 elsewhere, shape (f, 3)."""
+        return self._across(place)[0]
+
     def across(self, place: Place) -> Callable[[Points], Floats]:
         """Return what takes of forces, shape (f, 3), the part across the skin, shape (3 f,)."""
         n, _ = self._across(place)
