@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
+from dataclasses import replace
 
 from app.commands.ending import SETTLED, told
 from app.commands.settings import dressed
@@ -19,6 +20,16 @@ def ask(options: argparse.Namespace) -> int:
     design = design_of(options.input, options)
     asked = run_ask(options.input, design, options.line or [], options.elastic or [], wishes)
     return told(asked_text(asked, options.json), asked.reply.reachable, [])
+
+
+def doctor(options: argparse.Namespace) -> int:
+    """Tell what is wrong with a design, what fights in it, and the smallest change that ends it."""
+    from app.commands.doctor import examined_text, run_doctor
+
+    design = design_of(options.input, options)
+    design = replace(design, volume=options.volume or design.volume)
+    examined = run_doctor(options.input, design, options.line or [], options.elastic or [], options.out)
+    return told(examined_text(examined, options.json), examined.helped, [])
 
 
 def even(options: argparse.Namespace) -> int:
@@ -44,5 +55,10 @@ def limits(options: argparse.Namespace) -> int:
     return SETTLED
 
 
-ADVICE: dict[str, Callable[[argparse.Namespace], int]] = {"ask": ask, "even": even, "limits": limits}
+ADVICE: dict[str, Callable[[argparse.Namespace], int]] = {
+    "ask": ask,
+    "doctor": doctor,
+    "even": even,
+    "limits": limits,
+}
 """Each command that advises, with what does it."""

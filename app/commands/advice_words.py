@@ -7,6 +7,12 @@ import argparse
 from app.commands.settings import PRESSURE_HELP, PROFILE_HELP, WANT_HELP
 
 
+def add_cure(parser: argparse.ArgumentParser) -> None:
+    """Add where to a design goes with what ends its trouble."""
+    out = "save the design with the change that ends it as a project: .busk"
+    parser.add_argument("--out", default="", metavar="FILE", help=out)
+
+
 def add_evening(parser: argparse.ArgumentParser) -> None:
     """Add that left and right are to be made even, and where to."""
     make = "find the lengths that make left and right even; lines across both sides are split for it"

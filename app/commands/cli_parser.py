@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 from typing import NoReturn
 
-from app.commands.advice_words import add_evening, add_wishes
+from app.commands.advice_words import add_cure, add_evening, add_wishes
 from app.commands.settings import ELASTIC_HELP, help_text
 from app.wording.scan_formats import KINDS, PACKED
 from core import __version__
@@ -21,6 +21,7 @@ from core.volume import CONTROLS
 COMMANDS = {
     "solve": "solve a design and write body, control mesh, turns and report",
     "ask": "find the lengths of lines that bring the body to what is wished",
+    "doctor": "tell what fights in a design that vibrates or strains, and the least that ends it",
     "even": "tell how left and right differ in mm and ml, and find the lengths that make them even",
     "limits": "tell how short each line can be made",
     "detect": "find the landmarks of a scan",
@@ -38,7 +39,19 @@ COMMANDS = {
 }
 """Every command with what it does, in a few words."""
 
-_OF_A_SCAN = ("solve", "ask", "even", "limits", "detect", "measure", "cut", "press", "report", "picture")
+_OF_A_SCAN = (
+    "solve",
+    "ask",
+    "doctor",
+    "even",
+    "limits",
+    "detect",
+    "measure",
+    "cut",
+    "press",
+    "report",
+    "picture",
+)
 
 _AXIS = "like {axis}, or a direction x,y,z of the file for a body that stands askew"
 
@@ -96,16 +109,17 @@ def command_parser(command: str) -> argparse.ArgumentParser:
     if command == "export":
         _add_files(parser)
     _add_design(parser, command)
-    if command == "solve":
+    if command in ("solve", "doctor"):
         parser.add_argument(
             "--volume", choices=CONTROLS, help="what keeps the volume; else as the project says, or adaptive"
         )
+    if command == "solve":
         parser.add_argument(
             "--turns", type=_turns, metavar="N", help="exactly N turns; else until settled, at most 300"
         )
     if command == "accuracy":
         parser.add_argument("folder", metavar="DIR", help="scans with a truth.json beside them")
-    if command in ("ask", "even", "limits", "detect", "measure", "cut", "press", "accuracy"):
+    if command in ("ask", "doctor", "even", "limits", "detect", "measure", "cut", "press", "accuracy"):
         _add_forms(parser, command)
     if command == "report":
         _add_sheet(parser)
@@ -150,20 +164,22 @@ def _add_forms(parser: argparse.ArgumentParser, command: str) -> None:
 
 def _add_design(parser: argparse.ArgumentParser, command: str) -> None:
     """Add what can be said of a design: its settings, its lines and what they are made of."""
-    if command in ("solve", "ask", "even", "limits", "cut", "press", "report", "export", "picture"):
+    if command in ("solve", "ask", "doctor", "even", "limits", "cut", "press", "report", "export", "picture"):
         parser.add_argument("--settings", action="append", metavar="KEY=VALUE", help=help_text())
         parser.add_argument("--path", action="append", metavar="NAME=POINTS", help=LINE_HELP)
-    if command in ("solve", "ask", "even", "limits", "cut", "press", "report", "export"):
+    if command in ("solve", "ask", "doctor", "even", "limits", "cut", "press", "report", "export"):
         parser.add_argument(
             "--line",
             action="append",
             metavar="NAME=LENGTH",
             help="97%% of the rest length, -20mm shorter, 400mm absolute; of the front part, side to side",
         )
-    if command in ("solve", "ask", "even", "cut", "press", "report", "export"):
+    if command in ("solve", "ask", "doctor", "even", "cut", "press", "report", "export"):
         parser.add_argument("--elastic", action="append", metavar="LINE=ELASTIC", help=ELASTIC_HELP)
     if command == "ask":
         add_wishes(parser)
+    if command == "doctor":
+        add_cure(parser)
     if command == "even":
         add_evening(parser)
     if command == "cut":
