@@ -42,14 +42,16 @@ class Diagnosis:
 
     ``complaint`` is one of ``standing.COMPLAINTS``, empty if the design is well. ``fight`` tells what pulls
     against what. ``bears`` is the conventional gain at which the shape that the lines make begins to vibrate
-    (probe units [1]), None where that is not asked or not known. ``cure`` was run and ends it; ``others``
-    look as if they would too, and were not run. If there is no cure, ``nearest`` is the mildest of what was
-    run, and ``locked`` names worn lines that may not be changed.
+    (probe units [1]), and ``onset`` the growth per turn with which a small swing begins, None where that is
+    not asked or not known. ``cure`` was run and ends it; ``others`` look as if they would too, and were not
+    run. If there is no cure, ``nearest`` is the mildest of what was run, and ``locked`` names worn lines that
+    may not be changed.
     """
 
     standing: Standing
     fight: Fight
     bears: float | None = None
+    onset: float | None = None
     cure: Cure | None = None
     others: tuple[Change, ...] = ()
     nearest: Cure | None = None
@@ -93,8 +95,10 @@ def diagnose(stages: Stages, progress: Progress = quiet) -> Diagnosis:
         found = Diagnosis(standing(stages), fight_of(stages, progress))
         if not found.complaint:
             return found
-        if stages.design.volume == "conventional" and found.complaint in ("vibrating", "diverging"):
-            found = replace(found, bears=borne_gain(stages, progress))
+        if found.complaint in ("vibrating", "diverging"):
+            seen = outlook(stages)
+            bears = borne_gain(stages, progress) if stages.design.volume == "conventional" else None
+            found = replace(found, bears=bears, onset=None if seen is None else seen.growth)
         return _treated(found, Search(found.standing, progress))
 
 

@@ -17,7 +17,7 @@ from core import kernels
 from core.comparison import Comparison
 from core.design import Design, cannot_hold, no_balance
 from core.errors import UserError
-from core.frame import Failure, Frame, make_frame
+from core.frame import Failure, Frame, NoBalanceError, make_frame
 from core.pipeline import Stages, StuckError, build, targets_of
 from core.progress import Cancelled, Progress, quiet
 
@@ -276,7 +276,8 @@ class LiveSolver:
         lost = (held or comparison.main is None) and not comparison.exact.found
         if lost or (held and comparison.main and not comparison.main.sane):
             self._comparison = None
-            raise cannot_hold(stages.design) if held else no_balance()
+            why = cannot_hold(stages.design) if held else no_balance()
+            raise NoBalanceError(why, stages.design)
 
     def _publish(self, frame: Frame) -> None:
         with self._wake:

@@ -88,6 +88,8 @@ def _plain(examined: Examined) -> Iterator[str]:
             f"swings every {verdict.period:.1f} turns by {100.0 * verdict.amplitude:.2f} % of the volume, "
             f"{_growth(verdict.growth)}"
         )
+    if found.onset is not None and 1.0 < found.onset < float("inf"):
+        yield f"a small swing about where it would rest grows by {100.0 * (found.onset - 1.0):.1f} % a turn"
     if found.bears is not None:
         gain = found.stages.gain
         share = f"{100.0 * gain / found.bears:.0f} %"
@@ -180,6 +182,7 @@ def _figures(examined: Examined) -> dict[str, Any]:
         "period_turns": verdict.period or None,
         "amplitude_percent": 100.0 * verdict.amplitude if verdict.period else None,
         "growth_per_turn": verdict.growth if verdict.period else None,
+        "growth_at_first": found.onset if found.onset and found.onset < float("inf") else None,
         "gain": found.stages.gain,
         "gain_borne": found.bears,
         "fight": None
