@@ -60,17 +60,24 @@ def by_stiffness(answer: Answer, lines: Indices) -> Rates:
 
 
 def answers_to(
-    answer: Answer, changes: Changes, elastics: Mapping[int, Curved], ratios: Floats, kept: Kept = lambda r: r
+    answer: Answer,
+    changes: Changes,
+    elastics: Mapping[int, Curved],
+    ratios: Floats,
+    kept: Kept = lambda r: r,
+    beside: Floats | None = None,
 ) -> Answers:
     """Return what ``changes`` do to a balance; ``elastics`` by the number of their line follow their curves.
 
-    ``ratios`` (lines,) are the lengths of the lines. ``kept`` see ``Kept``.
+    ``ratios`` (lines,) are the lengths of the lines. ``kept`` see ``Kept``. ``beside`` (3 f, p) [mm] is how
+    the points move with what the settings do to other things than lines, if to any.
     """
     model = answer.potential.model
     every = np.arange(len(model.lines))
     longer, stiffer = kept(answer.by_ratio(every)).moved, kept(by_stiffness(answer, every)).moved
     made = [line for line in elastics if line in set(model.pulling.tolist())]
     stiff = changes.stiffer.copy()
+    other = np.zeros((len(longer), stiff.shape[1])) if beside is None else beside
     if made and not len(answer.potential.held_lines):
         along = _lengths(answer, made)
         natural = ratios[made] * np.array([model.lines[line].rest_length for line in made])
@@ -80,11 +87,11 @@ def answers_to(
             [_bend(elastics[line], at) for line, at in zip(made, reached / natural - 1.0, strict=True)]
         )
         own = changes.ratios[made] / ratios[made, None]
-        given = stretch @ (stiffer @ changes.stiffer + longer @ changes.ratios)
+        given = stretch @ (stiffer @ changes.stiffer + longer @ changes.ratios + other)
         right = bend[:, None] * (given - (reached / natural)[:, None] * own) - own
         system = np.eye(len(made)) - bend[:, None] * (stretch @ stiffer[:, made])
         stiff[made] += np.linalg.solve(system, right)
-    moved = stiffer @ stiff + longer @ changes.ratios
+    moved = stiffer @ stiff + longer @ changes.ratios + other
     return Answers(moved, _pulls(answer, moved, stiff, changes.ratios))
 
 
