@@ -16,6 +16,8 @@ from app.wording.words import number, tr
 from core.design import Design
 from core.design_lines import partner_of
 from core.live import Frame
+from core.splitting import split
+from core.template import read_template
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -56,6 +58,10 @@ class LinesDesk(QObject):
         design = self._session.design
         if design is None:
             return
+        sides = {line.name for line in design.own_lines}
+        if trait == "linked" and not value and partner_of(name) not in sides:
+            self._split(name, design)
+            return
         if trait == "linked":
             names: tuple[str, ...] = (name, partner_of(name))
             text = self._linked_text(design, name, bool(value))
@@ -88,6 +94,13 @@ class LinesDesk(QObject):
         if left is not None and left is not design:
             self._window.desk.select_line("mid-bust")
 
+    def _split(self, name: str, design: Design) -> None:
+        """Split a line that goes across both sides, and select its left half."""
+        text = tr("{line} split into left and right").format(line=row_title(name, design))
+        template = read_template(design.template)
+        self._session.edit(lambda before: split(before, template, name), text)
+        self._window.desk.select_line(f"{name} left")
+
     def _linked_text(self, design: Design, name: str, linked: bool) -> str:
         words = tr("{line} linked") if linked else tr("{line} set apart")
         return words.format(line=pair_title(name, design))
@@ -101,6 +114,7 @@ class LinesDesk(QObject):
             (tr("Show or hide"), "H", "hide"),
             (tr("Lock or unlock"), "Shift+L", "lock"),
             (tr("Link left and right, or set apart"), "L", "link"),
+            (tr("Split into left and right"), None, "split"),
         ):
             do.add("lines", text, key, do=partial(self._row_asked, act), of_document=True)
         said = tr("Lines of the control mesh stay: at 100 % they are off")

@@ -97,10 +97,7 @@ class LineDetails(QWidget):
         set_tag(self._pressed, "tone", view.tone)
         self._elastic.show_elastic(view.title, view.elastic)
         self._stiffness.show_stiffness(view.stiffness, view.usual_stiffness)
-        self._tools["link"].setVisible(bool(view.partner))
-        self._tools["link"].show_icon("unlink" if view.sides else "link")
-        tip = tr("Set left and right apart (L)") if view.sides else tr("Link with the other side (L)")
-        set_tip(self._tools["link"], tip)
+        self._show_link(view)
         self._stiffness.name_line(view.title)
         for tool in self._tools.values():
             tool.setAccessibleName(f"{view.title}: {tool.toolTip()}")
@@ -109,7 +106,17 @@ class LineDetails(QWidget):
         for name in ("path", "remove", "reset"):
             self._tools[name].setEnabled(not view.locked)
         self._tools["reset"].setEnabled(view.settable and abs(view.ratio - 1.0) > _OFF)
-        self._linked = bool(view.sides)
+
+    def _show_link(self, view: LineView) -> None:
+        """Show what left and right can become of it: linked, set apart, or split off each other."""
+        link, self._linked = self._tools["link"], bool(view.sides) or view.splits
+        link.setVisible(bool(view.partner) or view.splits)
+        link.show_icon("columns" if view.splits else "unlink" if view.sides else "link")
+        if view.splits:
+            set_tip(link, tr("Split it at the front centre into a left and a right line (L)"))
+        else:
+            apart, linked = tr("Set left and right apart (L)"), tr("Link with the other side (L)")
+            set_tip(link, apart if view.sides else linked)
 
     def _row(self, row: int) -> list[QLabel]:
         figures = [label("", "caption"), *(label("", "heading", tabular=True) for _ in range(3))]

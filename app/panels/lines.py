@@ -128,7 +128,7 @@ class LinesPanel(QWidget):
             super().keyPressEvent(event)
 
     def do(self, what: str) -> None:
-        """Do with the selected line what can be done: hide, lock, link, rename, remove."""
+        """Do with the selected line what can be done: hide, lock, link, split, rename, remove."""
         row = self.rows.get(self._selected or "")
         if row is None:
             return
@@ -137,8 +137,10 @@ class LinesPanel(QWidget):
             self.visibility_changed.emit(view.name, not view.visible)
         elif what == "lock":
             self.decided.emit(view.name, "locked", not view.locked)
-        elif what == "link" and view.partner:
-            self.decided.emit(view.name, "linked", not view.sides)
+        elif what == "link" and (view.partner or view.splits):
+            self.decided.emit(view.name, "linked", not (view.sides or view.splits))
+        elif what == "split" and view.splits:
+            self.decided.emit(view.name, "linked", False)
         elif what == "rename":
             row.title.begin()
         elif what == "remove" and view.own:

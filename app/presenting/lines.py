@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
+from functools import cache
 
 from app.panels.length_groove import Feasible
 from app.panels.line_view import LineView, SideView
@@ -15,6 +16,8 @@ from core.design import Design
 from core.design_lines import partner_of
 from core.lines import Line
 from core.live import Frame
+from core.splitting import can_split
+from core.template import Template, read_template
 
 LINE_COLOURS = {"full-bust": "#0A5F73", "mid-bust": "#E5536B", "under-bust": "#5A3F94"}
 """Colours of the template's lines in both themes, told apart by the colour-blind; top line first."""
@@ -46,6 +49,7 @@ def line_title(name: str, design: Design | None = None) -> str:
         "ring right": tr("Ring right"),
     }
     kind, side = kind_of(name), _side(name)
+    kind = titles.get(kind, kind)
     usual = listed((kind, side)) if side else name
     return titles.get(name, usual[:1].upper() + usual[1:])
 
@@ -58,6 +62,7 @@ def pair_title(name: str, design: Design) -> str:
         "sling": tr("Slings"),
         "oblique": tr("Obliques"),
         "ring": tr("Rings"),
+        **({kind: line_title(kind)} if kind in LINE_COLOURS else {}),
     }
     return design.traits_of(name).title or titles.get(kind, kind[:1].upper() + kind[1:])
 
@@ -88,11 +93,16 @@ def _side(name: str) -> str:
 
 
 def line_colours(names: Iterable[str], design: Design | None = None) -> dict[str, str]:
-    """Return the colours of these lines in the order of the list: those of the template, top line first."""
+    """Return the colours of these lines in the order of the list: those of the template, top line first.
+
+    The halves of a line that was split keep its colour.
+    """
     given = list(names)
-    own = [name for name in given if name not in LINE_COLOURS]
+    halves = {name: LINE_COLOURS[kind_of(name)] for name in given if kind_of(name) in LINE_COLOURS}
+    own = [name for name in given if name not in halves]
     kinds = list(dict.fromkeys(kind_of(name) for name in own))
     colours = {name: colour for name, colour in LINE_COLOURS.items() if name in given}
+    colours |= {name: colour for name, colour in halves.items() if name not in colours}
     colours |= {name: OWN_COLOURS[kinds.index(kind_of(name)) % len(OWN_COLOURS)] for name in own}
     if design is None:
         return colours
@@ -141,4 +151,10 @@ def _view(design: Design, frame: Frame, lines: list[Line], colour: str) -> LineV
         apart=name.rsplit(" ", 1)[-1] if partner and len(lines) == 1 else "",
         pair_title=pair_title(name, design),
         elastic=say(traits.elastic),
+        splits=not partner and can_split(design, _template(design.template), name),
     )
+
+
+@cache
+def _template(name: str) -> Template:
+    return read_template(name)

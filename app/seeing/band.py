@@ -24,8 +24,8 @@ OFF_WIDTH = 4.0
 
 def band_width(name: str, design: Design | None = None) -> float:
     """Return the width of a line's band as it is drawn [mm]."""
-    own = design.traits_of(name).width if design else None
-    return BAND_WIDTHS.get(name, OWN_WIDTH) if own is None else own
+    own, whole = design.traits_of(name).width if design else None, name.rpartition(" ")[0]
+    return BAND_WIDTHS.get(name, BAND_WIDTHS.get(whole, OWN_WIDTH)) if own is None else own
 
 
 @dataclass(frozen=True, eq=False)
