@@ -66,10 +66,14 @@ def girths(body: Body, landmarks: Landmarks) -> Mapping[str, Girth]:
     )
 
 
-def trunk_sections(mesh: Mesh, landmarks: Landmarks) -> dict[str, Level]:
-    """Return the levels of ``mesh`` at which girths are measured, by name, as ``girths`` says."""
-    bust = trunk_levels(mesh, [landmarks.bust_level])[0]
-    found = {"bust": bust, "underbust": stable_level(mesh, landmarks.underbust_level)}
+def trunk_sections(mesh: Mesh, landmarks: Landmarks, down: float | None = None) -> dict[str, Level]:
+    """Return the levels of ``mesh`` at which girths are measured, by name, as ``girths`` says.
+
+    ``down`` [mm] is how far under the breasts the under-bust is measured, where that is not to be found.
+    """
+    bust, under = trunk_levels(mesh, [landmarks.bust_level])[0], landmarks.underbust_level
+    below = stable_level(mesh, under) if down is None else trunk_levels(mesh, [under - down])[0]
+    found = {"bust": bust, "underbust": below}
     return found | {name: trunk_levels(mesh, [z])[0] for name, z in girth_levels(landmarks).items()}
 
 

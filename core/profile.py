@@ -84,6 +84,17 @@ class Slicer:
         edges = section.edge_ids.ravel()
         return tuple(self._curve(section.points[rows], edges[rows]) for rows in ordered(section))
 
+    def along(self, places: Points, values: Floats) -> list[Floats]:
+        """Return ``values`` (n,) of the vertices at the places of each of the ``curves``, each (k,)."""
+        moved, known = places[self._vertices], values[self._vertices]
+        section = cut(Mesh(moved, self._faces), self.plane.normal * self.plane.at, self.plane.normal)
+        first, second = np.divmod(section.edge_ids.ravel(), len(self._vertices))
+        low, high = (moved[ends, self.plane.number] for ends in (first, second))
+        steep = np.where(high == low, 1.0, high - low)
+        part = np.clip((self.plane.at - low) / steep, 0.0, 1.0)
+        carried = (1.0 - part) * known[first] + part * known[second]
+        return [carried[rows] for rows in ordered(section)]
+
     def _curve(self, points: Points, edges: Indices) -> Curve:
         first, second = np.divmod(edges, len(self._vertices))
         # Those at rest: they tell inside from outside all the time.

@@ -28,7 +28,8 @@ class Subject:
     """What measures are taken from. A side whose root does not show has no entry in what is kept by side.
 
     ``spreads`` [mm^3] are how much the volumes of the breasts change with the top of the root, ``gains``
-    [mm^3] what the skin of the two sides has gained since rest.
+    [mm^3] what the skin of the two sides has gained since rest. ``down`` [mm] is how far under the breasts
+    the under-bust is measured, where that is not to be found.
     """
 
     mesh: Mesh
@@ -37,11 +38,12 @@ class Subject:
     breasts: Mapping[str, Breast]
     spreads: Mapping[str, float]
     gains: tuple[float, float] = (0.0, 0.0)
+    down: float | None = None
 
     @cached_property
     def levels(self) -> Mapping[str, Level]:
         """The levels of the trunk at which girths are measured, by name."""
-        return MappingProxyType(trunk_sections(self.mesh, self.landmarks))
+        return MappingProxyType(trunk_sections(self.mesh, self.landmarks, self.down))
 
     def fold_seen(self, side: str) -> bool:
         """Tell whether the fold on a side was seen or placed, and not only estimated."""
@@ -75,7 +77,7 @@ class Subject:
             for (side, root), loop in zip(self.roots.items(), loops, strict=True)
         }
         after = carried(self.landmarks, marks)
-        return Subject(self.mesh.moved(vertices), after, roots, self.breasts, self.spreads, gains)
+        return replace(self, mesh=self.mesh.moved(vertices), landmarks=after, roots=roots, gains=gains)
 
     @cached_property
     def _riders(self) -> Riders:

@@ -1,0 +1,115 @@
+"""A design solved anew with knobs turned: what is sampled, and what landmarks are propagated with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from core.advice.knobs import Turned
+from core.advice.told_figures import Figures, Rested, Steps, line_figures, measured_figures, rested, steps_of
+from core.errors import UserError
+from core.exact import solve_exact
+from core.measures import reshaped, subject_at_rest
+from core.mesh import Points
+from core.pipeline import Stages, build, targets_of
+from core.placing import PlacedMark
+from core.sewing.tensions import line_tensions
+from core.solving.body_volume import solve_body_exact
+from core.solving.newton import Balance
+from core.tffd import deform
+
+_KEPT = ("read scan", "find landmarks", "read template", "fit control mesh")
+"""The stages that are slow to make and small to keep."""
+
+
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """A design solved: its ``stages``, control ``points`` (n, 3) and body ``places`` (m, 3) [mm]."""
+
+    stages: Stages
+    points: Points
+    places: Points
+    figures: Figures
+
+
+class NoAnswerError(UserError):
+    """A design that was tried has no answer."""
+
+
+def balance_of(stages: Stages) -> Balance:
+    """Return the exact answer of a design, which all ± are told of. Raises NoAnswerError."""
+    ratios = targets_of(stages.design, stages).ratios
+    if stages.design.dense_volume:
+        balance = solve_body_exact(stages.model, ratios, stages.body_change)
+    else:
+        balance = solve_exact(stages.model, ratios)
+    if not balance.found:
+        raise NoAnswerError(
+            "No balance was found with the lines at these lengths.", "Set them nearer to 100 %."
+        )
+    return balance
+
+
+class Trials:
+    """Tries variations of the design of ``base``. What hangs on landmarks alone is kept for another design.
+
+    ``former`` are the trials of one: of the same scan and landmarks they know what is needed here too.
+    """
+
+    def __init__(self, base: Stages, former: Trials | None = None) -> None:
+        self.base = base
+        self._known: dict[tuple[PlacedMark, ...], tuple[Stages, Rested]] = {}
+        if former is not None and _alike(base, former.base) and self.steps == former.steps:
+            self._known = former._known
+
+    def __call__(self, turned: Turned, *, keep: bool = True) -> Tried:
+        """Solve a variation and read it; ``keep`` for the next time what hangs on its landmarks alone.
+
+        Raises the UserError of a stage that fails.
+        """
+        placed = turned.design.placed
+        near, rest = self._known.get(placed, (self.base, None))
+        stages = build(turned.design, near)
+        rest = rest or rested(stages, self.steps)
+        if keep and placed not in self._known:
+            slim = {name: known for name, known in stages.memo.items() if name in _KEPT}
+            self._known[placed] = replace(self.base, design=stages.design, memo=slim), rest
+        if turned.skin:
+            rest = rested(stages, self.steps, rest.subject, turned.skin)
+        points = stages.model.tensegric.expand(balance_of(stages).state.moved)
+        ratios = {line.name: self.base.design.ratio(line.name) for line in stages.model.lines}
+        figures = {
+            **measured_figures(stages, self.steps, rest, points, turned.skin),
+            **line_figures(stages, points, line_tensions(stages, points), ratios),
+        }
+        return Tried(stages, points, deform(stages.binding, points), figures)
+
+    @cached_property
+    def rest(self) -> Rested:
+        """The body at rest with its landmarks where they are."""
+        return rested(self.base, self.steps)
+
+    @cached_property
+    def points(self) -> Points:
+        """The control points of the exact answer, shape (n, 3) [mm]. Raises NoAnswerError."""
+        return self.base.model.tensegric.expand(self.balance.state.moved)
+
+    @cached_property
+    def balance(self) -> Balance:
+        """The exact answer of the design. Raises NoAnswerError."""
+        return balance_of(self.base)
+
+    @cached_property
+    def steps(self) -> Steps:
+        """How far under the breasts the under-bust is measured."""
+        rest = subject_at_rest(self.base.body.calm, self.base.landmarks)
+        return steps_of(rest, reshaped(rest, self.base, self.points))
+
+
+def _alike(one: Stages, other: Stages) -> bool:
+    return (
+        one.body is other.body
+        and one.control is other.control
+        and one.design.placed == other.design.placed
+        and one.design.own_measures == other.design.own_measures
+    )
