@@ -1,0 +1,140 @@
+"""What is looked at where a line is tried: how far answers are from straining, vibrating, pressing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from types import MappingProxyType
+
+from core.advice.ground import Found
+from core.comparison import shape_of
+from core.cutting import goes_on
+from core.design_elastics import Elastic
+from core.design_lines import WornLine
+from core.model import ConstrainedModel
+from core.pipeline import GAIN_SHARE, Stages
+from core.pressure import band_pressure
+from core.sewing.comfort import comfort
+from core.sewing.course import courses
+from core.sewing.tensions import line_tensions
+from core.solver import at_rest
+from core.solving.condition import CALM_RANGE, FOLD_LIMIT, STRAIN_RANGE, Condition
+from core.solving.gain import Swing, gain_limit
+from core.solving.newton import balance_at
+from core.solving.potential import Potential
+
+Look = Callable[[Found], float]
+"""How far an answer is from showing a sign; 0 or less where it does [1]."""
+
+_CALM = 1.0  # of the margin where nothing can vibrate
+
+
+def looks_at(model: ConstrainedModel, together: Collection[int], gain: float | None) -> dict[str, Look]:
+    """Return what can be looked at on any model, by the sign that it is for.
+
+    ``together`` are the lines that are tried; ``gain`` is the conventional one, None for the usual share of
+    the limit at rest.
+    """
+    seen = _Last(shape_of(model).condition)
+    looks: dict[str, Look] = {
+        "strained": lambda found: _within(seen(found), CALM_RANGE),
+        "overstrained": lambda found: _within(seen(found), STRAIN_RANGE),
+        "folded": lambda found: seen(found).turned - FOLD_LIMIT,
+        "inverted": lambda found: seen(found).turned,
+        "vibrating": _Vibrating(gain).margin,
+        "slack": partial(_pull, together=tuple(together)),
+    }
+    return looks
+
+
+def looks_in(stages: Stages, names: Collection[str], elastics: Mapping[str, Elastic]) -> dict[str, Look]:
+    """Return what can be looked at because worn lines of a design are made of ``elastics``, by sign.
+
+    ``names`` are the lines that are tried. Straps are not looked at for pressure, for which no limit is set,
+    nor are lines of no elastic, whose newtons are estimates.
+    """
+    looks: dict[str, Look] = {}
+    if elastics:
+        looks["stretched"] = partial(_room_in_curves, elastics=elastics)
+    known = [line.name for line in stages.model.lines if line.name in names and line.name in elastics]
+    seen = [line.name for line in stages.model.lines if line.name in known and not goes_on(stages, line)]
+    if seen:
+        looks["pressing"] = partial(_pressing, stages=stages, names=tuple(seen))
+    return looks
+
+
+def _within(seen: Condition, bounds: tuple[float, float]) -> float:
+    return min(seen.shortest - bounds[0], bounds[1] - seen.longest)
+
+
+@dataclass(eq=False)
+class _Last:
+    """The condition of the answer that was looked at last: four looks ask for it in a row."""
+
+    condition: Callable[..., Condition]
+    found: Found | None = None
+    value: Condition | None = None
+
+    def __call__(self, found: Found) -> Condition:
+        if self.value is None or found is not self.found:
+            self.found, self.value = found, self.condition(found.points)
+        return self.value
+
+
+class _Vibrating:
+    """Whether turns of the conventional control would swing where they come to."""
+
+    def __init__(self, gain: float | None) -> None:
+        self._gain = gain
+        self._swing: tuple[ConstrainedModel, Swing, float] | None = None
+
+    def margin(self, found: Found) -> float:
+        """Return by how much the gain limit there is above the gain, over the gain [1]."""
+        if self._swing is None or found.model is not self._swing[0]:
+            swing = Swing(found.model)
+            gain = GAIN_SHARE * _limit_at_rest(found.model, swing) if self._gain is None else self._gain
+            self._swing = found.model, swing, gain
+        _, swing, gain = self._swing
+        if gain <= 0.0:
+            return _CALM
+        potential = Potential(found.model, found.ratios)
+        there = swing.balance(potential, found.balance, gain)
+        # Where its turns have nowhere to rest they do not come to rest.
+        return min(swing.limit(potential, there) / gain - 1.0, _CALM) if there is not None else -_CALM
+
+
+def _limit_at_rest(model: ConstrainedModel, swing: Swing) -> float:
+    """Return what ``gain_limit`` does, six times quicker where there are no held lines."""
+    if model.mechanics.line_hold == "held":
+        return gain_limit(model)  # which leaves out how their tensions change
+    potential = Potential(model, (1.0,) * len(model.lines))
+    return swing.limit(potential, balance_at(potential, at_rest(model).moved))
+
+
+def _pull(found: Found, together: tuple[int, ...]) -> float:
+    """Return how far the slackest tried line is stretched, over its rest length; negative: it pushes."""
+    model = found.model
+    rest = [line.rest_length for line in model.lines]
+    if model.mechanics.line_hold == "held":
+        held = found.balance.tensions
+        return min(float(held[at] / model.tapes[at] / rest[at]) for at in together if model.tapes[at] > 0.0)
+    lengths = model.line_lengths(found.points)
+    return min(lengths[at] / rest[at] - found.ratio for at in together)
+
+
+def _room_in_curves(found: Found, elastics: Mapping[str, Elastic]) -> float:
+    """Return how much further the elastic can be stretched that is nearest to the end of its curve [1]."""
+    return min(elastics[name].reach - elongation for name, elongation in found.elongations.items())
+
+
+def _pressing(found: Found, stages: Stages, names: tuple[str, ...]) -> float:
+    """Return by how much the lines ``names`` press less than the red light begins with, over that [1]."""
+    design = stages.design
+    tried = {line.name: ratio for line, ratio in zip(found.model.lines, found.ratios, strict=True)}
+    lines = tuple(WornLine(line.name, tried[line.name]) for line in design.lines)
+    there = replace(stages, design=replace(design, lines=lines), model=found.model)
+    tensions = line_tensions(there, found.points)
+    of_these = MappingProxyType({name: tensions[name] for name in names})
+    bands = [band_pressure(course, width) for _, course, width in courses(there, found.points, of_these)]
+    return 1.0 - max(band.largest for band in bands) / comfort().red_kpa
