@@ -11,6 +11,7 @@ from app.asking.housekeeping import Housekeeping
 from app.asking.jobs import Jobs
 from app.asking.session import Session
 from app.desks.desk import Desk
+from app.desks.doctor_desk import DoctorDesk
 from app.desks.export_desk import ExportDesk
 from app.desks.job_desk import JobDesk
 from app.desks.landmark_desk import LandmarkDesk
@@ -20,10 +21,12 @@ from app.desks.report_desk import ReportDesk
 from app.desks.scan_desk import ScanDesk
 from app.desks.start_desk import StartDesk
 from app.desks.verdict_desk import VerdictDesk
+from app.dress.door import Door
 from app.helping.help_desk import HelpDesk
 from app.helping.preferences_desk import PreferencesDesk
 from app.helping.rescue import Rescue
 from app.helping.safe_mode import SafeMode
+from app.keeping.even_desk import EvenDesk
 from app.keeping.history_desk import HistoryDesk
 from app.keeping.keeping_desk import KeepingDesk
 from app.keeping.measures_desk import MeasuresDesk
@@ -86,6 +89,9 @@ class MainWindow(QMainWindow):
         self.scan, self.landmarks = ScanPanel(), LandmarksPanel()
         self.lines, self.result, self.garment = LinesPanel(), ResultPanel(), GarmentPanel()
         self.model, self.door = ModelPanel(), ModelDoor()
+        self.ask_door = Door(
+            tr("Ask for the result"), tr("Say where the bust is to be; Busk finds the lengths")
+        )
         self.history, self.variants, self.inspector = HistoryPanel(), VariantsPanel(), Inspector()
         self._fill_inspector()
         self.layout_ = Layout(self)
@@ -96,12 +102,13 @@ class MainWindow(QMainWindow):
     def _make_desks(self) -> None:
         self.job_desk, self.limits_desk = JobDesk(self), LimitsDesk(self)
         self.landmark_desk, self.scan_desk = LandmarkDesk(self), ScanDesk(self)
-        self.desk, self.verdict_desk = Desk(self), VerdictDesk(self)
+        self.desk, self.verdict_desk, self.doctor_desk = Desk(self), VerdictDesk(self), DoctorDesk(self)
         self.keeping_desk, self.recovery_desk = KeepingDesk(self), RecoveryDesk(self)
         self.history_desk, self.variant_desk = HistoryDesk(self, self.history), VariantDesk(self)
         self.variant_figures = VariantFigures(self, self.variants)
         self.measures_desk = MeasuresDesk(self, self.result)
         self.own_measures_desk = OwnMeasuresDesk(self, self.result)
+        self.even_desk = EvenDesk(self, self.result)
         self.pressure_desk = PressureDesk(self, self.garment)
         self.map_desk, self.section_desk = MapDesk(self), SectionDesk(self)
         self.start_desk, self.plot_desk = StartDesk(self), PlotDesk(self)
@@ -124,6 +131,7 @@ class MainWindow(QMainWindow):
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
         column.addWidget(self.lines, 1)
+        column.addWidget(self.ask_door)
         column.addWidget(self.door)
         lines.setFocusProxy(self.lines)
         self.inspector.add("scan", self.scan)

@@ -29,6 +29,7 @@ def _connect_work(window: MainWindow) -> None:
     job_desk = window.job_desk
     window.session.working.connect(job_desk.show_work)
     window.session.frame_ready.connect(window.limits_desk.follow)
+    window.session.frame_ready.connect(window.doctor_desk.follow)
     window.lines_desk.feasible = window.limits_desk.feasible
     window.jobs.changed.connect(job_desk.show)
     window.view.busy.cancelled.connect(job_desk.cancel)
@@ -57,12 +58,14 @@ def _connect_session(window: MainWindow) -> None:
     session.opened.connect(desk.show_opened)
     session.frame_ready.connect(desk.show_frame)
     session.frame_ready.connect(lambda *_: window.pressure_desk.follow())
+    session.frame_ready.connect(lambda *_: window.even_desk.follow())
     session.frame_ready.connect(window.export_desk.show_frame)
     session.frame_ready.connect(lambda *_: window.report_desk.follow())
     session.design_changed.connect(lambda *_: window.report_desk.follow())
     session.opened.connect(window.report_desk.forget)
     session.design_changed.connect(desk.show_design)
     session.failed.connect(desk.show_failure)
+    session.failed.connect(window.doctor_desk.refuse)
     session.not_saved.connect(desk.show_not_saved)
     session.asked.connect(scan_desk.show_stuck)
     session.saved.connect(desk.show_saved)
@@ -168,6 +171,8 @@ def _connect_maps(window: MainWindow) -> None:
     tools["map"].triggered.connect(maps.cycle)
     tools["section"].triggered.connect(section.set_on)
     maps.changed.connect(section.refresh)
+    maps.changed.connect(window.even_desk.follow_map)
+    window.even_desk.found.connect(maps.refresh)
     window.landmarks.landmark_selected.connect(section.follow_landmark)
     view.viewport.pin_pressed.connect(section.follow_landmark)
     # What the view shows of a frame is there before it is painted and cut.

@@ -77,7 +77,10 @@ class ResultPanel(QStackedWidget):
         inside.setProperty("scrolled", "true")
         self._column = QVBoxLayout(inside)
         self._column.setContentsMargins(0, 0, 0, 0)
-        for each in (self.sizes, self._waiting, self._table, self._note):
+        self._column.addWidget(self.sizes)
+        self.cards = QVBoxLayout()
+        self._column.addLayout(self.cards)
+        for each in (self._waiting, self._table, self._note):
             self._column.addWidget(each)
         self._column.addStretch(1)
         self._area = QScrollArea()

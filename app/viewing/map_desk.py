@@ -208,6 +208,9 @@ class MapDesk(QObject):
             said = self._seen.note(self.name, self._on_bands[bodies[0]])
             self.legend.show_note(said or self._kinds[self.name].note)
         else:
+            if self.name == "sides":
+                said = self._window.even_desk.note(frame, self._view.after)
+                self.legend.show_note(said or self._kinds[self.name].note)
             self._values, self._on_bands = self.now.values(self.name), {}
             beside = [self._values] + [self._values_of(view) for view in bodies[1:]]
         values = np.concatenate([np.empty(0), *beside])
