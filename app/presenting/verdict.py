@@ -72,14 +72,14 @@ def swing_mm(frame: Frame) -> tuple[float, float]:
     return 0.5 * float(up.max() + up.min()), 0.5 * float(np.ptp(up))
 
 
-def swing_sentence(frame: Frame) -> str:
-    """Return what a vibration or a run that runs away means, or nothing."""
-    if frame.verdict.state == "vibrating":
-        swing = tr("The calculation does not come to rest: the bust point swings by ±{swing} mm.")
-        return swing.format(swing=number(swing_mm(frame)[1]))
-    if frame.verdict.state == "diverging":
-        return tr("The calculation runs away: the body is shown as it was before.")
-    return ""
+def plain_sentence(frame: Frame) -> str:
+    """Return what it means that a run swings or runs away, or that a shape is no body; else nothing."""
+    return {
+        "vibrating": tr("The calculation does not come to rest: the bust point swings by ±{swing} mm."),
+        "diverging": tr("The calculation runs away: the body is shown as it was before."),
+        "folded": tr("The skin folds over: this is no body any more."),
+        "overstrained": tr("Skin pressed or stretched by over 30 %: no shape to sew for."),
+    }.get(frame.verdict.state, "").format(swing=number(swing_mm(frame)[1]))
 
 
 def _effort(frame: Frame) -> str:

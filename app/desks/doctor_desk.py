@@ -1,0 +1,197 @@
+"""The desk of the doctor: a notice of what is wrong with a design, and a button that ends it as one step."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, QTimer
+
+from app.asking.jobs import Job
+from app.panels.notice import REFUSED, Action
+from app.presenting import doctor as words
+from app.presenting.lines import titled
+from app.presenting.verdict import plain_sentence, state_of, swing_mm
+from app.wording.words import joined, say, tr
+from core.design import Design
+from core.doctor import Diagnosis, diagnose
+from core.errors import UserError
+from core.frame import NoBalanceError
+from core.live import Frame
+from core.pipeline import build
+from core.progress import Progress
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+
+ABOUT = "doctor"
+"""What its notices are about."""
+
+PATIENCE = 1200
+"""Milliseconds that a strained design rests before it is looked at: who is still at work hears nothing."""
+
+_SWINGS = ("vibrating", "diverging")
+_BAD = (*_SWINGS, "folded", "overstrained")
+_CURED = ("lines", "gain", "volume", "line_force", "line_hold")
+
+
+class DoctorDesk(QObject):
+    """Tells at once that a design is no result, and what ends it as soon as that is known.
+
+    Of mere strain it speaks calmly: once a design has rested for a while, and once only.
+    """
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._frame: Frame | None = None
+        self._about: Design | None = None
+        self._quiet: set[Design] = set()
+        self._job: Job | None = None
+        self._later = QTimer(self, interval=PATIENCE, singleShot=True)
+        self._later.timeout.connect(self._look)
+        said = tr("Say what fights in this design, and what ends it")
+        window.actions_.add("solve", tr("What is wrong here?"), tip=said, do=self.ask, of_document=True)
+
+    def follow(self, frame: Frame) -> None:
+        """Tell of a design that has come to its end; whatever is edited meanwhile ends that."""
+        self._frame = frame
+        design = frame.stages.design
+        if design is self._about:
+            return
+        self._forget()
+        if frame.at_work or design is not self._window.session.design:
+            return
+        self._about = design
+        state = state_of(frame)
+        if state in _BAD:
+            self._tell_at_once(frame)
+            self._look()
+        elif state == "strained" and design not in self._quiet:
+            self._later.start()
+
+    def refuse(self, error: Exception) -> None:
+        """Look at a design whose lengths were refused; the notice of the refusal stands already."""
+        frame = self._window.session.frame
+        if isinstance(error, NoBalanceError) and frame is not None:
+            self._forget()
+            self._about = self._window.session.design  # what stands again: its frames change nothing
+
+            def work(progress: Progress) -> Diagnosis:
+                return diagnose(build(error.design, frame.stages), progress)
+
+            self._run(work, partial(self._tell_refused, error))
+
+    def ask(self) -> None:
+        """Say what is wrong with the design that is shown, or that nothing is."""
+        frame = self._frame
+        if frame is not None:
+            self._forget()
+            self._about = frame.stages.design
+            self._run(partial(diagnose, frame.stages), partial(self._answer, frame), waited=True)
+
+    def _forget(self) -> None:
+        """Let go of what was said or looked for of another design."""
+        self._later.stop()
+        self._window.jobs.cancel(self._job)
+        self._job = None
+        if self._about is not None:
+            self._about = None
+            self._window.notices.withdraw(ABOUT)
+
+    def _look(self) -> None:
+        frame = self._frame
+        if frame is not None and frame.stages.design is self._about:
+            self._run(partial(diagnose, frame.stages), partial(self._found, frame))
+
+    def _run(
+        self, work: Callable[[Progress], object], done: Callable[[object], None], *, waited: bool = False
+    ) -> None:
+        self._job = self._window.jobs.run(
+            tr("Finding out what fights"), work, done, self._miss, waited=waited
+        )
+
+    def _miss(self, error: Exception) -> None:
+        self._job = None
+        if isinstance(error, UserError):
+            self._window.desk.show_failure(error, ABOUT)
+        else:
+            logging.error("the doctor failed", exc_info=error)
+
+    def _tell_at_once(self, frame: Frame) -> None:
+        hint = tr("No garment does that: what is seen here is no result.")
+        actions = [self._other_control(frame.stages.design)] if state_of(frame) in _SWINGS else []
+        self._show("warn", plain_sentence(frame), hint, actions, "")
+
+    def _found(self, frame: Frame, found: object) -> None:
+        """Tell what was found in place of what was told at once."""
+        assert isinstance(found, Diagnosis)
+        self._job = None
+        if not found.complaint:
+            return  # from rest it does come to rest: what was told at once still holds for what is seen
+        swing = swing_mm(frame)[1]
+        tone = "info" if found.complaint in ("strained", "settling") else "warn"
+        actions = self._cure(found)
+        if found.complaint in _SWINGS:
+            other = self._other_control(frame.stages.design)
+            actions += [other] if other[0] not in [words for words, _ in actions] else []
+        self._quiet.add(frame.stages.design)
+        self._show(tone, words.sentence(found, swing), words.hint(found), actions, words.details(found))
+
+    def _answer(self, frame: Frame, found: object) -> None:
+        """Tell what was asked for, well or not."""
+        assert isinstance(found, Diagnosis)
+        if found.complaint:
+            self._found(frame, found)
+            return
+        self._job = None
+        said = tr("Nothing is wrong: the calculation comes to rest, and the skin is calm.")
+        self._show("ok", said, "", [], words.details(found))
+
+    def _tell_refused(self, error: NoBalanceError, found: object) -> None:
+        """Tell why lengths were refused, and the nearest that are not, in place of the bare refusal."""
+        assert isinstance(found, Diagnosis)
+        self._job = None
+        notices = self._window.notices
+        said = say(titled(error.message, error.design))
+        fights = words.sentence(found, 0.0) if found.complaint and found.fight.worst else ""
+        notices.withdraw(REFUSED)
+        hint = joined((fights, words.hint(found) if found.cure else say(error.hint)))
+        notices.show_notice(
+            "bad",
+            said,
+            hint,
+            self._cure(found),
+            lasting=True,
+            details=words.details(found),
+            about=REFUSED,
+        )
+
+    def _show(self, tone: str, sentence: str, hint: str, actions: list[Action], details: str) -> None:
+        notices = self._window.notices
+        notices.withdraw(ABOUT)
+        lasting = tone == "warn"
+        notices.show_notice(tone, sentence, hint, actions, lasting, details, ABOUT)
+
+    def _cure(self, found: Diagnosis) -> list[Action]:
+        if found.cure is None:
+            return []
+        said, cured = words.change_words(found, found.cure.change), found.cure.change.design
+        return [(said, partial(self._apply, said, cured))]
+
+    def _apply(self, said: str, cured: Design) -> None:
+        """Make the change as one step, whatever was only called otherwise since."""
+        changed = {name: getattr(cured, name) for name in _CURED}
+        self._window.session.edit(lambda design: replace(design, **changed), said)
+        design = self._window.session.design
+        if design is not None:
+            self._quiet.add(design)
+
+    def _other_control(self, design: Design) -> Action:
+        control, title = ("adaptive", tr("Use Adaptive"))
+        if design.volume == control:
+            control, title = ("exact", tr("Use Exact"))
+        return title, lambda: self._window.session.choose_control(control)

@@ -1,0 +1,186 @@
+"""What the window says of a diagnosis: one sentence, the word on the button, and all figures behind it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from app.presenting.lines import line_title, row_title
+from app.showing.verdict_chip import state_title
+from app.wording.words import joined, listed, number, tr
+from core.advice.fight import Pull
+from core.advice.remedy import Change, Cure
+from core.doctor import Diagnosis
+
+_STEADY = 5e-4  # a swing that changes by less a turn stays as large as it is [1]
+
+
+def sentence(found: Diagnosis, swing: float) -> str:
+    """Return what is wrong in one sentence, with what fights if any pair stands out.
+
+    ``swing`` [mm] is how far the bust point swings to either side.
+    """
+    worst = found.fight.worst
+    if worst is None:
+        return _plain(found, swing)
+    words = {
+        "vibrating": tr(
+            "{one} and {other} pull against each other: the bust point swings by ±{swing} mm every {period} "
+            "turns."
+        ),
+        "diverging": tr("{one} and {other} pull against each other until the calculation runs away."),
+        "folded": tr("{one} and {other} pull against each other until the skin folds over."),
+        "overstrained": tr(
+            "{one} and {other} pull against each other: skin is pressed or stretched by over 30 %."
+        ),
+        "strained": tr(
+            "{one} and {other} pull against each other: skin is pressed or stretched by over 20 %."
+        ),
+        "settling": tr("{one} and {other} pull against each other: the calculation comes to no rest."),
+        "unreachable": tr("{one} and {other} pull against each other: no balance is found."),
+    }
+    one, other = (_name(found, pull) for pull in (worst.one, worst.other))
+    return words[found.complaint].format(one=one, other=other, swing=number(swing), period=_period(found))
+
+
+def _plain(found: Diagnosis, swing: float) -> str:
+    words = {
+        "vibrating": tr("The calculation does not come to rest: the bust point swings by ±{swing} mm."),
+        "diverging": tr("The calculation runs away: the body is shown as it was before."),
+        "folded": tr("The skin folds over: this is no body any more."),
+        "overstrained": tr("Skin pressed or stretched by over 30 %: no shape to sew for."),
+        "strained": tr("Skin is pressed or stretched by over 20 %."),
+        "settling": tr("The calculation has come to no rest yet."),
+        "unreachable": tr("No balance is found with the lines at these lengths."),
+    }
+    return words[found.complaint].format(swing=number(swing))
+
+
+def hint(found: Diagnosis) -> str:
+    """Return what leads to the button, or what there is to do where there is none."""
+    if found.cure is not None:
+        # Beside a second button there is no room for it at the smallest size: the details say it too.
+        return "" if found.verdict.motion in ("vibrating", "diverging") else tr("Tried, and it ends this:")
+    said = [tr("No change of one line, of the gain or of the model was found that ends it.")]
+    if found.locked:
+        titles = listed(line_title(name, found.stages.design) for name in found.locked)
+        said.append(tr("Locked lines stay as they are: {lines}.").format(lines=titles))
+    return joined(said)
+
+
+def change_words(found: Diagnosis, change: Change) -> str:
+    """Return what a change does, as on a button."""
+    choice = {
+        ("volume", "adaptive"): tr("Use Adaptive"),
+        ("volume", "exact"): tr("Use Exact"),
+        ("line_force", "implicit"): tr("Let lines act in step"),
+        ("line_hold", "spring"): tr("Let lines spring back"),
+    }.get(change.setting, "")
+    design, what = found.stages.design, ""
+    if change.kind == "length":
+        ratio = change.design.ratio(change.lines[0])
+        values = {
+            "line": row_title(change.lines[0], design),
+            "mm": number(abs(found.longer_mm(change))),
+            "percent": number(100.0 * ratio),
+        }
+        longer = ratio > design.ratio(change.lines[0])
+        what = tr("Lengthen {line} by {mm} mm") if longer else tr("Shorten {line} by {mm} mm")
+        if found.complaint == "unreachable":  # that length is nowhere to be seen
+            what = tr("Set {line} to {percent} %")
+        what = what.format(**values)
+    elif change.kind == "gain" and change.design.gain is not None:
+        what = tr("Lower the gain to {gain}").format(gain=number(change.design.gain, 2))
+    elif change.kind == "together":
+        what = tr("Bring all lines nearer to 100 %")
+    elif change.kind == "off":
+        what = tr("Take {line} off").format(line=row_title(change.lines[0], design))
+    return listed(filter(None, (choice, what)))
+
+
+def details(found: Diagnosis) -> str:
+    """Return all figures, a line each."""
+    return "\n".join([*_run(found), *_forces(found), *_changes(found)])
+
+
+def _run(found: Diagnosis) -> Iterator[str]:
+    verdict = found.verdict
+    if verdict.period:
+        words = tr("Swings every {period} turns, volume by ±{percent} %; {grows}")
+        percent = number(100.0 * verdict.amplitude, 2)
+        yield words.format(period=_period(found), percent=percent, grows=_growth(verdict.growth))
+    if found.onset is not None and 1.0 + _STEADY < found.onset < float("inf"):
+        words = tr("A small swing grows by {percent} % a turn")
+        yield words.format(percent=number(100.0 * (found.onset - 1.0)))
+    if found.bears is not None:
+        words = tr("Gain {gain}: {percent} % of the {most} that this shape bears")
+        share = number(100.0 * found.stages.gain / found.bears, 0)
+        yield words.format(gain=number(found.stages.gain, 2), percent=share, most=number(found.bears, 2))
+
+
+def _growth(growth: float) -> str:
+    percent = number(100.0 * abs(growth - 1.0))
+    if growth - 1.0 > _STEADY:
+        return tr("grows by {percent} % a turn").format(percent=percent)
+    if growth - 1.0 < -_STEADY:
+        return tr("fades by {percent} % a turn").format(percent=percent)
+    return tr("stays as large")
+
+
+def _forces(found: Diagnosis) -> Iterator[str]:
+    fight = found.fight
+    if fight.share < 1.0:
+        words = tr("Forces in the last balance, {percent} % of the way from rest to these lengths:")
+        yield words.format(percent=number(100.0 * fight.share, 0))
+    elif fight.pulls:
+        yield tr("Forces in the balance at these lengths, on the tissue that is assumed:")
+    for pull in fight.pulls:
+        yield "  " + _force(found, pull)
+    if fight.pulls:
+        yield "  " + tr("The skin itself: {newtons} N").format(newtons=number(fight.skin))
+    if fight.worst is None:
+        yield tr("No two of them stand out as pulling against each other.")
+        return
+    words = tr("{one} and {other}: {angle}° apart in what they do to the skin")
+    one, other = (_name(found, pull) for pull in (fight.worst.one, fight.worst.other))
+    yield words.format(one=one, other=other, angle=number(fight.worst.angle, 0))
+
+
+def _force(found: Diagnosis, pull: Pull) -> str:
+    name, newtons = _name(found, pull), number(pull.newtons)
+    if pull.lines:
+        words = tr("{name}: {newtons} N, {angle}° to the volume")
+        return words.format(name=name, newtons=newtons, angle=number(pull.to_volume, 0))
+    name = name[:1].upper() + name[1:]
+    if pull.sides is None:
+        return tr("{name}: {newtons} N").format(name=name, newtons=newtons)
+    left, right = (number(side) for side in pull.sides)
+    words = tr("{name}: {newtons} N (left {left}, right {right})")
+    return words.format(name=name, newtons=newtons, left=left, right=right)
+
+
+def _changes(found: Diagnosis) -> Iterator[str]:
+    if found.cure is not None:
+        words = tr("{change}: run from rest and on from here, it ends as “{state}”")
+        yield words.format(change=change_words(found, found.cure.change), state=_state(found.cure))
+    for other in found.others:
+        words = tr("{change}: would do too by its outlook; not run")
+        yield words.format(change=change_words(found, other))
+    if found.nearest is not None:
+        words = tr("Nearest: {change}; it ends as “{state}”")
+        yield words.format(change=change_words(found, found.nearest.change), state=_state(found.nearest))
+
+
+def _state(cure: Cure) -> str:
+    return state_title(cure.standing.verdict.told)
+
+
+def _name(found: Diagnosis, pull: Pull) -> str:
+    if not pull.lines:
+        return tr("the volume")
+    title = row_title if len(pull.lines) > 1 else line_title
+    return title(pull.lines[0], found.stages.design)
+
+
+def _period(found: Diagnosis) -> str:
+    period = found.verdict.period
+    return number(period, 0 if abs(period - round(period)) < 0.05 else 1)
