@@ -161,6 +161,8 @@ class Layout(QObject):
             over[-1].given_up.emit()
         elif window.report_desk.is_open:
             window.report_desk.leave()
+        elif window.ask_desk.is_open:
+            window.ask_desk.leave()
         elif window.inspector.panel() is window.model:
             window.model.left.emit()
         elif window.view.beside.way in ("wipe", "side"):

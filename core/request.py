@@ -13,13 +13,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from core.aims.answers import Look, NoBalanceError
+from core.aims.answers import Look, NoBalanceError, exact_points
 from core.aims.figure import Goal, Read
 from core.aims.reaching import NEAR, Bounds, Found, Search
 from core.aims.readings import reading
 from core.cutting import goes_on
 from core.design import Design, cannot_hold, no_balance
 from core.errors import LineError
+from core.mesh import Points
 from core.pipeline import Stages, build
 from core.pressure import pressures
 from core.progress import Progress, quiet
@@ -113,6 +114,19 @@ class Asking:
         """
         return self._told(self._near_the_last, goals, progress)
 
+    def now(self, names: Collection[str]) -> tuple[dict[str, float], dict[str, float]]:
+        """Return what the figures ``names`` are in the design as it is [mm], and what its lines press with.
+
+        These are the largest pressures [kPa] of the lines that are looked at. Raises UserError.
+        """
+        with threadpool_limits(1):
+            try:
+                points = exact_points(self._stages)
+            except NoBalanceError:
+                raise no_balance() from None
+            figures = {name: self._read(name)(points).value for name in names}
+            return figures, self._pressures(self._stages, points) if self._made else {}
+
     def _told(self, answered: Callable[[], Reply], goals: Sequence[Goal], progress: Progress) -> Reply:
         same = [goal.name for goal in goals] == [goal.name for goal in self._goals]
         self._goals, self._progress, self._used = goals, progress, []
@@ -190,21 +204,22 @@ class Asking:
         return self._reads[name]
 
     def _presses_well(self, search: Search, look: Look) -> bool:
-        """Look at what lines press with, limit what those that press too much may pull, and tell if none did.
-
-        Only lines whose tension is known from an elastic are looked at, and for which the limit was set.
-        """
+        """Look at what lines press with, limit what those that press too much may pull; tell if none did."""
         stages, limit = search.stages, self._limit
-        lines, tensions = stages.model.lines, line_tensions(stages, look.points)
-        seen = {line.name for line in lines if not goes_on(stages, line)} & set(self._made)
-        worn = pressures(stages, look.points)
-        self._pressure = {name: worn[name].largest for name in sorted(seen) if not tensions[name].estimate}
+        self._pressure = self._pressures(stages, look.points)
+        lines = stages.model.lines
         pulls = {line.name: float(pull) for line, pull in zip(lines, look.pulls, strict=True)}
         for name, kpa in self._pressure.items():
             if pulls[name] > 0.0 and (kpa > limit or name in self._hardest):
                 self._hardest[name] = pulls[name] * limit / kpa
         search.hardest = dict(self._hardest)
         return all(kpa < _TOO_MUCH * limit for kpa in self._pressure.values())
+
+    def _pressures(self, stages: Stages, points: Points) -> dict[str, float]:
+        """Return the largest pressure [kPa] of lines whose tension is known and for which a limit was set."""
+        tensions, worn = line_tensions(stages, points), pressures(stages, points)
+        seen = {line.name for line in stages.model.lines if not goes_on(stages, line)} & set(self._made)
+        return {name: worn[name].largest for name in sorted(seen) if not tensions[name].estimate}
 
     def _kept(self, search: Search, found: Found, *, agreed: bool) -> Reply:
         """Return what was found, and go on from there when the next wish is in a hurry."""

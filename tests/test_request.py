@@ -186,6 +186,9 @@ def test_a_hurried_answer_goes_on_from_the_last_one(rest: Stages, made: bool) ->
     start = elastics(rest, 0.95, 0.95) if made else wearing(rest, 0.98, 0.98)
     begin = figure(start, "girth")
     asking = Asking(start)
+    assert asking.now(["girth", "lift"]) == pytest.approx(
+        {"girth": begin, "lift": figure(start, "lift")}, abs=1e-6
+    )
     first = asking.reply([Goal("girth", begin - 1.0)])
     for further in (1.5, 2.0, 2.5):
         goals = [Goal("girth", begin - further)]

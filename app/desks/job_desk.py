@@ -75,7 +75,7 @@ class JobDesk(QObject):
 
     def _carriers(self) -> tuple[Carrier, ...]:
         window = self._window
-        return window.landmark_desk, window.band_pull, window.section_desk
+        return window.landmark_desk, window.band_pull, window.section_desk, window.ask_desk.handles
 
     def _shown_job(self) -> Job | None:
         now = time.monotonic()

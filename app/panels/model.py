@@ -1,24 +1,19 @@
 """How the model works: every choice in plain words, out of the designer's way until it is asked for."""
 
-# ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
-from PySide6.QtCore import QEvent, QRectF, Qt, Signal
-from PySide6.QtGui import QColor, QEnterEvent, QPainter, QPaintEvent, QPen
-from PySide6.QtWidgets import QAbstractButton, QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
-from app.dress.icons import paint_icon
+from app.dress.door import DOOR_HEIGHT, Door
 from app.dress.parts import ToolButton, button, hairline, sentence
-from app.dress.theme import font, label, set_tag, tokens_of
+from app.dress.theme import label, set_tag
 from app.panels.setting_field import AmountField, Field, field_of
 from app.wording.model_choices import Setting, consequences, defaults, groups, summary
 from app.wording.words import colon, number, tr
-
-DOOR_HEIGHT = 52
-"""Height of the foot of the inspector, where the way to the settings is [px]."""
 
 
 class ModelPanel(QWidget):
@@ -135,52 +130,12 @@ class ModelPanel(QWidget):
             self.changed.emit(changes, f"{setting.title}{colon()}{setting.words(value)}")
 
 
-class ModelDoor(QAbstractButton):
+class ModelDoor(Door):
     """The way to the settings from under the lines: what is chosen, in a line."""
 
     def __init__(self) -> None:
-        super().__init__()
-        self._said = ""
-        self.setFixedHeight(DOOR_HEIGHT)
-        self.setText(tr("How the model works"))
-        self.setCursor(Qt.CursorShape.PointingHandCursor)
+        super().__init__(tr("How the model works"))
 
     def set_values(self, present: Mapping[str, Any]) -> None:
         """Say what is chosen."""
-        self._said = summary(present)
-        self.setAccessibleDescription(self._said)
-        self.setToolTip(f"<p>{self._said}</p>")
-        self.update()
-
-    def paintEvent(self, event: QPaintEvent) -> None:
-        tokens = tokens_of(self)
-        painter = QPainter(self)
-        painter.fillRect(0, 0, self.width(), 1, QColor(tokens.line))
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        if self.underMouse() or self.hasFocus():
-            painter.setPen(QPen(QColor(tokens.accent), 2) if self.hasFocus() else Qt.PenStyle.NoPen)
-            painter.setBrush(QColor(tokens.hover))
-            painter.drawRoundedRect(QRectF(self.rect()).adjusted(6, 6, -6, -5), 8, 8)
-        room = QRectF(18, 8, self.width() - 56, 20)
-        painter.setFont(font("secondary"))
-        painter.setPen(QColor(tokens.text))
-        painter.drawText(room, _LEFT, self.text())
-        painter.setFont(font("caption"))
-        painter.setPen(QColor(tokens.text_caption))
-        said = painter.fontMetrics().elidedText(self._said, Qt.TextElideMode.ElideRight, int(room.width()))
-        painter.drawText(room.translated(0, 18), _LEFT, said)
-        paint_icon(
-            painter,
-            "caret-right",
-            tokens.text_quiet,
-            QRectF(self.width() - 32, self.height() / 2 - 7, 14, 14),
-        )
-
-    def enterEvent(self, event: QEnterEvent) -> None:
-        self.update()
-
-    def leaveEvent(self, event: QEvent) -> None:
-        self.update()
-
-
-_LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+        self.show_words(summary(present))

@@ -121,14 +121,10 @@ class Answers:
 
     def _answer(self, ratios: tuple[float, ...]) -> Answer:
         model, excess = self._stages.model, None
+        balance = _balance(self._stages, ratios, self._near)
         if self._stages.design.dense_volume:
-            balance = solve_body_exact(model, ratios, self._stages.body_change, near=self._near)
             points = model.tensegric.expand(balance.state.moved)
             excess = model.volume.side_volumes(points) - model.rest_sides
-        else:
-            balance = solve_exact(model, ratios, near=self._near)
-        if not balance.found:
-            raise NoBalanceError
         self._near = None if self._from_rest else balance
         return Answer(Potential(model, ratios, excess), balance)
 
@@ -164,6 +160,23 @@ class Answers:
         for end, sign in zip(shape.edges.T, (1.0, -1.0), strict=True):
             np.add.at(slopes, end, sign * both[:, None] * spans)
         return float(least - np.log(share.sum()) / _SHARP), rates.of(self._by_free(slopes))
+
+
+def exact_points(stages: Stages) -> Points:
+    """Return the control points, (n, 3) [mm], that a design is solved to. Raises NoBalanceError."""
+    ratios = targets_of(stages.design, stages).ratios
+    return stages.model.tensegric.expand(_balance(stages, ratios).state.moved)
+
+
+def _balance(stages: Stages, ratios: tuple[float, ...], near: Balance | None = None) -> Balance:
+    model = stages.model
+    if stages.design.dense_volume:
+        balance = solve_body_exact(model, ratios, stages.body_change, near=near)
+    else:
+        balance = solve_exact(model, ratios, near=near)
+    if not balance.found:
+        raise NoBalanceError
+    return balance
 
 
 def free_lines(stages: Stages, kept: Collection[str] = ()) -> Iterator[tuple[str, ...]]:

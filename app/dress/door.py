@@ -1,0 +1,65 @@
+"""A door: a row at the foot of a panel that leads somewhere else, with a line of what is there."""
+
+# ruff: noqa: D102, N802 - Qt names its events and says what they are
+from __future__ import annotations
+
+from PySide6.QtCore import QEvent, QRectF, Qt
+from PySide6.QtGui import QColor, QEnterEvent, QPainter, QPaintEvent, QPen
+from PySide6.QtWidgets import QAbstractButton
+
+from app.dress.icons import paint_icon
+from app.dress.theme import font, tokens_of
+
+DOOR_HEIGHT = 52
+"""Height of a door at the foot of the inspector [px]."""
+
+_LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+
+
+class Door(QAbstractButton):
+    """A title over a quiet line of words."""
+
+    def __init__(self, title: str, words: str = "") -> None:
+        super().__init__()
+        self._said = ""
+        self.setFixedHeight(DOOR_HEIGHT)
+        self.setText(title)
+        self.setCursor(Qt.CursorShape.PointingHandCursor)
+        self.show_words(words)
+
+    def show_words(self, words: str) -> None:
+        """Say what is behind it."""
+        self._said = words
+        self.setAccessibleDescription(self._said)
+        self.setToolTip(f"<p>{self._said}</p>")
+        self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        tokens = tokens_of(self)
+        painter = QPainter(self)
+        painter.fillRect(0, 0, self.width(), 1, QColor(tokens.line))
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        if self.underMouse() or self.hasFocus():
+            painter.setPen(QPen(QColor(tokens.accent), 2) if self.hasFocus() else Qt.PenStyle.NoPen)
+            painter.setBrush(QColor(tokens.hover))
+            painter.drawRoundedRect(QRectF(self.rect()).adjusted(6, 6, -6, -5), 8, 8)
+        room = QRectF(18, 8, self.width() - 56, 20)
+        painter.setFont(font("secondary"))
+        painter.setPen(QColor(tokens.text))
+        painter.drawText(room, _LEFT, self.text())
+        painter.setFont(font("caption"))
+        painter.setPen(QColor(tokens.text_caption))
+        said = painter.fontMetrics().elidedText(self._said, Qt.TextElideMode.ElideRight, int(room.width()))
+        painter.drawText(room.translated(0, 18), _LEFT, said)
+        paint_icon(
+            painter,
+            "caret-right",
+            tokens.text_quiet,
+            QRectF(self.width() - 32, self.height() / 2 - 7, 14, 14),
+        )
+
+    def enterEvent(self, event: QEnterEvent) -> None:
+        self.update()
+
+    def leaveEvent(self, event: QEvent) -> None:
+        self.update()

@@ -1,0 +1,79 @@
+"""The menu of all that can be wished for while the result is asked for."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+from PySide6.QtWidgets import QMenu
+
+from app.dress.parts import pull_down
+from app.keeping.dialogs import ask_table
+from app.presenting.asking import figure_title, profile_title
+from app.wording.words import tr
+from core.aims.even import EVEN
+from core.aims.girth import GIRTH
+from core.errors import UserError
+
+if TYPE_CHECKING:
+    from app.lining.ask_desk import AskDesk
+    from app.main_window import MainWindow
+
+_BOTH = ("lift", "out", "apex lift", "apex out", GIRTH)
+
+
+class AskMenu(QObject):
+    """Offers figures that are not wished for yet, and profiles from tables."""
+
+    def __init__(self, window: MainWindow, desk: AskDesk) -> None:
+        super().__init__(desk)
+        self._window, self._desk = window, desk
+        self.menu = QMenu(window)
+
+    def show(self) -> None:
+        """Open the menu under its button."""
+        self.fill()
+        pull_down(self.menu, self._desk.card.add)
+
+    def fill(self) -> None:
+        """List what can be wished for besides what is."""
+        self.menu.clear()
+        self._offer(self.menu, _BOTH)
+        for side, title in (("left", tr("Left side alone")), ("right", tr("Right side alone"))):
+            names = tuple(f"{name} {side}" for name in _BOTH if name != GIRTH)
+            self._offer(self.menu.addMenu(title), names)
+        self._offer(self.menu.addMenu(tr("Left against right")), EVEN.names)
+        self.menu.addSeparator()
+        for side in ("left", "right"):
+            words = tr("{profile} from a table…").format(profile=profile_title(side))
+            self.menu.addAction(words, partial(self.ask_profile, side))
+
+    def ask_profile(self, side: str) -> None:
+        """Ask for a table, and wish for the profile in it."""
+        path = ask_table(self._window, tr("Profile from a table"))
+        if path:
+            self.take_profile(side, path)
+
+    def take_profile(self, side: str, path: str) -> None:
+        """Wish for the profile in a table through the bust point of a side."""
+        from core.aims.curve_file import profile_goals, read_profile  # noqa: PLC0415 (few ever ask)
+
+        frame = self._window.session.frame
+        if frame is None:
+            return
+        try:
+            goals = profile_goals(frame.stages, side, read_profile(path))
+        except UserError as problem:
+            self._window.desk.show_failure(problem)
+        else:
+            self._desk.wish_curve(f"profile {side}", goals)
+
+    def _offer(self, menu: QMenu, names: tuple[str, ...]) -> None:
+        for name in names:
+            if name not in self._desk.wishes:
+                menu.addAction(figure_title(name), partial(self._add, name))
+
+    def _add(self, name: str) -> None:
+        """Show a figure as it is now, to be typed over."""
+        self._desk.add(name)

@@ -1,0 +1,132 @@
+"""Questions about the result are answered beside the window: the newest counts, stale ones are let go."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import partial
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Signal
+
+from app.asking.jobs import Job, Jobs
+from app.wording.words import tr
+from core.aims.figure import Goal
+from core.design import Design
+from core.pipeline import Stages, build
+from core.progress import Progress
+
+if TYPE_CHECKING:
+    from core.request import Asking, Reply
+
+
+@dataclass(frozen=True, eq=False)
+class Question:
+    """What is asked of ``design``, which is built from ``stages``: ``goals``, within a limit [kPa].
+
+    ``figures`` are those of which it is told what they are now. One in a hurry is answered near the last.
+    """
+
+    design: Design
+    stages: Stages
+    goals: tuple[Goal, ...]
+    figures: tuple[str, ...]
+    most_kpa: float | None = None
+    hurried: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What is ``now`` [mm], what ``presses`` [kPa], by name, and the ``reply``, if anything was wished."""
+
+    question: Question
+    now: Mapping[str, float]
+    presses: Mapping[str, float]
+    reply: Reply | None
+
+
+@dataclass(eq=False)
+class _Known:
+    """What is kept from question to question about one design."""
+
+    design: Design
+    most_kpa: float | None
+    asking: Asking
+    now: dict[str, float] = field(default_factory=dict)
+    presses: dict[str, float] = field(default_factory=dict)
+
+
+class AskWork(QObject):
+    """Answers one question at a time. ``answered`` carries an Answer, ``refused`` why there is none."""
+
+    answered = Signal(object)
+    refused = Signal(object)
+
+    def __init__(self, jobs: Jobs, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._jobs = jobs
+        self._job: Job | None = None
+        self._at: Question | None = None
+        self._wanted: Question | None = None
+        self._known: _Known | None = None
+        self._turn = threading.Lock()  # one that was let go of ends at its next answer
+
+    @property
+    def at_work(self) -> bool:
+        """Whether the newest question is not answered yet."""
+        return self._wanted is not None
+
+    def ask(self, question: Question) -> None:
+        """Answer this from now on; what is in a hurry is not broken off, as it soon ends."""
+        self._wanted = question
+        if self._at is not None and not self._at.hurried:
+            self._jobs.cancel(self._job)
+            self._at = None
+        if self._at is None:
+            self._begin()
+
+    def stop(self) -> None:
+        """Answer nothing any more, and keep nothing."""
+        self._jobs.cancel(self._job)
+        self._job = self._at = self._wanted = self._known = None
+
+    def _begin(self) -> None:
+        self._at = question = self._wanted
+        if question is not None:
+            work, done = partial(self._answer, question), partial(self._end, question)
+            self._job = self._jobs.run(tr("Finding lengths for the result"), work, done, done)
+
+    def _end(self, question: Question, outcome: object) -> None:
+        self._at = None
+        newest = question is self._wanted
+        if newest:
+            self._wanted = None
+        else:
+            self._begin()
+        if isinstance(outcome, Exception):
+            if newest:
+                self.refused.emit(outcome)
+        elif newest or question.hurried:
+            self.answered.emit(outcome)
+
+    def _answer(self, question: Question, progress: Progress) -> Answer:
+        """Answer, in a thread of its own."""
+        with self._turn:
+            known = self._known
+            if known is None or known.design is not question.design or known.most_kpa != question.most_kpa:
+                known = self._known = self._open(question, progress)
+            missing = [name for name in question.figures if name not in known.now]
+            if missing or not known.now:
+                now, known.presses = known.asking.now(missing)
+                known.now |= now
+            answer = known.asking.hurried if question.hurried else known.asking.reply
+            reply = answer(question.goals, progress) if question.goals else None
+            return Answer(question, dict(known.now), dict(known.presses), reply)
+
+    def _open(self, question: Question, progress: Progress) -> _Known:
+        from core.request import Asking  # noqa: PLC0415 (brings a search along that no start needs)
+
+        stages = build(question.design, question.stages, progress)
+        asking = Asking(stages, most_kpa=question.most_kpa)
+        return _Known(question.design, question.most_kpa, asking)

@@ -1,0 +1,153 @@
+"""What the window says while the result is asked for: figures, answers, changes."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from app.presenting.lines import row_title
+from app.wording.words import colon, listed, number, tr
+from core.aims.even import FURTHER_OUT, HIGHER
+from core.aims.figure import Goal
+from core.aims.girth import GIRTH
+from core.aims.outline import profiles_off, section_of
+from core.design import Design
+
+if TYPE_CHECKING:
+    from core.request import Reply
+
+_MET = 0.05  # [mm]
+_SAME = 5e-4  # ratios that read the same [1]
+
+
+def figure_title(name: str) -> str:
+    """Return what a figure that can be asked for is called in the window."""
+    titles = {
+        "lift": tr("Bust point up"),
+        "out": tr("Bust point forward"),
+        "apex lift": tr("Foremost place up"),
+        "apex out": tr("Foremost place forward"),
+        GIRTH: tr("Bust girth"),
+        HIGHER: tr("Left higher than right"),
+        FURTHER_OUT: tr("Left further forward than right"),
+    }
+    if name in titles:
+        return titles[name]
+    if name.startswith("profile "):
+        return profile_title(name.split()[1])
+    what, _, side = name.rpartition(" ")
+    return listed((titles.get(what, what), tr("left") if side == "left" else tr("right")))
+
+
+def profile_title(section: str) -> str:
+    """Return what the profile of a section is called: "left", "right", or its x [mm]."""
+    sides = {"left": tr("Profile through the left bust point")}
+    sides["right"] = tr("Profile through the right bust point")
+    return sides.get(section, tr("Profile at {x} mm").format(x=section))
+
+
+def is_signed(name: str) -> bool:
+    """Tell whether a figure counts from rest, so that its plus is written."""
+    return name != GIRTH and not section_of(name)
+
+
+def figure_words(name: str, value: float) -> str:
+    """Return a figure with its value: "Bust point up +12.0 mm"."""
+    return tr("{figure} {value} mm").format(
+        figure=figure_title(name), value=number(value, 1, signed=is_signed(name))
+    )
+
+
+def wishes_words(goals: Sequence[Goal]) -> str:
+    """Return in a few words what is asked for."""
+    single = [figure_words(goal.name, goal.value) for goal in goals if not section_of(goal.name)]
+    return listed((*single, *dict.fromkeys(figure_title(g.name) for g in goals if section_of(g.name))))
+
+
+def answer_words(reply: Reply, goals: Sequence[Goal]) -> str:
+    """Return in a sentence whether it can be reached, else what is nearest and why."""
+    if reply.reachable:
+        return tr("Reached.")
+    nearest = listed(_nearest(reply, goals))
+    if not reply.agreed:
+        said = tr("Nearest so far: {nearest}. Lengths, elastics and pressures did not come to agree.")
+        return said.format(nearest=nearest)
+    said = tr("Not reachable: nearest is {nearest}, because {reasons}.")
+    return said.format(nearest=nearest, reasons=tr(" and ").join(_reasons(reply)))
+
+
+def _nearest(reply: Reply, goals: Sequence[Goal]) -> Iterable[str]:
+    missed = [goal for goal in goals if not section_of(goal.name)]
+    missed = [goal for goal in missed if abs(reply.reached[goal.name] - goal.value) > _MET] or missed
+    for goal in missed:
+        yield figure_words(goal.name, reply.reached[goal.name])
+    for section, off in profiles_off(goals, reply.reached).items():
+        said = tr("{profile} off by {mean} mm in the mean, {most} mm at most")
+        mean, most = number(float(np.sqrt((off**2).mean()))), number(float(np.abs(off).max()))
+        yield said.format(profile=figure_title(section + " 0"), mean=mean, most=most)
+
+
+def _reasons(reply: Reply) -> list[str]:
+    long = [name for name in reply.at_end if reply.design.ratio(name) >= 1.0]
+    short = [name for name in reply.at_end if name not in long]
+    kpa = number(reply.limit)
+    reasons = [
+        said.format(lines=_titles(names, reply.design), kpa=kpa)
+        for names, said in (
+            (short, tr("{lines} may not be shorter")),
+            (long, tr("{lines} may not be longer")),
+            (reply.pressing, tr("{lines} may not press more than {kpa} kPa")),
+        )
+        if names
+    ]
+    if reply.strained:
+        reasons.append(tr("the body would be strained more than looks natural"))
+    return reasons or [tr("these lines do not move the body that way")]
+
+
+def change_words(before: Design, reply: Reply) -> list[str]:
+    """Return how lengths would change, row by row, and what elastics would press with."""
+    after, said = reply.design, []
+    for title, name in _rows(sorted(after.worn()), after):
+        one, other = before.ratio(name), after.ratio(name)
+        if abs(one - other) >= _SAME:
+            words = tr("{line} {before} → {after} %")
+            values = {"before": number(100.0 * one), "after": number(100.0 * other)}
+            said.append(words.format(line=title, **values))
+    said = said or [tr("No line changes")]
+    if reply.pressure:
+        most = max(reply.pressure.values())
+        said.append(tr("presses with {kpa} kPa at most").format(kpa=number(most)))
+    return said
+
+
+def kept_words(design: Design, kept: Collection[str]) -> str:
+    """Return which worn lines stay because they are locked, if any do."""
+    lines = _titles([name for name in sorted(design.worn()) if name in kept], design)
+    return tr("Locked, so kept: {lines}.").format(lines=lines) if lines else ""
+
+
+def step_words(goals: Sequence[Goal]) -> str:
+    """Return what the step of undo is called."""
+    return tr("Asked for") + colon() + wishes_words(goals)
+
+
+def _titles(names: Iterable[str], design: Design) -> str:
+    return listed(title for title, _ in _rows(names, design))
+
+
+def _rows(names: Iterable[str], design: Design) -> list[tuple[str, str]]:
+    """Return titles of rows with the first of their lines."""
+    rows: dict[str, str] = {}
+    for name in names:
+        rows.setdefault(row_title(name, design), name)
+    return list(rows.items())
+
+
+def values_words(values: Mapping[str, float], name: str) -> str:
+    """Return what a figure is now, in a few words; nothing before it is known."""
+    if name not in values:
+        return ""
+    return tr("now {value}").format(value=number(values[name], 1, signed=is_signed(name)))

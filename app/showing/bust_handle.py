@@ -1,0 +1,241 @@
+"""The handle of a bust point in a 3D view: it is dragged to where the bust point is wished."""
+
+# ruff: noqa: D102, N802 - Qt names its events and says what they are
+from __future__ import annotations
+
+import numpy as np
+from PySide6.QtCore import QEvent, QObject, QPointF, Qt, Signal
+from PySide6.QtGui import QColor, QEnterEvent, QHideEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen
+from PySide6.QtWidgets import QWidget
+
+from app.dress.theme import tokens_of
+from app.showing.viewport import Viewport
+from app.wording.words import tr
+from core.mesh import Floats
+
+SIZE = 48
+"""Width and height of the handle with its arrows [px]."""
+
+FINE = 0.1
+"""What is left of a drag while Shift is held [1]."""
+
+NEAR, FAR = 1.0, 5.0
+"""What an arrow key moves it by, and with Shift [mm]."""
+
+_UP, _OUT = np.array([0.0, 0.0, 1.0]), np.array([0.0, -1.0, 0.0])
+_FLATTEST = 0.35  # a way seen shorter than this part of a mm across points at the eye
+_FACING = {"left": np.array([0.42, -0.91, 0.0]), "right": np.array([-0.42, -0.91, 0.0])}  # of each breast
+
+
+class BustHandle(QWidget):
+    """A knob where a bust point is wished, with a thread to where it is.
+
+    ``taken`` and ``dropped`` when a hand closes and opens; ``pulled`` carries each step up and out [mm]: of
+    the two ways those that do not point at the eye. Arrow keys are such steps too, between ``taken`` and
+    ``dropped``.
+    """
+
+    taken = Signal()
+    pulled = Signal(float, float)
+    dropped = Signal()
+
+    def __init__(self, viewport: Viewport, side: str) -> None:
+        self._canvas = viewport.overlay.parentWidget()
+        super().__init__(self._canvas)
+        self._viewport, self.side = viewport, side
+        self._place, self._foot = np.zeros(3), np.zeros(3)
+        self._ways = np.zeros((2, 2))  # of one mm up and out over the picture, as columns [px]
+        self._last: QPointF | None = None
+        self._hovered = self._wanted = False
+        self._thread = _Thread(self._canvas)
+        self.setFixedSize(SIZE, SIZE)
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        names = {"left": tr("Handle of the left bust point"), "right": tr("Handle of the right bust point")}
+        self.setAccessibleName(names[side])
+        self.setToolTip(tr("Drag to where the bust point is to be; Shift: finer, Esc: back. Arrows: 1 mm"))
+        viewport.view_changed.connect(self._stand)
+        viewport.installEventFilter(self)
+        self.hide()
+
+    def show_at(self, place: Floats, foot: Floats) -> None:
+        """Stand at ``place`` (3,) [mm], with the bust point at ``foot`` (3,) [mm] now."""
+        self._place, self._foot, self._wanted = place, foot, True
+        self._stand()
+
+    def put_away(self) -> None:
+        """Show it no longer."""
+        self._wanted = False
+        self._stand()
+
+    @property
+    def held(self) -> bool:
+        """Whether it is in a hand."""
+        return self._last is not None
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.Resize:
+            self._stand()
+        return False
+
+    def _stand(self) -> None:
+        shown = self._wanted and self._viewport.shows_body and self._faces()
+        self._thread.setVisible(shown)
+        if not shown:
+            if self.isVisible():
+                self.hide()
+            return
+        view, room = self._viewport.scene.view, (self._viewport.width(), self._viewport.height())
+        around = np.stack([self._place, self._place + _UP, self._place + _OUT, self._place + view.axes[0]])
+        spot, up, out, across = view.to_picture(around, *room)[:, :2]
+        full = max(float(np.linalg.norm(across - spot)), 1e-6)
+        ways = np.stack([up - spot, out - spot], axis=1)
+        self._ways = np.where(np.linalg.norm(ways, axis=0) >= _FLATTEST * full, ways, 0.0)
+        self.move(*(round(each) - SIZE // 2 for each in spot))
+        foot = view.to_picture(self._foot[None], *room)[0, :2]
+        self._thread.show_between(QPointF(*foot), QPointF(*spot))
+        self._show_cursor()
+        self.show()
+        self.raise_()
+        self.update()
+
+    def _faces(self) -> bool:
+        """Tell whether this breast is seen, and not only what lies behind it."""
+        return bool(self._viewport.scene.view.axes[2] @ _FACING[self.side] > 0.0)
+
+    def _steps(self, over: Floats) -> tuple[float, float]:
+        """Return the steps up and out [mm] of a step over the picture, (2,) [px]."""
+        up, out = np.linalg.lstsq(self._ways, over, rcond=1e-6)[0] if self._ways.any() else (0.0, 0.0)
+        return float(up), float(out)
+
+    # -- the hand
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        if event.button() != Qt.MouseButton.LeftButton:
+            event.ignore()
+            return
+        self._last = event.globalPosition()
+        self.setFocus(Qt.FocusReason.MouseFocusReason)
+        self._show_cursor()
+        self.taken.emit()
+        self.update()
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        if self._last is None:
+            event.ignore()
+            return
+        step, self._last = event.globalPosition() - self._last, event.globalPosition()
+        fine = FINE if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else 1.0
+        self.pulled.emit(*self._steps(fine * np.array([step.x(), step.y()])))
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        if self._last is None or event.button() != Qt.MouseButton.LeftButton:
+            event.ignore()
+            return
+        self.open_hand()
+        self.dropped.emit()
+
+    def open_hand(self) -> None:
+        """Hold it no longer, without a word."""
+        self._last = None
+        self._show_cursor()
+        self.update()
+
+    def hideEvent(self, event: QHideEvent) -> None:
+        self._thread.hide()
+        if self._last is not None:  # the hand will open over something else
+            self._last = None
+            self.dropped.emit()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        far = FAR if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else NEAR
+        step = {
+            Qt.Key.Key_Up: (far, 0.0),
+            Qt.Key.Key_Down: (-far, 0.0),
+            Qt.Key.Key_Right: (0.0, far * np.sign(self._ways[0, 1])),
+            Qt.Key.Key_Left: (0.0, -far * np.sign(self._ways[0, 1])),
+        }.get(Qt.Key(event.key()))
+        if step is None or not any(step) or (step[0] and not self._ways[:, 0].any()):
+            event.ignore()
+            return
+        self.taken.emit()
+        self.pulled.emit(*step)
+        self.dropped.emit()
+
+    def enterEvent(self, event: QEnterEvent) -> None:
+        self._hovered = True
+        self.update()
+
+    def leaveEvent(self, event: QEvent) -> None:
+        self._hovered = False
+        self.update()
+
+    def _show_cursor(self) -> None:
+        held = self._last is not None
+        self.setCursor(Qt.CursorShape.ClosedHandCursor if held else Qt.CursorShape.OpenHandCursor)
+
+    # -- painting
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        tokens, painter = tokens_of(self), QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.translate(SIZE / 2.0, SIZE / 2.0)
+        lively = self._hovered or self.hasFocus() or self._last is not None
+        halo = QColor(tokens.accent)
+        halo.setAlpha(90 if lively else 45)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(halo)
+        painter.drawEllipse(QPointF(), 14.0, 14.0)
+        for way in self._ways.T:
+            if way.any():
+                self._arrows(painter, float(np.arctan2(way[1], way[0])), tokens.accent, tokens.raised)
+        painter.setPen(QPen(QColor(tokens.accent), 2.4 if lively else 1.8))
+        painter.setBrush(QColor(tokens.raised))
+        painter.drawEllipse(QPointF(), 7.5, 7.5)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(tokens.accent))
+        painter.drawEllipse(QPointF(), 3.0, 3.0)
+
+    def _arrows(self, painter: QPainter, angle: float, ink: str, rim: str) -> None:
+        """Paint an arrow each way; a rim keeps them apart from any skin behind them."""
+        for turned in (angle, angle + np.pi):
+            painter.save()
+            painter.rotate(float(np.degrees(turned)))
+            for width, colour in ((4.2, rim), (2.0, ink)):
+                pen = QPen(QColor(colour), width)
+                pen.setCapStyle(Qt.PenCapStyle.RoundCap)
+                pen.setJoinStyle(Qt.PenJoinStyle.RoundJoin)
+                painter.setPen(pen)
+                painter.drawPolyline([QPointF(17.0, -4.0), QPointF(21.0, 0.0), QPointF(17.0, 4.0)])
+            painter.restore()
+
+
+class _Thread(QWidget):
+    """A dashed thread from where the bust point is to where it is wished, seen and never hit."""
+
+    def __init__(self, canvas: QWidget | None) -> None:
+        super().__init__(canvas)
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self._foot = self._spot = QPointF()
+        self.hide()
+
+    def show_between(self, foot: QPointF, spot: QPointF) -> None:
+        """Lead from ``foot`` to ``spot``, both on the canvas."""
+        self._foot, self._spot = foot, spot
+        parent = self.parentWidget()
+        if parent is not None:
+            self.setGeometry(parent.rect())
+        self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        tokens, painter = tokens_of(self), QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        for width, colour in ((4.0, tokens.raised), (1.6, tokens.accent)):
+            pen = QPen(QColor(colour), width)
+            if width < 2.0:
+                pen.setDashPattern([3.0, 2.5])
+            painter.setPen(pen)
+            painter.drawLine(self._foot, self._spot)
+        painter.setPen(QPen(QColor(tokens.accent), 1.8))
+        painter.setBrush(QColor(tokens.raised))
+        painter.drawEllipse(self._foot, 4.0, 4.0)
