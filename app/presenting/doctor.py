@@ -11,6 +11,7 @@ from core.advice.fight import Pull
 from core.advice.remedy import Change, Cure
 from core.doctor import Diagnosis
 
+_SEEN = 0.05  # mm that a bust point swings by at least where its swing is worth a word
 _STEADY = 5e-4  # a swing that changes by less a turn stays as large as it is [1]
 
 
@@ -27,6 +28,10 @@ def sentence(found: Diagnosis, swing: float) -> str:
             "{one} and {other} pull against each other: the bust point swings by ±{swing} mm every {period} "
             "turns."
         ),
+        "volume": tr(
+            "{one} and {other} pull against each other: the volume swings by ±{percent} % every {period} "
+            "turns."
+        ),
         "diverging": tr("{one} and {other} pull against each other until the calculation runs away."),
         "folded": tr("{one} and {other} pull against each other until the skin folds over."),
         "overstrained": tr(
@@ -39,7 +44,10 @@ def sentence(found: Diagnosis, swing: float) -> str:
         "unreachable": tr("{one} and {other} pull against each other: no balance is found."),
     }
     one, other = (_name(found, pull) for pull in (worst.one, worst.other))
-    return words[found.complaint].format(one=one, other=other, swing=number(swing), period=_period(found))
+    what = "volume" if found.complaint == "vibrating" and swing < _SEEN else found.complaint
+    percent = number(100.0 * found.verdict.amplitude, 2)
+    values = {"swing": number(swing), "percent": percent, "period": _period(found)}
+    return words[what].format(one=one, other=other, **values)
 
 
 def _plain(found: Diagnosis, swing: float) -> str:
@@ -94,7 +102,7 @@ def change_words(found: Diagnosis, change: Change) -> str:
         what = tr("Bring all lines nearer to 100 %")
     elif change.kind == "off":
         what = tr("Take {line} off").format(line=row_title(change.lines[0], design))
-    return listed(filter(None, (choice, what)))
+    return listed((choice, what[:1].lower() + what[1:])) if choice and what else choice or what
 
 
 def details(found: Diagnosis) -> str:
