@@ -9,7 +9,9 @@ from functools import reduce
 from pathlib import Path
 from typing import Any
 
+from core.design_calibration import Calibration
 from core.design_elastics import TISSUE_LIMITS, TISSUE_STIFFNESS, Elastic, check_elastics
+from core.design_limits import check_flags, check_numbers, check_words
 from core.design_lines import LineTraits, OwnLine, WornLine, partner_of
 from core.design_measures import WORN_TIGHT, OwnMeasure, check_customer, put_measure
 from core.errors import LandmarkError, LineError, UserError
@@ -56,7 +58,8 @@ class Design:
     the usual, ``elastics`` those that lines are made of, with their curves, so that a project opens
     elsewhere. ``tissue_stiffness`` [N/m] tells what the model's forces are in newtons, an estimate (see
     docs/sewing.md). ``customer`` is whom it is for, in whatever words, ``worn_tight_mm`` what her sizes take
-    off the under-bust. ``unknown`` keeps what a later version wrote.
+    off the under-bust. ``calibration`` tells which scan with the garment on its numbers come from, if any.
+    ``unknown`` keeps what a later version wrote.
     """
 
     scan: ScanSource
@@ -84,11 +87,11 @@ class Design:
     tissue_stiffness: float = TISSUE_STIFFNESS
     customer: str = ""
     worn_tight_mm: float = 0.0
+    calibration: Calibration | None = None
     unknown: Mapping[str, Any] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
-        self._check_words()
-        self._check_numbers()
+        self._check_settings()
         check_customer(self.customer)
         for line in self.lines:
             if not RATIO_LIMITS[0] <= line.ratio <= RATIO_LIMITS[1]:
@@ -106,31 +109,25 @@ class Design:
             raise UserError(f"There are two measures '{twice}'.", "Give each measure a name of its own.")
         check_elastics(self.elastics, {each.name: each.elastic for each in self.traits if each.elastic})
 
-    def _check_words(self) -> None:
-        for value, choices, what in (
-            (self.template, TEMPLATES, "template"),
-            (self.volume, CONTROLS, "volume control"),
-            (self.weights, WEIGHTS, "t-FFD weights"),
-            *((getattr(self, key), words, key.replace("_", " ")) for key, words in CHOICES.items()),
-        ):
-            if value not in choices:
-                raise UserError(f"There is no {what} '{value}'.", f"Choose one of: {', '.join(choices)}.")
-        for key in ("scaled_normals", "dense_volume"):
-            if not isinstance(getattr(self, key), bool):
-                raise UserError(f"The {key.replace('_', ' ')} can be on or off only.", "Write true or false.")
-
-    def _check_numbers(self) -> None:
-        for number, low, high, what in (
-            (self.line_height, 0.25, 0.75, "line height"),
-            *((getattr(self, key), *limits, key.replace("_", " ")) for key, limits in RANGES.items()),
-            (1.0 if self.gain is None else self.gain, 0.0, 10.0, "gain"),
-            (self.tissue_stiffness, *TISSUE_LIMITS, "tissue stiffness"),
-            (self.worn_tight_mm, *WORN_TIGHT, "allowance of a tape worn tight"),
-        ):
-            if not low <= number <= high:
-                raise UserError(
-                    f"The {what} {number:g} is out of range.", f"It goes from {low:g} to {high:g}."
-                )
+    def _check_settings(self) -> None:
+        check_words(
+            (
+                (self.template, TEMPLATES, "template"),
+                (self.volume, CONTROLS, "volume control"),
+                (self.weights, WEIGHTS, "t-FFD weights"),
+                *((getattr(self, key), words, key.replace("_", " ")) for key, words in CHOICES.items()),
+            )
+        )
+        check_flags((getattr(self, key), key.replace("_", " ")) for key in ("scaled_normals", "dense_volume"))
+        check_numbers(
+            (
+                (self.line_height, 0.25, 0.75, "line height"),
+                *((getattr(self, key), *limits, key.replace("_", " ")) for key, limits in RANGES.items()),
+                (1.0 if self.gain is None else self.gain, 0.0, 10.0, "gain"),
+                (self.tissue_stiffness, *TISSUE_LIMITS, "tissue stiffness"),
+                (self.worn_tight_mm, *WORN_TIGHT, "allowance of a tape worn tight"),
+            )
+        )
 
     @property
     def mechanics(self) -> Mechanics:
@@ -169,11 +166,11 @@ class Design:
         return design.with_traits(traits)
 
     def acts_as(self, other: Design) -> bool:
-        """Tell whether another design is solved alike: customer, own measures, names, locks do not act."""
+        """Tell whether another design is solved alike: customer, measures, names, calibration do not act."""
         mine, others = (
             reduce(Design.with_traits, map(LineTraits.acting, each.traits), each) for each in (self, other)
         )
-        said: dict[str, Any] = {"own_measures": (), "customer": "", "worn_tight_mm": 0.0}
+        said: dict[str, Any] = {"own_measures": (), "customer": "", "worn_tight_mm": 0.0, "calibration": None}
         return replace(mine, **said) == replace(others, **said)
 
     def with_template(self, template: str) -> Design:

@@ -8,6 +8,7 @@ from dataclasses import asdict, fields
 from typing import Any
 
 from core.design import Design, ScanSource
+from core.design_calibration import calibration_of
 from core.design_elastics import TISSUE_STIFFNESS, elastic_of
 from core.design_lines import LineTraits, OwnLine, WornLine
 from core.design_measures import OwnMeasure
@@ -35,7 +36,7 @@ def to_json(design: Design, written: int = 1) -> str:
         del values["elastics"]
     if design.tissue_stiffness == TISSUE_STIFFNESS:
         del values["tissue_stiffness"]
-    for key in ("own_measures", "customer", "worn_tight_mm"):
+    for key in ("own_measures", "customer", "worn_tight_mm", "calibration"):
         if not values[key]:
             del values[key]
     return json.dumps({"format": written, "length_unit": "mm", **unknown, **values}, indent=1)
@@ -58,6 +59,7 @@ def from_json(text: str) -> Design:
         traits = tuple(_traits(line) for line in values.pop("traits", ()))
         elastics = tuple(elastic_of(each) for each in values.pop("elastics", ()))
         measures = tuple(_own_measure(each) for each in values.pop("own_measures", ()))
+        calibrated = values.pop("calibration", None)
         known = {f.name for f in fields(Design)} - {"unknown"}
         unknown = {key: values.pop(key) for key in list(values) if key not in known}
         if not isinstance(values.get("customer", ""), str):
@@ -70,6 +72,7 @@ def from_json(text: str) -> Design:
             placed=placed,
             own_measures=measures,
             elastics=elastics,
+            calibration=None if calibrated is None else calibration_of(calibrated),
             unknown=unknown,
             **values,
         )

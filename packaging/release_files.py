@@ -26,6 +26,7 @@ from app.commands.picture import draw_picture
 from core import __version__
 from core.cutting import cut_list
 from core.design import Design, ScanSource
+from core.design_calibration import Calibration, FoundNumber
 from core.design_lines import LineTraits
 from core.design_measures import OwnMeasure
 from core.document import Document
@@ -147,11 +148,25 @@ def preset_worn() -> tuple[Document, ScanFile]:
     return Document.of(with_preset(usual, built_in()[-1])), scan
 
 
+def calibrated() -> tuple[Document, ScanFile]:
+    """Return a design whose numbers were found on a second scan, the garment on; one stayed as it was."""
+    scan = small_scan("mannequin.ply", "mannequin.ply")
+    design = Design(ScanSource(scan.name), line_stiffness=11.5, firm_chest=0.04).with_line("mid-bust", 0.92)
+    numbers = (
+        FoundNumber("line_stiffness", 16.0, 11.5, 0.75),
+        FoundNumber("firm_chest", 0.0, 0.04, 0.003),
+        FoundNumber("length of mid-bust", 0.92, 0.92, 0.0, kept=True),
+    )
+    record = Calibration("着用 2.ply", 3.1, 1.4, numbers, 0.8)
+    return Document.of(replace(design, calibration=record)), scan
+
+
 PROJECTS: Mapping[str, Callable[[], tuple[Document, ScanFile]]] = {
     "first": first_save,
     "everything": everything,
     "told": told_scan,
     "preset": preset_worn,
+    "calibrated": calibrated,
 }
 
 

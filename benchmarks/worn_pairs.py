@@ -1,0 +1,100 @@
+"""A scan without and one with the garment, made: the second is what a design with other numbers predicts.
+
+What a scanner does to it: another place and another turn, another mesh, noise, a hole, arms cut off.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from core.design import Design
+from core.export import write_mesh
+from core.mesh import Mesh
+from core.pipeline import Stages, build
+from core.tffd import deform
+from core.worn_scan.aligning import turned
+from core.worn_scan.calibrating import exact_answer
+
+LEAN = 4.0  # degrees about x and y; a turn about z is undone when a scan is set upright, but not all of it
+
+
+def worn_mesh(stages: Stages, truth: Design) -> Mesh:
+    """Return the body as ``truth`` predicts it."""
+    there = build(truth, stages)
+    return stages.body.mesh.moved(deform(there.binding, exact_answer(there).place.points))
+
+
+def scanned(
+    mesh: Mesh,
+    stages: Stages,
+    rng: np.random.Generator,
+    *,
+    noise: float = 1.0,
+    resampled: bool = True,
+    hole: float = 20.0,
+    arms: bool = False,
+) -> tuple[Mesh, np.ndarray]:
+    """Return a body as a scanner would give it, and the matrix (4, 4) that took it there.
+
+    ``noise`` [mm] is the standard deviation at each vertex along each axis, ``hole`` [mm] the radius of a
+    hole in the front, 0 for none; with ``arms`` they stay.
+    """
+    if resampled:
+        mesh = other_mesh(mesh)
+    if not arms:
+        low, high = stages.control.mesh.vertices[:, 0].min(), stages.control.mesh.vertices[:, 0].max()
+        x = mesh.vertices[:, 0]
+        mesh = only(mesh, (x > low - 40.0) & (x < high + 40.0))
+    if hole:
+        front = stages.moving.rest[: stages.moving.count]
+        middle = front[rng.integers(len(front))]
+        mesh = only(mesh, np.linalg.norm(mesh.vertices - middle, axis=1) > hole)
+    angles = np.radians(rng.uniform([-LEAN, -LEAN, -8.0], [LEAN, LEAN, 8.0]))
+    matrix = turned(angles, mesh.vertices.mean(axis=0))
+    matrix[:3, 3] += rng.uniform(-150.0, 150.0, 3)
+    vertices = mesh.vertices @ matrix[:3, :3].T + matrix[:3, 3]
+    return mesh.moved(vertices + noise * rng.normal(size=vertices.shape)), matrix
+
+
+def only(mesh: Mesh, kept: np.ndarray) -> Mesh:
+    """Return what is left of a mesh with the vertices ``kept`` (n,)."""
+    faces = mesh.faces[kept[mesh.faces].all(axis=1)]
+    used, place = np.unique(faces, return_inverse=True)
+    return Mesh(mesh.vertices[used], place.reshape(-1, 3))
+
+
+def other_mesh(mesh: Mesh) -> Mesh:
+    """Return the same skin with other vertices: each triangle in four, then what lies together made one."""
+    edges = mesh.edges
+    middle = 0.5 * (mesh.vertices[edges[:, 0]] + mesh.vertices[edges[:, 1]])
+    count = len(mesh.vertices)
+    keys = edges[:, 0] * count + edges[:, 1]  # in order, as edges are
+    corners = mesh.faces
+    between = [
+        count + np.searchsorted(keys, np.sort(corners[:, pair], axis=1) @ np.array([count, 1]))
+        for pair in ([0, 1], [1, 2], [2, 0])
+    ]
+    (a, b, c), (ab, bc, ca) = corners.T, between
+    quarters = (a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)
+    faces = np.concatenate(
+        [np.stack(each, axis=1) for each in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
+    )
+    points = np.concatenate([mesh.vertices, middle])
+    size = 0.95 * float(
+        np.median(np.linalg.norm(mesh.vertices[edges[:, 0]] - mesh.vertices[edges[:, 1]], axis=1))
+    )
+    _, place = np.unique(np.floor(points / size).astype(int), axis=0, return_inverse=True)
+    place = place.ravel()
+    met = [np.bincount(place, points[:, axis]) / np.bincount(place) for axis in range(3)]
+    faces = place[faces]
+    faces = faces[[len(set(face)) == 3 for face in faces.tolist()]]
+    _, first = np.unique(np.sort(faces, axis=1), axis=0, return_index=True)
+    return Mesh(np.stack(met, axis=1), faces[np.sort(first)])
+
+
+def written(mesh: Mesh, path: Path) -> str:
+    """Write a scan and return its path as text."""
+    write_mesh(path, mesh)
+    return str(path)

@@ -1,0 +1,41 @@
+"""Prediction meets fitting: a second scan of the same person, the garment on, compared and learnt from."""
+
+from __future__ import annotations
+
+from core.design import ScanSource
+from core.mesh import Points
+from core.pipeline import Stages, read_body
+from core.progress import Progress, quiet
+from core.worn_scan.aligning import Alignment, align
+from core.worn_scan.calibrating import Found, calibrate, exact_answer
+from core.worn_scan.comparing import THICKEST, Difference, Figures, Worn, compare, laid_on
+
+__all__ = [
+    "THICKEST",
+    "Alignment",
+    "Difference",
+    "Figures",
+    "Found",
+    "Worn",
+    "calibrate",
+    "compare",
+    "predicted",
+    "read_worn",
+]
+
+_READ = 0.7  # what part of the time reading takes, roughly
+
+
+def read_worn(stages: Stages, source: ScanSource, progress: Progress = quiet) -> Worn:
+    """Read a scan with the garment on and lay it on the body of ``stages``.
+
+    Raises ScanError if it cannot be read, or is not of the same person in the same posture; Cancelled.
+    """
+    scan, body = read_body(source, lambda what, share: progress(what, _READ * share))
+    alignment = align(stages, body, lambda what, share: progress(what, _READ + (1.0 - _READ) * share))
+    return laid_on(scan.name, body, alignment)
+
+
+def predicted(stages: Stages) -> Points:
+    """Return the control points that a design predicts, its exact answer, (n, 3) [mm]. Raises LineError."""
+    return exact_answer(stages).place.points

@@ -1,0 +1,68 @@
+"""What a design keeps of a calibration: which scan it was, what it changed and how well that fits."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from core.design_lines import is_printable
+from core.errors import UserError
+
+LONGEST_NAME = 200
+"""Letters of the name of the worn scan's file, and of that of a number."""
+
+MOST_NUMBERS = 20
+"""Numbers that a calibration may hold."""
+
+
+@dataclass(frozen=True)
+class FoundNumber:
+    """One number that was found: ``name`` as ``core.worn_scan.numbers`` says it, ``after`` with its ±.
+
+    Both in the unit of the setting. ``kept`` tells that the scans could not tell it, so it stayed.
+    """
+
+    name: str
+    before: float
+    after: float
+    plus_minus: float
+    kept: bool = False
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """The numbers of a design after the scan of ``worn``, a file's name; what it was, not the scan itself.
+
+    ``rms_before`` and ``rms_after`` [mm] are of predicted less real on the moving skin, ``thickness`` [mm] is
+    that of the cloth. Raises UserError for what no calibration can be.
+    """
+
+    worn: str
+    rms_before: float
+    rms_after: float
+    numbers: tuple[FoundNumber, ...] = ()
+    thickness: float = 0.0
+
+    def __post_init__(self) -> None:
+        names = (self.worn, *(number.name for number in self.numbers))
+        figures = [self.rms_before, self.rms_after, self.thickness]
+        for number in self.numbers:
+            figures += [number.before, number.after, number.plus_minus]
+        words = all(name.strip() and is_printable(name, LONGEST_NAME) for name in names)
+        if not words or len(names) > MOST_NUMBERS + 1 or not all(map(math.isfinite, figures)):
+            raise UserError("What is kept of a calibration cannot be read.", "Calibrate again.")
+
+
+def calibration_of(values: Mapping[str, Any]) -> Calibration:
+    """Return the calibration that JSON ``values`` describe. Raises KeyError, TypeError, ValueError."""
+    numbers = []
+    for each in values.get("numbers", ()):
+        kept = each.get("kept", False)
+        if not isinstance(kept, bool):
+            raise TypeError("kept is true or false")
+        before, after, plus_minus = (float(each[key]) for key in ("before", "after", "plus_minus"))
+        numbers.append(FoundNumber(str(each["name"]), before, after, plus_minus, kept))
+    rms = float(values["rms_before"]), float(values["rms_after"])
+    return Calibration(str(values["worn"]), *rms, tuple(numbers), float(values.get("thickness", 0.0)))

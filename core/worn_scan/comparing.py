@@ -1,0 +1,115 @@
+"""Predicted less real: how far the skin that was predicted stands before that of the worn scan (ours)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.body import Body
+from core.errors import LandmarkError
+from core.landmark import SIDES
+from core.landmarks import find_landmarks
+from core.mesh import Floats, Points
+from core.pipeline import Stages
+from core.worn_scan.aligning import Alignment, moved
+from core.worn_scan.gap import WornSkin, known
+
+THICKEST = 20.0
+"""Cloth is not thicker than this [mm]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Worn:
+    """A scan with the garment on, ``name`` its file, laid on the first: its ``skin`` in that frame [mm].
+
+    ``bust_points`` by side are (3,) [mm], and ``sure`` how sure they are (0..1); both empty where none show.
+    """
+
+    name: str
+    body: Body
+    alignment: Alignment
+    skin: WornSkin
+    bust_points: Mapping[str, Points]
+    sure: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Figures:
+    """Predicted less real [mm] of some skin: the mean, the root of the mean square, 95 % of all sizes.
+
+    ``seen`` [1] is the share of it that the worn scan shows.
+    """
+
+    mean: float
+    rms: float
+    most: float
+    seen: float
+
+
+@dataclass(frozen=True, eq=False)
+class Difference:
+    """Predicted less real at each of the moving vertices, ``values`` (k,) [mm] along the predicted normal.
+
+    Positive where the predicted skin stands before the real one; not a number where the worn scan shows none.
+    ``all_of_it`` and ``sides`` sum it up; ``bust_points`` (3,) [mm] by side, where the worn scan tells any.
+    """
+
+    values: Floats
+    all_of_it: Figures
+    sides: Mapping[str, Figures]
+    bust_points: Mapping[str, Points]
+
+
+def laid_on(name: str, body: Body, alignment: Alignment) -> Worn:
+    """Return the body of a worn scan, ``name`` its file, laid on the first by an alignment."""
+    points: dict[str, Points] = {}
+    sure: dict[str, float] = {}
+    try:
+        found = find_landmarks(body).points
+    except LandmarkError:
+        found = {}
+    for side in SIDES:
+        if mark := found.get(f"bust_point_{side}"):
+            points[side] = moved(alignment.matrix, mark.position[None])[0]
+            sure[side] = mark.confidence
+    return Worn(name, body, alignment, WornSkin(alignment.laid(body.mesh)), points, sure)
+
+
+def gaps_to(stages: Stages, points: Points, skin: WornSkin, thickness: float) -> Floats:
+    """Return predicted less real of the moving vertices for control ``points`` (n, 3) [mm], shape (k,) [mm].
+
+    The real skin is taken to lie ``thickness`` [mm] under the scanned one.
+    """
+    count = stages.moving.count
+    places, normals = stages.shape(points)
+    return np.asarray(skin.gaps(places[:count], normals[:count]) + thickness)
+
+
+def compare(stages: Stages, points: Points, worn: Worn, thickness: float = 0.0) -> Difference:
+    """Compare what control ``points`` (n, 3) [mm] predict with a worn scan."""
+    values = gaps_to(stages, points, worn.skin, thickness)
+    left = stages.moving.rest[: len(values), 0] > stages.moving.middle
+    marks = dict(zip(SIDES, stages.watch.bust_points(points), strict=True))
+    inward = np.array([0.0, thickness, 0.0])
+    return Difference(
+        values,
+        figures(values),
+        {"left": figures(values[left]), "right": figures(values[~left])},
+        {side: marks[side] - (place + inward) for side, place in worn.bust_points.items()},
+    )
+
+
+def figures(values: Floats) -> Figures:
+    """Return what sums up ``values`` (k,) [mm], of which some may be no number."""
+    seen = known(values)
+    real = values[seen]
+    if not len(real):
+        return Figures(np.nan, np.nan, np.nan, 0.0)
+    return Figures(
+        float(real.mean()),
+        float(np.sqrt(np.mean(real**2))),
+        float(np.quantile(np.abs(real), 0.95)),
+        float(seen.mean()),
+    )

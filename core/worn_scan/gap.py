@@ -1,0 +1,72 @@
+"""How far places lie before a skin, along their own normals: unbiased where the skin is noisy (ours).
+
+The nearest place of a rough skin is its nearest bump; where the normal meets it, bumps and hollows even out.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from core.mesh import Flags, Floats, Indices, Mesh, Points
+from core.proximity import centroids, nearest_on
+
+REACH = 40.0
+"""Skin that is further away than this is none that a place could be compared with [mm]."""
+
+_NEAR = 8  # triangles whose middles are nearest, among which the nearest is looked for
+_ROUNDS = 4
+_SLANT = 0.35  # a skin more slanted than this against the normal tells no distance along it [1]
+_MET = 0.3  # how far from the skin the place that was found may lie [mm]
+
+
+class WornSkin:
+    """The skin of a scan [mm], to be asked how far places lie before it."""
+
+    def __init__(self, mesh: Mesh) -> None:
+        self.mesh = mesh
+
+    @cached_property
+    def _middles(self) -> cKDTree:
+        return cKDTree(centroids(self.mesh), compact_nodes=False, balanced_tree=False)
+
+    def gaps(self, places: Points, normals: Points) -> Floats:
+        """Return how far ``places`` lie before the skin along unit ``normals``, both (k, 3), shape (k,) [mm].
+
+        Negative behind it; not a number where there is no skin within reach, or none that faces that way.
+        """
+        gap = np.zeros(len(places))
+        for _ in range(_ROUNDS):
+            face, away = self._nearest(places - gap[:, None] * normals)
+            facing = np.einsum("ij,ij->i", self.mesh.face_normals[face], normals)
+            way = places - self.mesh.vertices[self.mesh.faces[face, 0]]
+            ahead = np.einsum("ij,ij->i", self.mesh.face_normals[face], way)
+            gap = ahead / np.where(np.abs(facing) > _SLANT, facing, np.nan)
+            gap = np.where(np.abs(gap) < REACH, gap, np.nan)
+            unknown = np.isnan(gap)
+            gap[unknown] = 0.0
+        _, away = self._nearest(places - gap[:, None] * normals)
+        return np.where(unknown | (away > _MET) | (facing < _SLANT), np.nan, gap)
+
+    def _nearest(self, places: Points) -> tuple[Indices, Floats]:
+        """Return the nearest face to each place and how far away it is, shapes (k,) and (k,) [mm]."""
+        count = min(_NEAR, len(self.mesh.faces))
+        near = np.asarray(self._middles.query(places, np.arange(1, count + 1))[1])
+        corners = self.mesh.vertices[self.mesh.faces[near.ravel()]]
+        asked = np.repeat(places, count, axis=0)
+        away = np.linalg.norm(nearest_on(corners, asked) - asked, axis=1).reshape(-1, count)
+        best = away.argmin(axis=1), np.arange(len(places))
+        return near[best[1], best[0]], away[best[1], best[0]]
+
+
+def cells(places: Points, size: float) -> Indices:
+    """Return the number of the cube of a ``size`` [mm] in which each place (k, 3) lies, shape (k,)."""
+    at = np.floor(places / size).astype(np.int64)
+    return np.asarray(np.unique(at, axis=0, return_inverse=True)[1]).ravel()
+
+
+def known(gaps: Floats) -> Flags:
+    """Tell where there is a skin, shape (k,)."""
+    return np.asarray(~np.isnan(gaps))
