@@ -55,10 +55,21 @@ def limits(options: argparse.Namespace) -> int:
     return SETTLED
 
 
+def spread(options: argparse.Namespace) -> int:
+    """Tell how far the figures of a design may be off, from which sources, and what is left out."""
+    from app.commands.spread import run_spread, spread_text
+
+    design, lengths, elastics = design_of(options.input, options), options.line or [], options.elastic or []
+    found = run_spread(design, lengths, elastics, options.assume or [])
+    kind = "json" if options.json else "csv" if options.csv else ""
+    return told(spread_text(found, kind, options.out), found.settled, found.warnings)
+
+
 ADVICE: dict[str, Callable[[argparse.Namespace], int]] = {
     "ask": ask,
     "doctor": doctor,
     "even": even,
     "limits": limits,
+    "spread": spread,
 }
 """Each command that advises, with what does it."""

@@ -20,6 +20,14 @@ def add_evening(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", default="", metavar="FILE", help="save what was found as a project: .busk")
 
 
+def add_assumptions(parser: argparse.ArgumentParser) -> None:
+    """Add what figures may be off by."""
+    from core.advice.assumed import NUMBERS  # noqa: PLC0415 (a command that needs it reads it)
+
+    help_ = f"assume another standard deviation; may be repeated. The names are: {', '.join(NUMBERS)}"
+    parser.add_argument("--assume", action="append", metavar="NAME=NUMBER", help=help_)
+
+
 def add_wishes(parser: argparse.ArgumentParser) -> None:
     """Add what can be asked for, and what lines may do for it."""
     parser.add_argument("--want", action="append", metavar="NAME=VALUE", help=WANT_HELP)

@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 from typing import NoReturn
 
-from app.commands.advice_words import add_cure, add_evening, add_wishes
+from app.commands.advice_words import add_assumptions, add_cure, add_evening, add_wishes
 from app.commands.settings import ELASTIC_HELP, help_text
 from app.wording.scan_formats import KINDS, PACKED
 from core import __version__
@@ -28,6 +28,7 @@ COMMANDS = {
     "measure": "measure a scan, or a project before and after",
     "cut": "tell how long the elastic of each worn line is to be cut",
     "press": "tell what each worn line presses the skin with, in kPa and mmHg, and whether that is much",
+    "spread": "tell how far the figures of a design may be off (±), and what they leave out",
     "report": "write a sheet to work from (PDF): sizes, lengths to cut, measures, pressures, pictures",
     "export": "write a body, its lines, strips, measures or a turntable for other programs",
     "picture": "render a scan or project to a PNG file",
@@ -49,9 +50,13 @@ _OF_A_SCAN = (
     "measure",
     "cut",
     "press",
+    "spread",
     "report",
     "picture",
 )
+
+_SOLVED = ("cut", "press", "spread")
+"""Commands that print a table of a design as it is solved."""
 
 _AXIS = "like {axis}, or a direction x,y,z of the file for a body that stands askew"
 
@@ -119,7 +124,7 @@ def command_parser(command: str) -> argparse.ArgumentParser:
         )
     if command == "accuracy":
         parser.add_argument("folder", metavar="DIR", help="scans with a truth.json beside them")
-    if command in ("ask", "doctor", "even", "limits", "detect", "measure", "cut", "press", "accuracy"):
+    if command in (*_SOLVED, "ask", "doctor", "even", "limits", "detect", "measure", "accuracy"):
         _add_forms(parser, command)
     if command == "report":
         _add_sheet(parser)
@@ -156,7 +161,7 @@ def _add_forms(parser: argparse.ArgumentParser, command: str) -> None:
     """Add in which form it is told, and a file for what is told as a table."""
     forms = parser.add_mutually_exclusive_group()
     forms.add_argument("--json", action="store_true", help="print JSON")
-    if command in ("measure", "cut", "press"):
+    if command in (*_SOLVED, "measure"):
         forms.add_argument("--csv", action="store_true", help="print a table of comma-separated values")
         out = "write to a file what is printed; a name that ends in .json or .csv asks for JSON or CSV"
         parser.add_argument("--out", metavar="FILE", help=out)
@@ -164,22 +169,24 @@ def _add_forms(parser: argparse.ArgumentParser, command: str) -> None:
 
 def _add_design(parser: argparse.ArgumentParser, command: str) -> None:
     """Add what can be said of a design: its settings, its lines and what they are made of."""
-    if command in ("solve", "ask", "doctor", "even", "limits", "cut", "press", "report", "export", "picture"):
+    if command in (*_SOLVED, "solve", "ask", "doctor", "even", "limits", "report", "export", "picture"):
         parser.add_argument("--settings", action="append", metavar="KEY=VALUE", help=help_text())
         parser.add_argument("--path", action="append", metavar="NAME=POINTS", help=LINE_HELP)
-    if command in ("solve", "ask", "doctor", "even", "limits", "cut", "press", "report", "export"):
+    if command in (*_SOLVED, "solve", "ask", "doctor", "even", "limits", "report", "export"):
         parser.add_argument(
             "--line",
             action="append",
             metavar="NAME=LENGTH",
             help="97%% of the rest length, -20mm shorter, 400mm absolute; of the front part, side to side",
         )
-    if command in ("solve", "ask", "doctor", "even", "cut", "press", "report", "export"):
+    if command in (*_SOLVED, "solve", "ask", "doctor", "even", "report", "export"):
         parser.add_argument("--elastic", action="append", metavar="LINE=ELASTIC", help=ELASTIC_HELP)
     if command == "ask":
         add_wishes(parser)
     if command == "doctor":
         add_cure(parser)
+    if command == "spread":
+        add_assumptions(parser)
     if command == "even":
         add_evening(parser)
     if command == "cut":

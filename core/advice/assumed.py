@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cache
 from importlib import resources
@@ -66,7 +66,7 @@ def origins() -> Mapping[str, Words]:
     return {name: told[name] for name in SOURCES}
 
 
-def assuming(texts: list[str], base: Assumed) -> Assumed:
+def assuming(texts: Sequence[str], base: Assumed) -> Assumed:
     """Return ``base`` with what ``texts`` like "tape_mm=3" say. Raises UserError."""
     told = {}
     for text in texts:

@@ -54,6 +54,7 @@ class Propagation:
         self.places = deform(stages.binding, self.points)
         self.normals = skin_normals(stages, self.points)
         self.tensions = line_tensions(stages, self.points)
+        self._long = {line.name: line.rest_lengths for line in stages.model.lines}
 
     def effect(self, knob: Knob) -> Effect:
         """Return what a knob does. Raises the UserError of a fit that fails to both sides."""
@@ -91,7 +92,10 @@ class Propagation:
         found, places = [], []
         for turn in (-1.0, 1.0):
             points = self.points + turn * moved
-            tensions = {name: _pulled(each, turn * pulls[name]) for name, each in self.tensions.items()}
+            tensions = {
+                name: _pulled(each, turn * pulls[name], self._long[name])
+                for name, each in self.tensions.items()
+            }
             design = turned(self.stages, {knob: turn}).design
             stages = replace(self.stages, design=design)
             meant = {
@@ -191,9 +195,9 @@ def effects(propagation: Propagation, knobs: Sequence[Knob]) -> Iterator[Effect 
             yield None
 
 
-def _pulled(tension: LineTension, more: Floats) -> LineTension:
-    segments = tension.segments + more
-    return replace(tension, segments=segments, mean=tension.mean + float(np.mean(more)))
+def _pulled(tension: LineTension, more: Floats, lengths: Floats) -> LineTension:
+    mean = tension.mean + float(np.average(more, weights=lengths))
+    return replace(tension, segments=tension.segments + more, mean=mean)
 
 
 def _half(low: Mapping[str, float], high: Mapping[str, float]) -> Figures:

@@ -16,7 +16,7 @@ from core.mesh import Floats, Mesh, Points
 from core.pipeline import Stages
 from core.pressure import band_pressure
 from core.sewing.course import courses
-from core.sewing.tensions import LineTension
+from core.sewing.tensions import LineTension, line_tensions
 from core.tffd import deform
 
 Figures = dict[str, float]
@@ -111,6 +111,15 @@ def line_figures(
         pressed = band_pressure(course, width)
         found[f"{MEAN_KPA}:{name}"], found[f"{MAX_KPA}:{name}"] = pressed.mean, pressed.largest
     return found
+
+
+def figures_of(stages: Stages, points: Points) -> Figures:
+    """Return all but the measures of a design as it is solved to control ``points``, shape (n, 3) [mm]."""
+    ratios = {line.name: stages.design.ratio(line.name) for line in stages.model.lines}
+    return {
+        **bust_figures(stages, points),
+        **line_figures(stages, points, line_tensions(stages, points), ratios),
+    }
 
 
 def skin_normals(stages: Stages, points: Points) -> Points:

@@ -6,6 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import groupby, pairwise
 
+import numpy as np
+
 from core.advice.ground import Found, Ground
 from core.advice.looks import Look
 from core.lines import RATIO_LIMITS, Line
@@ -17,6 +19,7 @@ RED = ("overstrained", "folded", "inverted", "stretched")
 """Signs of a length beyond which no body, or no garment, is to be shown."""
 
 _STRIDE = 0.05
+_NEARLY = 0.5  # of the least margin, from which on it is looked whether there is none in between [1]
 _HAIR = 1e-9  # what is not there and what round-off makes of it [1]
 
 
@@ -73,13 +76,14 @@ class Walk:
     def go(self, present: float, through: bool) -> None:
         """Walk both ways from rest, or from the ``present`` length if nothing balances at rest.
 
-        Each way until a sign of RED shows, or to shorter lengths ``through`` it until the worst does.
+        To longer lengths until the line is slack: what it does to the body from there on no band can. To
+        shorter ones until a sign of RED shows, or ``through`` it until the worst does.
         """
         begin = self.solved(1.0) or self.solved(present)
         if begin is None:
             return
         down, self.last = self._way([begin], RATIO_LIMITS[0], through)
-        up, self.longest = self._way([begin], RATIO_LIMITS[1], False)
+        up, self.longest = self._way([begin], RATIO_LIMITS[1], through)
         self.stops = [*reversed(down), *up[1:]]
 
     def solved(self, ratio: float) -> Stop | None:
@@ -89,8 +93,9 @@ class Walk:
 
     def spans(self, sign: str) -> tuple[Span, ...]:
         """Return the lengths that show ``sign``, ascending, closed in on where they begin and end."""
-        stops = [self.stops[0]]
-        for short, long in pairwise(self.stops):
+        seen = sorted([*self.stops, *self._nearly(sign)], key=lambda stop: stop.length.ratio)
+        stops = [seen[0]]
+        for short, long in pairwise(seen):
             if short.shows(sign) != long.shows(sign):
                 stops += sorted(self._closing_in(short, long, sign), key=lambda stop: stop.length.ratio)
             stops.append(long)
@@ -98,11 +103,32 @@ class Walk:
         runs = (list(run) for shows, run in shown if shows)
         return tuple(Span(run[0].length, run[-1].length) for run in runs)
 
+    def _nearly(self, sign: str) -> Iterator[Stop]:
+        """Yield stops where ``sign`` may come and go, or go and come, between two that are alike.
+
+        That is where a parabola through three margins, the middle one nearest to nothing, turns back.
+        """
+        for three in zip(self.stops, self.stops[1:], self.stops[2:], strict=False):
+            before, middle, after = (stop.margin(sign) for stop in three)
+            if not min(before * middle, middle * after) > 0.0 or abs(middle) > min(abs(before), abs(after)):
+                continue
+            at = [stop.length.ratio - three[1].length.ratio for stop in three]
+            bend, slope, _ = np.polyfit(at, (before, middle, after), 2).tolist()
+            turn = -0.5 * slope / bend if bend else 0.0
+            if (middle + 0.5 * slope * turn) / middle < _NEARLY and at[0] < turn < at[2]:
+                ratio = three[1].length.ratio + turn
+                found = self._near(ratio, _ahead([three[1], three[0 if turn < 0.0 else 2]], ratio))
+                if found is not None:
+                    yield found
+
     def _way(self, stops: list[Stop], end: float, through: bool) -> tuple[list[Stop], Length | None]:
         """Return the stops on the way to ``end``, and the last length if no balance lies beyond."""
         sign, stride = 1.0 if end > 1.0 else -1.0, _STRIDE
         here = stops[-1]
-        while not self._enough(stops, through) and abs(end - here.length.ratio) > _HAIR:
+        while (
+            not (self._enough(stops, through) if sign < 0.0 else here.shows("slack"))
+            and abs(end - here.length.ratio) > _HAIR
+        ):
             ratio = here.length.ratio + sign * min(stride, abs(end - here.length.ratio))
             there = self._near(ratio, _ahead(stops[-2:], ratio))
             if there is not None:

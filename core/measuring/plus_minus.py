@@ -74,6 +74,11 @@ def digits(off: float) -> int:
     return 0 if off >= 9.95 else 1
 
 
+def told_off(off: float) -> str:
+    """Return a ± as it is written where there are no other words for numbers."""
+    return f"{rounded(off):.{digits(off)}f}"
+
+
 def rounded(off: float) -> float:
     """Return a ± as it is told; nothing is told to be surer than 0.1."""
     return max(round(off, digits(off)), 0.1)

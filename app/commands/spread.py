@@ -1,0 +1,169 @@
+"""How far the figures of a solved design may be off, in words and figures, as JSON or as a table."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from app.commands.told import told
+from app.commands.worn import run_worn
+from core import __version__
+from core.advice.assumed import assumed, assuming, origins
+from core.advice.told_figures import figures_of
+from core.design import Design
+from core.measures import before_after, measure_rows
+from core.measuring.plus_minus import AFTER, BEFORE, CHANGE, SOURCES, Spread, told_off
+from core.pressure import LEFT_OUT
+from core.sheet import NOT_MODELLED
+from core.spread import spread_of
+from core.writing_out.cells import csv_text
+
+COLUMNS = ("key", "title", "unit", "value", "plus_minus", *SOURCES, "other_contact")
+KINDS = {BEFORE: "before", AFTER: "after", CHANGE: "difference"}
+OF_LINES = {
+    "cut": ("length to cut", "mm"),
+    "tension": ("tension", "N"),
+    "max_kpa": ("largest pressure", "kPa"),
+    "mean_kpa": ("mean pressure", "kPa"),
+}
+OF_BUST = {"lift": "Bust point up", "out": "Bust point forward"}
+WORDS = {"glued": "sticks to the skin", "sliding": "slides over it"}
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One figure as it stands in a list: ``key`` see ``core.measuring.plus_minus``; None where not known."""
+
+    key: str
+    title: str
+    unit: str
+    value: float | None
+
+
+@dataclass(frozen=True)
+class Spreading:
+    """The ``spread`` of all ``figures``, whether the body came to rest, and what to look at."""
+
+    spread: Spread
+    figures: list[Figure]
+    settled: bool
+    warnings: list[str]
+
+
+def run_spread(
+    design: Design, lines: Sequence[str], elastics: Sequence[str], sizes: Sequence[str]
+) -> Spreading:
+    """Solve a design with lines and elastics as requested, and spread its figures. Raises UserError.
+
+    ``sizes`` like "tape_mm=3" say what is assumed otherwise.
+    """
+    wanted = assuming(sizes, assumed())
+    worn = run_worn(design, lines, elastics, bare=True)
+    stages, points = worn.solution.stages, worn.solution.control_points
+    rows = measure_rows(*before_after(stages, points))
+    figures = [*_of_measures(rows), *_of_lines(figures_of(stages, points))]
+    return Spreading(spread_of(stages, wanted), figures, worn.settled, worn.warnings)
+
+
+def spread_text(found: Spreading, kind: str, out: str | None) -> str:
+    """Return what to print, or write it to a file ``out``; see ``told``. Raises UserError."""
+    return told(_FORMS, found, kind, out)
+
+
+def _of_measures(rows: Sequence[Mapping[str, Any]]) -> Iterator[Figure]:
+    for row in rows:
+        title = f"{row['title']}, {row['side']}" if row["side"] else row["title"]
+        for kind, column in KINDS.items():
+            yield Figure(f"{kind}:{row['key']}", title, row["unit"], row[column])
+
+
+def _of_lines(figures: Mapping[str, float]) -> Iterator[Figure]:
+    for key, value in figures.items():
+        kind, _, line = key.partition(":")
+        if line:
+            words, unit = OF_LINES[kind]
+            yield Figure(key, f"{line}: {words}", unit, value)
+        else:
+            what, _, side = key.partition(" ")
+            yield Figure(key, f"{OF_BUST[what]}, {side or 'mean'}", "mm", value)
+
+
+def _plain(found: Spreading) -> str:
+    lines = [f"{'':36}{'before':>17}{'after':>17}{'change':>16}"]
+    measures = [figure for figure in found.figures if figure.key.partition(":")[0] in KINDS]
+    for first in range(0, len(measures), len(KINDS)):
+        group = measures[first : first + len(KINDS)]
+        if any(figure.value is not None for figure in group):
+            cells = [_cell(found.spread, figure) for figure in group]
+            lines.append(f"{group[0].title:36}{cells[0]:>17}{cells[1]:>17}{cells[2]:>16} {group[0].unit}")
+    lines += ["", f"{'':36}{'as set':>17}{_contact(found.spread):>33}"]
+    for figure in found.figures:
+        if figure.key.partition(":")[0] not in KINDS:
+            other = found.spread.other.get(figure.key)
+            beside = "-" if other is None else f"{other:.1f}"
+            lines.append(f"{figure.title:36}{_cell(found.spread, figure):>17}{beside:>33} {figure.unit}")
+    return "\n".join([*lines, "", *_meaning(found.spread)])
+
+
+def _cell(spread: Spread, figure: Figure) -> str:
+    off = spread.plus_minus(figure.key)
+    if figure.value is None:
+        return "-"
+    sign = "+" if figure.key.startswith((CHANGE, "lift", "out")) else ""
+    value = format(figure.value, f"{sign}z.1f")
+    return value if off is None else f"{value} ± {told_off(off):>4}"
+
+
+def _contact(spread: Spread) -> str:
+    return f"if the line {WORDS[spread.contact]}" if spread.contact else ""
+
+
+def _meaning(spread: Spread) -> Iterator[str]:
+    yield f"± is {spread.sds:g} standard deviations, 2 being 95 % of all cases if errors are normal, from:"
+    for words in origins().values():
+        yield f"  {words.en}"
+    yield "The skin contact is a choice of the model and no part of the ±: the truth lies between the two."
+    if spread.failed:
+        yield f"Without an answer, and left out: {spread.failed} of what was tried."
+    yield "Left out:"
+    yield from (f"  {each}" for each in (*NOT_MODELLED, *LEFT_OUT))
+
+
+def _as_json(found: Spreading) -> str:
+    spread = found.spread
+    table = {}
+    for figure in found.figures:
+        doubt = spread.doubts.get(figure.key)
+        told: dict[str, Any] = {"title": figure.title, "unit": figure.unit, "value": figure.value}
+        told |= {"plus_minus": spread.plus_minus(figure.key)}
+        told |= {"shares": doubt.shares if doubt else None, "other_contact": spread.other.get(figure.key)}
+        table[figure.key] = told
+    whole = {
+        "figures": table,
+        "standard_deviations": spread.sds,
+        "skin_mm": {"before": spread.sds * spread.rest, "after_most": spread.sds * float(spread.skin.max())},
+        "contact": spread.contact,
+        "failed": spread.failed,
+        "sources": {name: words.en for name, words in origins().items()},
+        "left_out": [*NOT_MODELLED, *LEFT_OUT],
+        "warnings": found.warnings,
+        "versions": {"busk": __version__},
+    }
+    return json.dumps(whole, indent=1, ensure_ascii=False)
+
+
+def _as_csv(found: Spreading) -> str:
+    rows = []
+    for figure in found.figures:
+        doubt = found.spread.doubts.get(figure.key)
+        by = doubt.by_source if doubt else {}
+        off = found.spread.plus_minus(figure.key)
+        sources = [by.get(name) for name in SOURCES]
+        other = found.spread.other.get(figure.key)
+        rows.append([figure.key, figure.title, figure.unit, figure.value, off, *sources, other])
+    return csv_text(COLUMNS, rows).rstrip("\n")
+
+
+_FORMS = {"": _plain, "json": _as_json, "csv": _as_csv}
