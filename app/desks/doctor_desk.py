@@ -136,8 +136,8 @@ class DoctorDesk(QObject):
         tone = "info" if found.complaint in ("strained", "settling") else "warn"
         actions = self._cure(found)
         if found.complaint in _SWINGS:
-            other = self._other_control(frame.stages.design)
-            actions += [other] if other[0] not in [words for words, _ in actions] else []
+            tried = found.cure is not None and found.cure.change.setting[0] == "volume"
+            actions += [] if tried else [self._other_control(frame.stages.design)]
         self._quiet.add(frame.stages.design)
         self._show(tone, words.sentence(found, swing), words.hint(found), actions, words.details(found))
 
