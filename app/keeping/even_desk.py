@@ -14,6 +14,7 @@ from app.presenting.even import even_summary, map_note, parted_titles
 from app.presenting.verdict import doubt_of
 from app.wording.words import listed, tr
 from core.advice.evening import Evened, make_even, parted
+from core.aims.figure import Goal
 from core.design import Design
 from core.evenness import BeforeAfter, evenness
 from core.live import Frame
@@ -43,6 +44,7 @@ class EvenDesk(QObject):
         self._known: WeakKeyDictionary[Frame, BeforeAfter] = WeakKeyDictionary()
         self._asked: WeakSet[Frame] = WeakSet()
         self._making: tuple[Job, Design] | None = None
+        self._wished: tuple[Design, tuple[Goal, ...]] | None = None
         self.found.connect(self.follow)
         panel.opened.connect(self.follow)
         self.card.shown.connect(self._show_map)
@@ -76,6 +78,7 @@ class EvenDesk(QObject):
         if self._making is not None and self._making[1] is not design:
             self._window.jobs.cancel(self._making[0])  # it would make another design even
             self._making = None
+        self._begin_wished()
         if frame is None or not self._panel.isVisible():
             return
         known = self.of(frame)
@@ -125,4 +128,17 @@ class EvenDesk(QObject):
             titles = listed(parted_titles(design, made.parted))
             said = tr("Left and right apart: {lines}").format(lines=titles)
             self._window.session.edit(lambda before: parted(before, template), said)
-        self._window.ask_desk.begin(made.goals)
+        after = self._window.session.design
+        self._wished = None if after is None else (after, made.goals)
+        self._begin_wished()
+
+    def _begin_wished(self) -> None:
+        """Fill the wishes in as soon as the body of their design is there; those of a former one are gone."""
+        if self._wished is None:
+            return
+        (design, goals), frame = self._wished, self._window.session.frame
+        if design is not self._window.session.design:
+            self._wished = None
+        elif frame is not None and frame.stages.design is design and not frame.at_work:
+            self._wished = None
+            self._window.ask_desk.begin(goals)

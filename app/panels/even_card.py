@@ -9,12 +9,12 @@ from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
-from app.dress.parts import Disclosure, button, hairline, sentence
-from app.dress.theme import label, set_tag, set_tip, tokens_of
+from app.dress.parts import Disclosure, ElidedLabel, button, hairline, sentence
+from app.dress.theme import font, label, set_tag, set_tip, tokens_of
 from app.wording.words import tr
 
 _FADED = 0.4  # how strongly bars of a former shape are seen
-_BAR = QSize(48, 20)
+_BAR = QSize(42, 20)
 _HEAD = 4  # figures that are always seen, the most telling first
 
 
@@ -59,7 +59,6 @@ class EvenBar(QWidget):
     def show_shares(self, shares: tuple[float | None, float | None], faint: bool) -> None:
         """Show how far it is to the left (positive) or right, before and after."""
         self.shares, self._faint = shares, faint
-        self.setVisible(shares != (None, None))
         self.update()
 
     def paintEvent(self, event: QPaintEvent) -> None:
@@ -68,11 +67,13 @@ class EvenBar(QWidget):
         painter.setOpacity(_FADED if self._faint else 1.0)
         middle = self.height() / 2.0
         before, after = self.shares
+        if (before, after) == (None, None):
+            return  # it has no sides
         if after is not None:
             # The subject's left is on the right of who looks at her.
             long = max(-1.0, min(after, 1.0)) * (half - 1.0)
             bar = QRectF(min(half, half + long), middle - 3.0, abs(long), 6.0)
-            painter.fillRect(bar, QColor(tokens.more if long > 0.0 else tokens.less))
+            painter.fillRect(bar, QColor(tokens.accent))
         painter.fillRect(QRectF(half - 0.5, middle - 7.0, 1.0, 14.0), QColor(tokens.control))
         if before is not None:
             at = half + max(-1.0, min(before, 1.0)) * (half - 1.0)
@@ -83,7 +84,9 @@ class _Row:
     """The parts of one figure, in a row of a grid."""
 
     def __init__(self, grid: QGridLayout, row: int) -> None:
-        self.title = label("", "body")
+        self.title = ElidedLabel()
+        self.title.setFont(font("body"))
+        self.title.setMinimumWidth(60)
         self.before, self.after = (label("", role, tabular=True) for role in ("body", "name"))
         set_tag(self.before, "tone", "quiet")
         self.bar = EvenBar()
@@ -93,21 +96,19 @@ class _Row:
             part.setAlignment(right)
             grid.addWidget(part, row, column)
         grid.addWidget(self.bar, row, 3)
-        self.parts: tuple[QWidget, ...] = (self.title, self.before, self.after)
+        self.parts: tuple[QLabel, ...] = (self.title, self.before, self.after)
 
     def show_view(self, view: EvenView, faint: bool, seen: bool) -> None:
         """Show a figure, ``faint`` if it is of a former shape."""
-        for part, text in zip((self.title, self.before, self.after), self._texts(view), strict=True):
+        for part, text in zip(self.parts, (view.title, view.before, view.after), strict=True):
             part.setText(text)
             set_tag(part, "tone", "faint" if faint else "quiet" if part is self.before else "")
             set_tip(part, view.tip)
             part.setVisible(seen)
-        self.bar.show_shares(view.shares if seen else (None, None), faint)
+        self.bar.show_shares(view.shares, faint)
+        self.bar.setVisible(seen)
         spoken = f"{view.title} {view.before} → {view.after}"
         self.title.setAccessibleName(spoken)
-
-    def _texts(self, view: EvenView) -> tuple[str, str, str]:
-        return view.title, view.before, view.after
 
     def hide(self) -> None:
         """Show nothing here."""
@@ -125,22 +126,21 @@ class EvenCard(QWidget):
 
     def __init__(self) -> None:
         super().__init__()
-        self.says, self.hint, self.notes = sentence("", "secondary"), sentence("", "caption"), sentence()
-        self.notes = sentence("", "caption")
+        self._faint = self._mapped = False
+        self.says = sentence("", "secondary")
+        self.hint, self.notes = sentence("", "caption"), sentence("", "caption")
         self.fold = Disclosure(tr("More figures, and what they rest on"))
         self.fold.toggled.connect(lambda _: self._show())
         self.look = button(tr("Show on the body"))
-        self.look.setCheckable(True)
         self.look.setToolTip(tr("Lay the map Left and right over the body (C)"))
-        self.look.clicked.connect(self.shown)
+        self.look.clicked.connect(lambda: self.shown.emit(not self._mapped))
         self.make = button(tr("Make even…"))
         self.make.setToolTip(tr("Find the lengths at which both bust points lie alike, and ask for them"))
         self.make.clicked.connect(self.asked)
         self.summary: EvenSummary | None = None
-        self._faint = False
         self._grid = QGridLayout()
         self._grid.setContentsMargins(0, 2, 0, 2)
-        self._grid.setHorizontalSpacing(8)
+        self._grid.setHorizontalSpacing(6)
         self._grid.setVerticalSpacing(2)
         self._grid.setColumnStretch(0, 1)
         self._rows: list[_Row] = []
@@ -187,7 +187,8 @@ class EvenCard(QWidget):
 
     def show_map(self, on: bool) -> None:
         """Tell by the button whether the map lies on the body."""
-        self.look.setChecked(on)
+        self._mapped = on
+        self.look.setText(tr("Hide the map") if on else tr("Show on the body"))
 
     def _show(self) -> None:
         summary, unfolded = self.summary, self.fold.isChecked()

@@ -18,10 +18,11 @@ _FULL = {"mm": 10.0, "ml": 60.0}
 def even_summary(told: BeforeAfter, stages: Stages, doubt: str = "") -> EvenSummary:
     """Return what the card says of a body; with a ``doubt`` there is nothing to be told after."""
     now = told.before if doubt else told.after
+    rows = {row.key: row for row in even_rows(told.before, told.after)}
     hint, possible = _hint(stages, now) if not doubt else (doubt, False)
     return EvenSummary(
         _sentence(now),
-        tuple(_view(row, bool(doubt)) for row in even_rows(told.before, told.after)),
+        tuple(_view(rows[key], bool(doubt)) for key in _titles()),
         (*map(say, told.notes), *_rests_on()),
         hint,
         possible,
@@ -76,7 +77,7 @@ def _written(row: EvenRow, value: float | None) -> str:
 
 
 def _titles() -> dict[str, tuple[str, str]]:
-    """Return what each figure is called, and what it is."""
+    """Return what each figure is called, and what it is; the most telling first."""
     return {
         "higher": (tr("Bust point higher"), tr("Which bust point is higher, and by how much.")),
         "further_out": (tr("Further out"), tr("Which bust point is further to the front, and by how much.")),
@@ -87,8 +88,8 @@ def _titles() -> dict[str, tuple[str, str]]:
         ),
         "further_aside": (tr("Further aside"), tr("Which bust point is further from the mirror.")),
         "largest": (tr("Skin apart, most"), tr("Where one side stands out most beyond the mirrored other.")),
-        "left_more": (tr("Left stands out more"), tr("What lies between the skins where it is the left.")),
-        "right_more": (tr("Right stands out more"), tr("What lies between the skins where it is the right.")),
+        "left_more": (tr("Left stands out"), tr("What lies between the skins where it is the left.")),
+        "right_more": (tr("Right stands out"), tr("What lies between the skins where it is the right.")),
     }
 
 

@@ -101,8 +101,8 @@ def line_colours(names: Iterable[str], design: Design | None = None) -> dict[str
     halves = {name: LINE_COLOURS[kind_of(name)] for name in given if kind_of(name) in LINE_COLOURS}
     own = [name for name in given if name not in halves]
     kinds = list(dict.fromkeys(kind_of(name) for name in own))
-    colours = {name: colour for name, colour in LINE_COLOURS.items() if name in given}
-    colours |= {name: colour for name, colour in halves.items() if name not in colours}
+    order = list(LINE_COLOURS)
+    colours = {name: halves[name] for name in sorted(halves, key=lambda each: order.index(kind_of(each)))}
     colours |= {name: OWN_COLOURS[kinds.index(kind_of(name)) % len(OWN_COLOURS)] for name in own}
     if design is None:
         return colours

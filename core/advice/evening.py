@@ -30,7 +30,7 @@ EVEN = (Goal(HIGHER, 0.0), Goal(FURTHER_OUT, 0.0))
 ENOUGH = 0.5
 """Bust points that differ by less count as even: they ride on the nearest vertex of the skin [mm]."""
 
-_ALIKE = 0.05  # of two replies that differ by less, the one that keeps more [mm]
+_ALIKE = 0.5  # of two replies that are so nearly as even, the one that keeps more [mm]
 
 
 @dataclass(frozen=True, eq=False)
