@@ -1,0 +1,180 @@
+"""Left and right in the real window: the card beside the measures, the map's ml, splitting, making even."""
+
+from __future__ import annotations
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from shapes import SAMPLES
+from window_tools import Script, run_main, settled, undrawn
+
+import app.keeping.even_desk as desk_module
+from app.main_window import MainWindow
+from app.panels.even_card import EvenCard
+from core.design import Design
+from core.evenness import BeforeAfter, evenness
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+PERSON = [str(SAMPLES / "person.ply")]
+
+
+def opened(window: MainWindow, mid: float = 0.95, full: float = 0.97) -> Script:
+    """Open the Measures tab on a design of two lines."""
+    undrawn(window)
+    yield settled(window)
+    window.session.edit(lambda d: d.with_line("mid-bust", mid).with_line("full-bust", full), "Worn")
+    yield settled(window)
+    window.desk.go_to("result")
+    yield lambda: is_fresh(window)
+
+
+def is_fresh(window: MainWindow) -> bool:
+    """The card tells of the frame that is shown."""
+    return window.is_settled() and window.even_desk._shown is not None and not faint(window.even_desk.card)
+
+
+def faint(card: EvenCard) -> bool:
+    return card.summary is None or card._faint
+
+
+def told(window: MainWindow) -> BeforeAfter:
+    frame = window.session.frame
+    assert frame is not None
+    return evenness(frame.stages, frame.control_points)
+
+
+def test_the_card_tells_what_differs_and_fades_with_the_design() -> None:
+    def script(window: MainWindow) -> Script:
+        yield from opened(window)
+        card, now = window.even_desk.card, told(window)
+        assert card.summary is not None
+        assert card.says.text() == f"Bust points: right {-now.after.higher:.1f} mm higher."
+        first, *_ = card.summary.views
+        assert (first.before, first.after) == (f"R {-now.before.higher:.1f}", f"R {-now.after.higher:.1f}")
+        assert first.shares[1] == pytest.approx(now.after.higher / 10.0)
+        seen = [row.title.text() for row in card._rows if row.title.isVisible()]
+        assert len(seen) == 4
+        card.fold.click()
+        seen = [row.title.text() for row in card._rows if row.title.isVisible()]
+        assert "Left stands out [ml]" in seen
+        assert "keep its volume" in card.notes.text()
+        window.session.preview_line("mid-bust", 0.93)
+        yield lambda: faint(card) and card.summary is not None
+        assert not card.make.isEnabled()
+        window.session.cancel_preview()
+        yield lambda: is_fresh(window)
+        assert card.make.isEnabled()
+
+    run_main(PERSON, script)
+
+
+def test_the_map_is_shown_from_the_card_and_its_legend_tells_ml() -> None:
+    def script(window: MainWindow) -> Script:
+        yield from opened(window)
+        card, maps = window.even_desk.card, window.map_desk
+        assert card.look.text() == "Show on the body"
+        card.look.click()
+        assert maps.name == "sides"
+        assert card.look.text() == "Hide the map"
+        skin = told(window).after.skin
+        assert skin is not None
+        assert f"left {skin.left_more:.0f} ml, right {skin.right_more:.0f} ml" in maps.legend._note.text()
+        maps.choose("displacement")
+        assert card.look.text() == "Show on the body"
+        assert "ml" not in maps.legend._note.text()
+        maps.choose("sides")
+        card.look.click()
+        assert maps.name == ""
+
+    run_main(PERSON, script)
+
+
+def test_a_line_is_split_by_its_row_the_key_and_the_menu_as_one_step() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.activateWindow()
+        yield window.isActiveWindow
+        before = window.session.design
+        assert before is not None
+        link = window.lines.rows["mid-bust"].details._tools["link"]
+        for split in (
+            lambda: QTest.keyClick(window.lines, Qt.Key.Key_L),
+            lambda: window.lines.do("split"),
+            link.click,
+        ):
+            window.lines.select("mid-bust")
+            assert "Split it" in link.toolTip()
+            split()
+            yield lambda: "mid-bust left" in window.lines.rows and window.is_settled()
+            assert window.session.undo_stack.undoText() == "Mid-bust split into left and right"
+            assert list(window.lines.rows)[1:4] == ["mid-bust", "mid-bust left", "mid-bust right"]
+            left, whole = window.lines.rows["mid-bust left"], window.lines.rows["mid-bust"]
+            assert left.view.ratio == before.ratio("mid-bust")
+            assert left.view.color == whole.view.color
+            assert left.view.title == "Mid-bust, left"
+            assert left._open
+            assert whole.view.ratio == 1.0
+            window.actions_.undo.trigger()
+            yield lambda: "mid-bust left" not in window.lines.rows and window.is_settled()
+            assert window.session.design == before
+        window.lines.select("under-bust")
+        assert not window.lines.rows["under-bust"].view.splits, "it moves nothing"
+
+    run_main([str(SAMPLES / "mannequin.ply")], script)
+
+
+def test_make_even_parts_the_lines_and_fills_the_wishes_in(monkeypatch: pytest.MonkeyPatch) -> None:
+    def script(window: MainWindow) -> Script:
+        begun: list[tuple[Design | None, list[tuple[str, float]]]] = []
+
+        def begin(goals: object) -> None:
+            frame = window.session.frame
+            design = frame.stages.design if frame else None
+            begun.append((design, [(goal.name, goal.value) for goal in goals]))  # type: ignore[attr-defined]
+
+        monkeypatch.setattr(window.ask_desk, "begin", begin)
+        yield from opened(window)
+        card, before = window.even_desk.card, window.session.design
+        assert card.hint.text() == "Make even begins by setting left and right apart: Full bust, Mid-bust."
+        count = window.session.undo_stack.count()
+        card.make.click()
+        yield lambda: bool(begun)
+        (design, goals), after = begun[0], window.session.design
+        assert goals[:2] == [("left higher", 0.0), ("left further out", 0.0)]
+        assert after is not None
+        assert design == after
+        assert after.worn() == {f"{line} {side}" for line in ("mid-bust", "full-bust") for side in SIDES}
+        assert window.session.undo_stack.count() == count + 1
+        assert window.session.undo_stack.undoText() == "Left and right apart: Full bust, Mid-bust"
+        window.actions_.undo.trigger()
+        yield settled(window)
+        assert window.session.design == before
+        yield lambda: is_fresh(window)
+        card.make.click()
+        window.session.edit(lambda d: d.with_line("mid-bust", 0.96), "Another")
+        yield lambda: is_fresh(window) and not window.jobs.at_work()
+        assert len(begun) == 1, "what was looked for was for another design"
+
+    run_main(PERSON, script)
+
+
+SIDES = ("left", "right")
+
+
+def test_an_even_body_has_nothing_to_be_made_even(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[object] = []
+    monkeypatch.setattr(desk_module, "evenness", lambda *given: asked.append(given) or evenness(*given))
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        assert not asked, "nobody looks at it"
+        window.desk.go_to("result")
+        yield lambda: is_fresh(window)
+        card = window.even_desk.card
+        assert card.says.text() == "Both bust points lie alike within 0.5 mm."
+        assert not card.make.isEnabled()
+        assert len(asked) == 1
+
+    run_main([str(SAMPLES / "mannequin.ply")], script)
