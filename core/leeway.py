@@ -136,6 +136,9 @@ def _reasons(limits: Limits) -> Iterator[Reason]:
 
 def _zone(short: float, long: float, reasons: tuple[Reason, ...]) -> Zone:
     here = tuple(reason for reason in reasons if reason.holds(0.5 * (short + long)))
+    if SLACK in (reason.tone for reason in here):
+        # What a line does that pushes is no garment's doing; what the others do is.
+        here = tuple(reason for reason in here if reason.others or reason.tone == SLACK)
     return Zone(max((reason.tone for reason in here), key=TONES.index, default=GREEN), short, long, here)
 
 

@@ -1,6 +1,7 @@
 """How short a line can be made: against a scan of the slider, and where there is nothing to find."""
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -147,11 +148,24 @@ def test_the_command_prints_a_table_and_the_same_as_json(person, capsys):
     line = found["lines"]["mid-bust"]
     assert line["present"]["set_percent"] == pytest.approx(92.0)
     assert (line["beyond"], line["no_balance_below"]) == (["strained"], None)
+    assert [zone["tone"] for zone in line["zones"]] == ["red", "amber", "green", "slack"]
+    green = next(zone for zone in line["zones"] if zone["tone"] == "green")
+    assert f"green         {green['from_percent']:.1f} to {green['to_percent']:.1f} %" in said
+    assert f"slack         above {green['to_percent']:.1f} %" in said
     for sign in SIGNS:
         begins = line["begins"][sign]
         assert f"{begins['reached_mm']:.1f} mm" in said
         assert begins["reached_percent"] == pytest.approx(100.0 * begins["reached_mm"] / line["rest_mm"])
     assert found["lines"]["full-bust"]["present"] is None
+
+
+def test_the_command_tells_where_an_elastic_presses_too_much(person, capsys):
+    worn = ["--line", "mid-bust=90%", "--elastic", "mid-bust=strap 15", "--line", "full-bust=98%"]
+    assert main(["limits", str(person), *worn]) == 0
+    mid, full = capsys.readouterr().out.split("full-bust, at rest")
+    assert re.search(r"pressing +below 7\d\.\d % +more than 4 kPa", mid)
+    assert "its elastic would go beyond its table" in mid
+    assert "pressing      not known" in full
 
 
 @pytest.mark.parametrize("words", [["--line", "wing=90%"], ["--settings", "a=b"]])

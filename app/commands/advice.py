@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from app.commands.ending import SETTLED, told
-from app.commands.settings import dressed
+from app.commands.settings import dressed, made_of
 from app.commands.source import design_of
 
 
@@ -20,6 +20,18 @@ def ask(options: argparse.Namespace) -> int:
     design = design_of(options.input, options)
     asked = run_ask(options.input, design, options.line or [], options.elastic or [], wishes)
     return told(asked_text(asked, options.json), asked.reply.reachable, [])
+
+
+def calibrate(options: argparse.Namespace) -> int:
+    """Compare a design with a scan of the garment as worn, and find the numbers that predict it."""
+    from app.commands.calibrated import WornScan, calibrated_text, run_calibrate
+    from core.design import ScanSource
+
+    axes = {"unit": options.worn_unit, "up": options.worn_up, "front": options.worn_front}
+    worn = WornScan(ScanSource(options.worn, **axes), options.thickness, options.lengths, options.out)
+    design, lengths, elastics = design_of(options.input, options), options.line or [], options.elastic or []
+    done = run_calibrate(options.input, design, lengths, elastics, worn)
+    return told(calibrated_text(done, options.json), done.found.helped, [])
 
 
 def doctor(options: argparse.Namespace) -> int:
@@ -43,14 +55,15 @@ def even(options: argparse.Namespace) -> int:
 
 
 def limits(options: argparse.Namespace) -> int:
-    """Print how short each line can be made before the body strains, folds or turns inside out."""
+    """Print how far each line can go: where it strains, folds, vibrates, presses too much or is slack."""
     from app.commands.limits import limits_text
     from core.advice.limits import all_limits
     from core.pipeline import build
 
     design = design_of(options.input, options)
     stages = build(design)
-    stages = build(dressed(design, stages.model.lines, options.line or []), stages)
+    worn = dressed(design, stages.model.lines, options.line or [])
+    stages = build(made_of(worn, options.elastic or []), stages)
     print(limits_text(list(all_limits(stages)), stages, options.json))
     return SETTLED
 
@@ -67,6 +80,7 @@ def spread(options: argparse.Namespace) -> int:
 
 ADVICE: dict[str, Callable[[argparse.Namespace], int]] = {
     "ask": ask,
+    "calibrate": calibrate,
     "doctor": doctor,
     "even": even,
     "limits": limits,

@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 from typing import NoReturn
 
-from app.commands.advice_words import add_assumptions, add_cure, add_evening, add_wishes
+from app.commands.advice_words import add_assumptions, add_cure, add_evening, add_wishes, add_worn_scan
 from app.commands.settings import ELASTIC_HELP, help_text
 from app.wording.scan_formats import KINDS, PACKED
 from core import __version__
@@ -21,9 +21,10 @@ from core.volume import CONTROLS
 COMMANDS = {
     "solve": "solve a design and write body, control mesh, turns and report",
     "ask": "find the lengths of lines that bring the body to what is wished",
+    "calibrate": "compare with a scan of the garment as worn, and find the numbers that predict it",
     "doctor": "tell what fights in a design that vibrates or strains, and the least that ends it",
     "even": "tell how left and right differ in mm and ml, and find the lengths that make them even",
-    "limits": "tell how short each line can be made",
+    "limits": "tell how far each line can go, and why no further",
     "detect": "find the landmarks of a scan",
     "measure": "measure a scan, or a project before and after",
     "cut": "tell how long the elastic of each worn line is to be cut",
@@ -57,6 +58,9 @@ _OF_A_SCAN = (
 
 _SOLVED = ("cut", "press", "spread")
 """Commands that print a table of a design as it is solved."""
+
+_OF_LINES = ("solve", "ask", "calibrate", "doctor", "even")
+"""Others that take lines, and what these are made of."""
 
 _AXIS = "like {axis}, or a direction x,y,z of the file for a body that stands askew"
 
@@ -124,7 +128,7 @@ def command_parser(command: str) -> argparse.ArgumentParser:
         )
     if command == "accuracy":
         parser.add_argument("folder", metavar="DIR", help="scans with a truth.json beside them")
-    if command in (*_SOLVED, "ask", "doctor", "even", "limits", "detect", "measure", "accuracy"):
+    if command in (*_SOLVED, "ask", "calibrate", "doctor", "even", "limits", "detect", "measure", "accuracy"):
         _add_forms(parser, command)
     if command == "report":
         _add_sheet(parser)
@@ -169,20 +173,22 @@ def _add_forms(parser: argparse.ArgumentParser, command: str) -> None:
 
 def _add_design(parser: argparse.ArgumentParser, command: str) -> None:
     """Add what can be said of a design: its settings, its lines and what they are made of."""
-    if command in (*_SOLVED, "solve", "ask", "doctor", "even", "limits", "report", "export", "picture"):
+    if command in (*_SOLVED, *_OF_LINES, "limits", "report", "export", "picture"):
         parser.add_argument("--settings", action="append", metavar="KEY=VALUE", help=help_text())
         parser.add_argument("--path", action="append", metavar="NAME=POINTS", help=LINE_HELP)
-    if command in (*_SOLVED, "solve", "ask", "doctor", "even", "limits", "report", "export"):
+    if command in (*_SOLVED, *_OF_LINES, "limits", "report", "export"):
         parser.add_argument(
             "--line",
             action="append",
             metavar="NAME=LENGTH",
             help="97%% of the rest length, -20mm shorter, 400mm absolute; of the front part, side to side",
         )
-    if command in (*_SOLVED, "solve", "ask", "doctor", "even", "report", "export"):
+    if command in (*_SOLVED, *_OF_LINES, "limits", "report", "export"):
         parser.add_argument("--elastic", action="append", metavar="LINE=ELASTIC", help=ELASTIC_HELP)
     if command == "ask":
         add_wishes(parser)
+    if command == "calibrate":
+        add_worn_scan(parser)
     if command == "doctor":
         add_cure(parser)
     if command == "spread":

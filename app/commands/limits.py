@@ -1,4 +1,4 @@
-"""How short each line can be made, in words and figures, or as JSON."""
+"""How far each line can go, in words and figures, or as JSON."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from core.advice.limits import Length, Limits
+from core.leeway import GREEN, Leeway, leeway
 from core.lines import RATIO_LIMITS
 from core.pipeline import Stages
 from core.report import still_lines
+from core.sewing.comfort import comfort
 
 MEANING = {
     "strained": "edges outside 80 to 120 %",
@@ -18,6 +20,13 @@ MEANING = {
     "inverted": "a triangle shows its back",
 }
 """What begins where, as it is seen on the control mesh."""
+
+OTHERS = {
+    "vibrating": "turns with the conventional force",
+    "pressing": "more than {kpa:g} kPa somewhere along the band",
+    "slack": "the line would have to push, which no band can",
+}
+"""What else there is at some lengths, in words."""
 
 
 def limits_text(found: Sequence[Limits], stages: Stages, as_json: bool = False) -> str:
@@ -36,6 +45,9 @@ def _table(limits: Limits, stages: Stages) -> Iterator[str]:
         return
     for sign, meaning in MEANING.items():
         yield f"  {sign:12}  {_beginning(limits, sign):39}  {meaning}"
+    for sign, meaning in OTHERS.items():
+        yield f"  {sign:12}  {_stretches(limits, sign):39}  {meaning.format(kpa=comfort().red_kpa)}"
+    yield f"  green         {_green(leeway(limits))}"
     if limits.last is not None:
         yield f"  below {_inline(limits.last, rest)} no balance is found"
     if limits.stretched is not None:
@@ -59,6 +71,28 @@ def _beginning(limits: Limits, sign: str) -> str:
     return "at rest: by the other lines" if begins.ratio >= 1.0 else _length(begins, limits.line.rest_length)
 
 
+def _stretches(limits: Limits, sign: str) -> str:
+    """Return the lengths that show a sign."""
+    if sign == "pressing" and not limits.pressure_known:
+        return "not known: it is made of no elastic"
+    assert limits.looked is not None
+    first, last = limits.looked.short, limits.looked.long
+    said = []
+    for span in limits.shows[sign]:
+        short, long = f"{100.0 * span.short.ratio:.1f}", f"{100.0 * span.long.ratio:.1f}"
+        if span.short == first:
+            said.append("at any length" if span.long == last else f"below {long} %")
+        else:
+            said.append(f"above {short} %" if span.long == last else f"from {short} to {long} %")
+    return ", ".join(said) or "nowhere"
+
+
+def _green(found: Leeway | None) -> str:
+    """Return the lengths at which all is well."""
+    zones = [zone for zone in found.zones if zone.tone == GREEN] if found is not None else []
+    return ", ".join(f"{100.0 * z.short:.1f} to {100.0 * z.long:.1f} %" for z in zones) or "at no length"
+
+
 def _length(length: Length, rest: float) -> str:
     reached = length.reached
     return f"{100.0 * length.ratio:5.1f} %, reached {reached:6.1f} mm = {100.0 * reached / rest:5.1f} %"
@@ -80,14 +114,41 @@ def _figures_of(found: Sequence[Limits], stages: Stages) -> dict[str, Any]:
                 "found": limits.found,
                 "no_balance_below": _figures(limits.last, limits),
                 "elastic_ends": _figures(limits.stretched, limits),
+                "pressure_known": limits.pressure_known,
+                "zones": _zones(leeway(limits)),
             }
             for limits in found
         },
         "notes": still_lines(stages),
-        "definition": "each line, and a linked partner, made shorter from 100 % on, others as set; % of "
-        "rest_mm. On the control mesh: "
-        + "; ".join(f"{sign}: {meaning}" for sign, meaning in MEANING.items()),
+        "definition": "each line, and a linked partner, made shorter from 100 % on, and longer, others as "
+        "set; % of rest_mm. On the control mesh: "
+        + "; ".join(f"{sign}: {meaning}" for sign, meaning in MEANING.items())
+        + ". Beside that: "
+        + "; ".join(f"{sign}: {meaning.format(kpa=comfort().red_kpa)}" for sign, meaning in OTHERS.items())
+        + ". A reason of others holds at 100 % too, where the line does nothing",
     }
+
+
+def _zones(found: Leeway | None) -> list[dict[str, Any]] | None:
+    if found is None:
+        return None
+    return [
+        {
+            "tone": zone.tone,
+            "from_percent": 100.0 * zone.short,
+            "to_percent": 100.0 * zone.long,
+            "reasons": [
+                {
+                    "why": reason.why,
+                    "from_percent": 100.0 * reason.short,
+                    "to_percent": 100.0 * reason.long,
+                    "of_others": reason.others,
+                }
+                for reason in zone.reasons
+            ],
+        }
+        for zone in found.zones
+    ]
 
 
 def _figures(length: Length | None, limits: Limits) -> dict[str, float] | None:
