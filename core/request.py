@@ -15,7 +15,7 @@ from threadpoolctl import threadpool_limits
 
 from core.aims.answers import Look, NoBalanceError, exact_points
 from core.aims.figure import Goal, Read
-from core.aims.reaching import NEAR, Bounds, Found, Search
+from core.aims.reaching import LOOSEST, NEAR, Bounds, Found, Search
 from core.aims.readings import reading
 from core.cutting import goes_on
 from core.design import Design, cannot_hold, no_balance
@@ -43,6 +43,7 @@ class Reply:
     to agree: there may be better. ``pressure`` [kPa] is the largest of each line that was looked at, and
     ``limit`` what it may be; ``unseen`` are the worn lines that were not looked at. ``tension`` [N] is the
     sum over the lines, an estimate where they are made of no elastic; ``answers`` how many were worked out.
+    ``longest`` is the ratio that no line goes beyond [1].
     """
 
     design: Design
@@ -58,6 +59,11 @@ class Reply:
     unseen: tuple[str, ...]
     tension: float
     answers: int
+    longest: float = LOOSEST
+
+    def may_not_be_longer(self, name: str) -> bool:
+        """Tell of a line that is at its end which end that is."""
+        return self.design.ratio(name) > self.longest - 1e-3
 
 
 def ask(
@@ -71,8 +77,9 @@ def ask(
     """Return the lengths of the worn lines that bring the body to ``goals``, or as near as they can.
 
     ``shortest`` [1] are ratios that named lines may not go below; locked lines and those ``kept`` stay.
-    Lines made of elastic press no more than ``most_kpa``, or than the red light begins with. Raises UserError
-    if no worn line is free, nothing is asked, or nothing balances at the start; Cancelled.
+    Lines made of elastic press no more than ``most_kpa``, straps too; if it is not told, no more than the red
+    light begins with, which was not set for straps. Raises UserError if no worn line is free, nothing is
+    asked, or nothing balances at the start; Cancelled.
     """
     return Asking(stages, Bounds(shortest or {}, kept), most_kpa).reply(goals, progress)
 
@@ -87,6 +94,7 @@ class Asking:
         self._stages, design = stages, stages.design
         self._made = {} if design.line_hold == "held" else design.worn_elastics()
         self._limit = comfort().red_kpa if most_kpa is None else most_kpa
+        self._straps = most_kpa is not None
         bounds = bounds or Bounds({})
         shortest = dict(bounds.shortest)
         for name, elastic in self._made.items():
@@ -117,7 +125,7 @@ class Asking:
     def now(self, names: Collection[str]) -> tuple[dict[str, float], dict[str, float]]:
         """Return what the figures ``names`` are in the design as it is [mm], and what its lines press with.
 
-        These are the largest pressures [kPa] of the lines that are looked at. Raises UserError.
+        These are the largest pressures [kPa] of all lines made of elastic. Raises UserError.
         """
         with threadpool_limits(1):
             try:
@@ -125,7 +133,7 @@ class Asking:
             except NoBalanceError:
                 raise no_balance() from None
             figures = {name: self._read(name)(points).value for name in names}
-            return figures, self._pressures(self._stages, points) if self._made else {}
+            return figures, self._pressures(self._stages, points, straps=True)
 
     def _told(self, answered: Callable[[], Reply], goals: Sequence[Goal], progress: Progress) -> Reply:
         same = [goal.name for goal in goals] == [goal.name for goal in self._goals]
@@ -163,9 +171,10 @@ class Asking:
                 best = self._kept(search, seen, agreed=True)
             if well and seen.reached:  # a first look is from rest, so this is what the design is solved to
                 return best
-            found = search.found(search.nearest())
+            found = search.found(search.from_here(search.start))
             if well and np.abs(found.look.values - seen.look.values).max() < NEAR:
-                return best
+                # What keeps the search from here keeps the answer, which is as good as there.
+                return replace(best, pressing=tuple(sorted({*best.pressing, *found.pulled})))
         return replace(best, agreed=False)
 
     def _near_the_last(self) -> Reply:
@@ -206,7 +215,7 @@ class Asking:
     def _presses_well(self, search: Search, look: Look) -> bool:
         """Look at what lines press with, limit what those that press too much may pull; tell if none did."""
         stages, limit = search.stages, self._limit
-        self._pressure = self._pressures(stages, look.points)
+        self._pressure = self._pressures(stages, look.points, straps=self._straps)
         lines = stages.model.lines
         pulls = {line.name: float(pull) for line, pull in zip(lines, look.pulls, strict=True)}
         for name, kpa in self._pressure.items():
@@ -215,10 +224,13 @@ class Asking:
         search.hardest = dict(self._hardest)
         return all(kpa < _TOO_MUCH * limit for kpa in self._pressure.values())
 
-    def _pressures(self, stages: Stages, points: Points) -> dict[str, float]:
-        """Return the largest pressure [kPa] of lines whose tension is known and for which a limit was set."""
+    def _pressures(self, stages: Stages, points: Points, *, straps: bool) -> dict[str, float]:
+        """Return the largest pressure [kPa] of lines whose tension is known, with ``straps`` or without."""
+        if not self._made:
+            return {}
         tensions, worn = line_tensions(stages, points), pressures(stages, points)
-        seen = {line.name for line in stages.model.lines if not goes_on(stages, line)} & set(self._made)
+        lines = [line for line in stages.model.lines if straps or not goes_on(stages, line)]
+        seen = {line.name for line in lines} & set(self._made)
         return {name: worn[name].largest for name in sorted(seen) if not tensions[name].estimate}
 
     def _kept(self, search: Search, found: Found, *, agreed: bool) -> Reply:
@@ -235,7 +247,7 @@ class Asking:
             found.reached and agreed,
             self._miss(found),
             found.at_end,
-            tuple(name for name, kpa in self._pressure.items() if kpa > limit),
+            tuple(name for name, kpa in self._pressure.items() if kpa > limit or name in found.pulled),
             found.strained,
             agreed,
             dict(self._pressure),
@@ -243,6 +255,7 @@ class Asking:
             tuple(sorted(design.worn() - set(self._pressure))),
             self._newtons * float(np.maximum(found.look.pulls, 0.0).sum()),
             sum(len(search) - before for search, before in self._used),
+            self._bounds.longest,
         )
 
     def _miss(self, found: Found) -> float:

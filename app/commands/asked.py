@@ -172,7 +172,7 @@ def reasons(reply: Reply) -> list[str]:
     """Return why what was asked for is not reached, as parts of a sentence."""
     reasons = []
     for name in reply.at_end:
-        long = reply.design.ratio(name) >= 1.0
+        long = reply.may_not_be_longer(name)
         reasons.append(f"{name} is as {'long' if long else 'short'} as it may be")
     if reply.strained:
         reasons.append("the body would be strained more than looks natural")

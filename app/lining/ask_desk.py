@@ -27,7 +27,6 @@ from core.aims.outline import section_of
 from core.design import Design
 from core.errors import UserError
 from core.frame import Frame
-from core.sewing.comfort import comfort
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -51,7 +50,7 @@ class AskDesk(QObject):
         self._window, self._session = window, window.session
         self.wishes: dict[str, float | None] = {}
         self.curves: dict[str, tuple[Goal, ...]] = {}
-        self.limit = comfort().red_kpa
+        self.limit: float | None = None  # where the red light begins, but for straps
         self.answer: Answer | None = None
         self._apply_due = False
         self.work = AskWork(window.jobs, self)
@@ -105,7 +104,7 @@ class AskDesk(QObject):
         self._window.line_drawing.leave()
         self._window.line_routing.leave()
         self._window.desk.go_to("lines")
-        self.limit, self.answer, self._apply_due = comfort().red_kpa, None, False
+        self.limit, self.answer, self._apply_due = None, None, False
         self.wishes, self.curves = {}, {}
         for goal in goals:
             section = section_of(goal.name)
@@ -144,6 +143,7 @@ class AskDesk(QObject):
         """Wish for a figure, or a profile, no longer."""
         self.wishes.pop(key, None)
         self.curves.pop(key, None)
+        self.limit = None if key == PRESSURE else self.limit
         self._ask()
 
     def wish_by_hand(self, wishes: dict[str, float | None], *, at_rest: bool) -> None:
@@ -287,9 +287,11 @@ class AskDesk(QObject):
             yield WishView(section, figure_title(goals[0].name), None, words)
         if design.worn_elastics() and design.line_hold == "spring":
             presses = self.answer.presses if self.answer is not None else {}
-            most = tr("now {value}").format(value=number(max(presses.values()))) if presses else ""
+            most, set_ = max(presses.values(), default=0.0), self.limit is not None
+            words = tr("now {value}").format(value=number(most)) if presses else ""
+            shown = most if self.limit is None else self.limit
             title = tr("Pressure at most")
-            yield WishView(PRESSURE, title, self.limit, most, "kPa", signed=False, kept=True)
+            yield WishView(PRESSURE, title, shown, words, "kPa", signed=False, set_=set_, kept=not set_)
 
     def _missing(self, frame: Frame, design: Design) -> str:
         """Return what has to be done before anything can be asked, if there is something."""

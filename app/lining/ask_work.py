@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from core.request import Asking, Reply
 
 
+_LONGEST = 0.999  # ratio: in the window a line at 100 % would be off, and the body another one
+
+
 @dataclass(frozen=True, eq=False)
 class Question:
     """What is asked of ``design``, which is built from ``stages``: ``goals``, within a limit [kPa].
@@ -125,8 +128,9 @@ class AskWork(QObject):
             return Answer(question, dict(known.now), dict(known.presses), reply)
 
     def _open(self, question: Question, progress: Progress) -> _Known:
-        from core.request import Asking  # noqa: PLC0415 (brings a search along that no start needs)
+        from core.aims.reaching import Bounds  # noqa: PLC0415 (brings a search along that no start needs)
+        from core.request import Asking  # noqa: PLC0415
 
         stages = build(question.design, question.stages, progress)
-        asking = Asking(stages, most_kpa=question.most_kpa)
+        asking = Asking(stages, Bounds({}, longest=_LONGEST), question.most_kpa)
         return _Known(question.design, question.most_kpa, asking)

@@ -49,10 +49,10 @@ class _Wish(QWidget):
         row.setSpacing(6)
         self.title = label(view.title, "body")
         self.field = FigureField(view.unit, view.title, signed=view.signed, widest="+1000.0")
+        set_tag(self.field, "ring", True)
         self.field.setVisible(view.value is not None)
         self.now = label("", "caption")
         self.remove = ToolButton("x", tr("Ask for this no longer"), size=12, room=22)
-        self.remove.setVisible(not view.kept)
         row.addWidget(self.title)
         row.addStretch(1)
         row.addWidget(self.now)
@@ -61,7 +61,8 @@ class _Wish(QWidget):
 
     def show_view(self, view: WishView) -> None:
         """Bring value and words up to date."""
-        self.now.setText(view.now if view.set_ else tr("as it is"))
+        self.remove.setVisible(not view.kept)
+        self.now.setText(view.now if view.set_ else tr("free"))
         if view.value is not None:
             self.field.show_value(view.value)
 

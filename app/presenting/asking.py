@@ -90,7 +90,7 @@ def _nearest(reply: Reply, goals: Sequence[Goal]) -> Iterable[str]:
 
 
 def _reasons(reply: Reply) -> list[str]:
-    long = [name for name in reply.at_end if reply.design.ratio(name) >= 1.0]
+    long = [name for name in reply.at_end if reply.may_not_be_longer(name)]
     short = [name for name in reply.at_end if name not in long]
     kpa = number(reply.limit)
     reasons = [

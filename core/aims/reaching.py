@@ -51,10 +51,14 @@ Slopes = tuple[float, Floats]
 
 @dataclass(frozen=True)
 class Bounds:
-    """What lines may do: ``shortest`` [1] are least ratios by name; those ``kept`` stay as locked ones do."""
+    """What lines may do: ``shortest`` [1] are least ratios by name; those ``kept`` stay as locked ones do.
+
+    None gets longer than ``longest`` [1].
+    """
 
     shortest: Mapping[str, float]
     kept: Collection[str] = ()
+    longest: float = LOOSEST
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +109,7 @@ class Search:
         low = [
             max(RATIO_LIMITS[0], *(bounds.shortest.get(name, 0.0) for name in each)) for each in self._groups
         ]
-        self._low, self._high = np.array(low) / PERCENT, np.maximum(low, LOOSEST) / PERCENT
+        self._low, self._high = np.array(low) / PERCENT, np.maximum(low, bounds.longest) / PERCENT
         set_ = [stages.design.ratio(group[0]) / PERCENT for group in self._groups]
         self.start = np.clip(set_, self._low, self._high)
 
@@ -127,15 +131,8 @@ class Search:
 
         Raises NoBalanceError if there is no balance at the start, Cancelled.
         """
-        return self._checked(lambda: self._least_tension(self._near_by()))
-
-    def nearest(self) -> Floats:
-        """Return lengths that come nearest to what is wanted. Raises as ``least`` does."""
-        return self._checked(self._near_by)
-
-    def _checked(self, search: Callable[[], Floats]) -> Floats:
-        lengths = search()
-        return lengths if self._answers.checked(lengths) else search()
+        lengths = self._least_tension(self._near_by())
+        return lengths if self._answers.checked(lengths) else self._least_tension(self._near_by())
 
     def _near_by(self) -> Floats:
         """Return the nearest from the start or, if that does not reach what is wanted, from elsewhere."""
