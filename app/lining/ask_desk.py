@@ -283,7 +283,7 @@ class AskDesk(QObject):
             words, set_ = values_words(now, name), value is not None
             yield WishView(name, figure_title(name), shown, words, signed=is_signed(name), set_=set_)
         for section, goals in self.curves.items():
-            words = tr("{count} heights").format(count=len(goals))
+            words = tr("heights: {count}").format(count=len(goals))
             yield WishView(section, figure_title(goals[0].name), None, words)
         if design.worn_elastics() and design.line_hold == "spring":
             presses = self.answer.presses if self.answer is not None else {}
