@@ -78,9 +78,7 @@ def other_mesh(mesh: Mesh) -> Mesh:
     ]
     (a, b, c), (ab, bc, ca) = corners.T, between
     quarters = (a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)
-    faces = np.concatenate(
-        [np.stack(each, axis=1) for each in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
-    )
+    faces = np.concatenate([np.stack(each, axis=1) for each in quarters])
     points = np.concatenate([mesh.vertices, middle])
     size = 0.95 * float(
         np.median(np.linalg.norm(mesh.vertices[edges[:, 0]] - mesh.vertices[edges[:, 1]], axis=1))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from app.commands.settings import PRESSURE_HELP, PROFILE_HELP, WANT_HELP
+from core.standing.body_size import MILLIMETRES
 
 
 def add_cure(parser: argparse.ArgumentParser) -> None:
@@ -26,6 +27,23 @@ def add_assumptions(parser: argparse.ArgumentParser) -> None:
 
     help_ = f"assume another standard deviation; may be repeated. The names are: {', '.join(NUMBERS)}"
     parser.add_argument("--assume", action="append", metavar="NAME=NUMBER", help=help_)
+
+
+def add_worn_scan(parser: argparse.ArgumentParser) -> None:
+    """Add a second scan, with the garment on, and what can be said about it."""
+    parser.add_argument("input", metavar="PROJECT", help="a project (.busk), or a scan with --line")
+    parser.add_argument("worn", metavar="WORN_SCAN", help="a scan of the same person with the garment on")
+    units = tuple(MILLIMETRES)
+    parser.add_argument(
+        "--unit", dest="worn_unit", type=str.lower, choices=units, help="the worn scan's unit, if not guessed"
+    )
+    for key, what in (("up", "what points up in the worn scan"), ("front", "where the body faces in it")):
+        parser.add_argument(f"--{key}", dest=f"worn_{key}", metavar="AXIS", help=f"{what}, if not found well")
+    thick = "how thick the cloth is, taken off the worn scan; 0 to 20, else 0"
+    parser.add_argument("--thickness", type=float, default=0.0, metavar="MM", help=thick)
+    lengths = "lines may have been cut to other lengths than designed: find these too"
+    parser.add_argument("--lengths", action="store_true", help=lengths)
+    parser.add_argument("--out", default="", metavar="FILE", help="save what was found as a project: .busk")
 
 
 def add_wishes(parser: argparse.ArgumentParser) -> None:

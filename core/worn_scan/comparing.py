@@ -9,7 +9,7 @@ import numpy as np
 
 from core.body import Body
 from core.errors import LandmarkError
-from core.landmark import SIDES
+from core.landmark import CERTAIN, SIDES
 from core.landmarks import find_landmarks
 from core.mesh import Floats, Points
 from core.pipeline import Stages
@@ -53,7 +53,7 @@ class Difference:
     """Predicted less real at each of the moving vertices, ``values`` (k,) [mm] along the predicted normal.
 
     Positive where the predicted skin stands before the real one; not a number where the worn scan shows none.
-    ``all_of_it`` and ``sides`` sum it up; ``bust_points`` (3,) [mm] by side, where the worn scan tells any.
+    ``all_of_it`` and ``sides`` sum it up; ``bust_points`` (3,) [mm] by side, where they are sure on the scan.
     """
 
     values: Floats
@@ -97,7 +97,11 @@ def compare(stages: Stages, points: Points, worn: Worn, thickness: float = 0.0) 
         values,
         figures(values),
         {"left": figures(values[left]), "right": figures(values[~left])},
-        {side: marks[side] - (place + inward) for side, place in worn.bust_points.items()},
+        {
+            side: marks[side] - (place + inward)
+            for side, place in worn.bust_points.items()
+            if worn.sure[side] >= CERTAIN
+        },
     )
 
 

@@ -1,0 +1,195 @@
+"""What ``busk calibrate`` does: a design is compared with a scan of the garment as worn, and fitted."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from app.commands.settings import dressed, made_of
+from core import __version__
+from core.calibration import THICKEST, Difference, Figures, Found, Worn, calibrate, read_worn
+from core.design import Design, ScanSource
+from core.design_calibration import FoundNumber
+from core.document import Document
+from core.errors import UserError
+from core.pipeline import Stages, build
+from core.project import SUFFIX, is_project, open_project, save_project
+
+WAYS = ("to her left", "to the back", "up")
+"""Where x, y and z point, as designers say it."""
+
+
+@dataclass(frozen=True)
+class WornScan:
+    """What is told of the second scan; ``thickness`` [mm] is that of the cloth, ``out`` a project or empty.
+
+    ``lengths`` tells that lines may have been cut to other lengths than designed.
+    """
+
+    source: ScanSource
+    thickness: float = 0.0
+    lengths: bool = False
+    out: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Calibrated:
+    """What was found with a ``worn`` scan; ``out`` is where it was saved."""
+
+    stages: Stages
+    worn: Worn
+    found: Found
+    out: str
+
+
+def run_calibrate(
+    source: str, design: Design, lengths: Sequence[str], elastics: Sequence[str], told: WornScan
+) -> Calibrated:
+    """Calibrate a design with ``lengths``, NAME=LENGTH, and ``elastics``, LINE=ELASTIC, on a worn scan.
+
+    ``source`` is the file that it came from. Raises UserError.
+    """
+    if told.out and not is_project(told.out):
+        raise UserError(f"{told.out} is no name of a project.", f"Name one: --out design{SUFFIX}.")
+    if not 0.0 <= told.thickness <= THICKEST:
+        raise UserError(
+            f"Cloth is not {told.thickness:g} mm thick.", f"Tell its thickness: 0 to {THICKEST:g} mm."
+        )
+    stages = build(design)
+    stages = build(made_of(dressed(design, stages.model.lines, lengths), elastics), stages)
+    worn = read_worn(stages, told.source)
+    found = calibrate(stages, worn, thickness=told.thickness, lengths=told.lengths)
+    if told.out:
+        document = open_project(source) if is_project(source) else Document.of(found.design)
+        save_project(told.out, document.with_design(found.design), stages.scan, None)
+    return Calibrated(stages, worn, found, told.out)
+
+
+def calibrated_text(done: Calibrated, as_json: bool) -> str:
+    """Return what is to be printed: sentences for people, or the same figures as JSON."""
+    return json.dumps(_figures(done), indent=1) if as_json else "\n".join(_plain(done))
+
+
+def _plain(done: Calibrated) -> Iterator[str]:
+    found, laid = done.found, done.worn.alignment
+    turn, shift = 2.0 * float(laid.turns.max()), 2.0 * float(laid.shifts.max())
+    yield (
+        f"{done.worn.name} lies on the first scan: {100.0 * laid.met:.0f} % of the still skin within 5 mm, "
+        f"{laid.rms:.2f} mm in the root of the mean square, {laid.most:.2f} mm at 95 %; "
+        f"sure to ±{turn:.2f} degrees and ±{shift:.2f} mm."
+    )
+    yield ""
+    yield f"{'predicted less real [mm]':28}{'mean':>8}{'rms':>8}{'95 %':>8}{'shown':>8}"
+    for when, difference in (("before", found.before), ("after", found.after)):
+        yield _row(when, difference.all_of_it)
+        for side, figures in difference.sides.items():
+            yield _row(f"  her {side}", figures)
+    yield ""
+    yield from _bust_points(done)
+    yield f"{'number':28}{'before':>10}{'after':>10}{'±':>9}"
+    for number in found.calibration.numbers:
+        if not number.kept:
+            yield (
+                f"{spoken(number.name):28}{_value(number, number.before):>10}"
+                f"{_value(number, number.after):>10}{_value(number, number.plus_minus):>9}"
+            )
+    for number in found.calibration.numbers:
+        if number.kept:
+            yield stays(number, found.confused.get(number.name, ""))
+    yield "± is 95 % of what the noise of the scans makes. The numbers hold for this person and this garment."
+    if not found.helped:
+        yield "It did not help: no number moved by more than its ±, or the prediction came no nearer."
+    if done.out:
+        yield f"written to {done.out}"
+
+
+def _row(name: str, figures: Figures) -> str:
+    parts = "".join(f"{value:8.2f}" for value in (figures.mean, figures.rms, figures.most))
+    return f"{name:28}{parts}{100.0 * figures.seen:6.0f} %"
+
+
+def _bust_points(done: Calibrated) -> Iterator[str]:
+    told = done.found.before.bust_points, done.found.after.bust_points
+    for side, before in told[0].items():
+        sure = 100.0 * done.worn.sure[side]
+        yield f"bust point, her {side} ({sure:.0f} % sure on the worn scan): predicted less real"
+        for when, way in (("before", before), ("after", told[1][side])):
+            parts = ", ".join(f"{value:+.1f} mm {where}" for value, where in zip(way, WAYS, strict=True))
+            yield f"  {when:8}{parts}"
+    if not told[0]:
+        yield "No bust point shows surely on the worn scan, so none is compared."
+    yield ""
+
+
+def spoken(name: str) -> str:
+    """Return what a number is called in plain words."""
+    return {"tissue_stiffness": "tissue [N/m]"}.get(name, name.replace("_", " "))
+
+
+def _value(number: FoundNumber, value: float) -> str:
+    if number.name.startswith("length of"):
+        return f"{100.0 * value:.2f} %"
+    return f"{value:.0f}" if number.name == "tissue_stiffness" else f"{value:.3g}"
+
+
+def stays(number: FoundNumber, other: str) -> str:
+    """Return why a number stays as it is."""
+    why = f"these scans cannot tell it from {spoken(other)}" if other else "these scans do not tell it"
+    return f"{spoken(number.name)} stays {_value(number, number.before)}: {why}."
+
+
+def _figures(done: Calibrated) -> dict[str, Any]:
+    found, laid = done.found, done.worn.alignment
+    return {
+        "worn": done.worn.name,
+        "alignment": {
+            "matrix": laid.matrix.tolist(),
+            "rms_mm": laid.rms,
+            "at_95_percent_mm": laid.most,
+            "met": laid.met,
+            "shown": laid.seen,
+            "unsure_degrees": laid.turns.tolist(),
+            "unsure_mm": laid.shifts.tolist(),
+        },
+        "before": _difference(found.before),
+        "after": _difference(found.after),
+        "numbers": [
+            {
+                "name": number.name,
+                "before": number.before,
+                "after": number.after,
+                "plus_minus": number.plus_minus,
+                "kept": number.kept,
+                "cannot_be_told_from": found.confused.get(number.name) or None,
+            }
+            for number in found.calibration.numbers
+        ],
+        "singular_values": list(found.singular),
+        "thickness_mm": found.calibration.thickness,
+        "helped": found.helped,
+        "written_to": done.out or None,
+        "versions": {"busk": __version__},
+    }
+
+
+def _difference(difference: Difference) -> dict[str, Any]:
+    every = {"all": difference.all_of_it, **difference.sides}
+    told: dict[str, Any] = {
+        name: {
+            "mean_mm": _plain_number(each.mean),
+            "rms_mm": _plain_number(each.rms),
+            "at_95_percent_mm": _plain_number(each.most),
+            "shown": each.seen,
+        }
+        for name, each in every.items()
+    }
+    told["bust_points_mm"] = {side: way.tolist() for side, way in difference.bust_points.items()}
+    return told
+
+
+def _plain_number(value: float) -> float | None:
+    return value if np.isfinite(value) else None

@@ -1,0 +1,181 @@
+"""Calibration: numbers of tissue and lines from a made pair of scans, their slopes, what a project keeps."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.wording.samples import sample_design
+from benchmarks.worn_pairs import scanned, worn_mesh, written
+from core.calibration import Found, calibrate, read_worn
+from core.design import Design, ScanSource
+from core.design_calibration import Calibration, FoundNumber
+from core.design_text import from_json, to_json
+from core.elastics import find_elastic
+from core.errors import ProjectError, UserError
+from core.pipeline import Stages, build
+from core.progress import Cancelled
+from core.worn_scan.calibrating import exact_answer
+from core.worn_scan.numbers import Number, candidates, rates_by
+
+STEP = 3e-4
+
+
+def design(**settings: object) -> Design:
+    base = replace(sample_design("mannequin"), lines=(), volume="exact", **settings)
+    return base.with_line("mid-bust", 0.85).with_line("full-bust", 0.9)
+
+
+VARIANTS = {
+    "glued": design(firm_chest=0.05),
+    "sliding": design(firm_chest=0.05, line_contact="sliding"),
+    "prestressed": design(firm_chest=0.05, member_law="prestressed"),
+    "elastic": design(firm_chest=0.05, member_law="prestressed").with_elastic(
+        "mid-bust", find_elastic("picot 10")
+    ),
+}
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+def test_slopes_by_numbers_are_those_of_differences(name: str) -> None:
+    plan = VARIANTS[name]
+    stages = build(plan)
+    here = exact_answer(stages)
+    numbers = candidates(stages, lengths=True, each=True)
+    assert 4 <= len(numbers) <= 6
+    rates = rates_by(stages, here, numbers)
+    for column, number in enumerate(numbers):
+
+        def moved(change: float, number: Number = number) -> np.ndarray:
+            there = build(number.found(plan, number.sought(plan) + change), stages)
+            return exact_answer(there, here.balance).balance.state.moved.ravel()
+
+        far, near = (moved(2.0 * STEP) - moved(-2.0 * STEP)), (moved(STEP) - moved(-STEP))
+        expected = (8.0 * near - far) / (12.0 * STEP)
+        assert np.abs(rates[:, column] - expected).max() < 1e-6 * np.abs(expected).max(), number.name
+
+
+@pytest.fixture(scope="module")
+def pair(tmp_path_factory: pytest.TempPathFactory) -> tuple[Stages, str, Design]:
+    """A design, a scan with the garment on that it knows nothing of, and the numbers that made it."""
+    plan = design(firm_chest=0.03)
+    truth = replace(plan, line_stiffness=7.0, firm_chest=0.07)
+    stages = build(plan)
+    mesh, _ = scanned(worn_mesh(stages, truth), stages, np.random.default_rng(8))
+    return stages, written(mesh, tmp_path_factory.mktemp("worn") / "worn.ply"), truth
+
+
+@pytest.fixture(scope="module")
+def found(pair: tuple[Stages, str, Design]) -> Found:
+    return calibrate(pair[0], read_worn(pair[0], ScanSource(pair[1])))
+
+
+def test_the_numbers_of_a_made_pair_are_found(pair: tuple[Stages, str, Design], found: Found) -> None:
+    _, _, truth = pair
+    assert found.helped
+    assert found.after.all_of_it.rms < 0.75 < found.before.all_of_it.rms
+    after = {number.name: number for number in found.calibration.numbers}
+    for name in ("stiffness of mid-bust", "stiffness of full-bust"):
+        assert after[name].after == pytest.approx(truth.line_stiffness, rel=0.1)
+        assert 0.0 < after[name].plus_minus < 1.0
+    assert after["firm_chest"].after == pytest.approx(truth.firm_chest, rel=0.1)
+
+
+def test_the_design_has_the_numbers_and_a_record(found: Found) -> None:
+    kept = found.design.calibration
+    assert kept is not None
+    assert kept.worn == "worn.ply"
+    told = {number.name: number.after for number in kept.numbers}
+    assert found.design.firm_chest == told["firm_chest"]
+    assert found.design.traits_of("mid-bust").stiffness == told["stiffness of mid-bust"]
+    assert found.design.ratio("mid-bust") == 0.85, "lengths stay as they were designed"
+    assert from_json(to_json(found.design)) == found.design
+
+
+def test_what_was_found_is_found_again_and_helps_no_more(
+    pair: tuple[Stages, str, Design], found: Found
+) -> None:
+    stages = build(found.design, pair[0])
+    again = calibrate(stages, read_worn(stages, ScanSource(pair[1])))
+    assert not again.helped
+    for number in again.calibration.numbers:
+        assert number.after == pytest.approx(number.before, rel=0.01)
+
+
+def test_length_and_stiffness_of_a_glued_line_are_not_told_apart(pair: tuple[Stages, str, Design]) -> None:
+    stages = build(pair[0].design.with_line("full-bust", None), pair[0])
+    both = calibrate(stages, read_worn(stages, ScanSource(pair[1])), lengths=True)
+    assert both.confused["length of mid-bust"] == "line_stiffness"
+    stayed = next(number for number in both.calibration.numbers if number.name == "length of mid-bust")
+    assert stayed.kept
+    assert stayed.after == stayed.before == 0.85
+    assert min(both.singular) < 1.0 < max(both.singular)
+
+
+def test_without_a_line_that_moves_the_body_nothing_is_found(pair: tuple[Stages, str, Design]) -> None:
+    bare = build(replace(pair[0].design, lines=()), pair[0])
+    with pytest.raises(UserError, match="No line that moves the body is worn"):
+        calibrate(bare, read_worn(bare, ScanSource(pair[1])))
+
+
+def test_a_calibration_is_cancelled(pair: tuple[Stages, str, Design]) -> None:
+    worn = read_worn(pair[0], ScanSource(pair[1]))
+
+    def stop(what: str, share: float) -> None:
+        raise Cancelled
+
+    with pytest.raises(Cancelled):
+        calibrate(pair[0], worn, progress=stop)
+
+
+def test_each_line_or_one_stiffness_for_all() -> None:
+    stages = build(VARIANTS["glued"])
+    names = [
+        [number.name for number in candidates(stages, lengths=False, each=each)] for each in (True, False)
+    ]
+    assert names == [
+        ["stiffness of full-bust", "stiffness of mid-bust", "firm_chest"],
+        ["line_stiffness", "firm_chest"],
+    ]
+    elastic = build(VARIANTS["elastic"])
+    assert [number.name for number in candidates(elastic, lengths=False, each=True)] == [
+        "line_stiffness",
+        "tissue_stiffness",
+        "firm_chest",
+        "prestress",
+    ]
+
+
+def test_a_design_without_a_calibration_is_written_as_ever() -> None:
+    plain = Design(ScanSource("a.ply"))
+    assert "calibration" not in json.loads(to_json(plain))
+    record = Calibration("worn.ply", 3.1, 1.4, (FoundNumber("firm_chest", 0.0, 0.1, 0.01),), 1.0)
+    kept = replace(plain, calibration=record)
+    assert json.loads(to_json(kept))["format"] == 1, "a program that knows nothing of it keeps it"
+    assert from_json(to_json(kept)) == kept
+    assert kept.acts_as(plain)
+
+
+@pytest.mark.parametrize(
+    "broken",
+    [
+        {"worn": ""},
+        {"rms_before": "much"},
+        {"rms_after": float("nan")},
+        {"numbers": [{"name": "x"}]},
+        None,
+        7,
+    ],
+)
+def test_a_broken_record_is_no_design(broken: object) -> None:
+    record = Calibration("worn.ply", 3.1, 1.4, ())
+    values = json.loads(to_json(replace(Design(ScanSource("a.ply")), calibration=record)))
+    values["calibration"] = values["calibration"] | broken if isinstance(broken, dict) else broken
+    if broken is None:
+        assert from_json(json.dumps(values)).calibration is None
+        return
+    with pytest.raises((ProjectError, UserError)):
+        from_json(json.dumps(values))

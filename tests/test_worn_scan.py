@@ -1,0 +1,156 @@
+"""A second scan: gaps along normals, alignment by still skin, comparison, what the two cannot tell."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.wording.samples import sample_design
+from benchmarks.worn_pairs import only, other_mesh, scanned, worn_mesh
+from core.body import Body
+from core.calibration import compare, predicted
+from core.errors import ScanError
+from core.mesh import Mesh
+from core.pipeline import Stages, build
+from core.standing.upright import Pose
+from core.worn_scan.aligning import align, turned
+from core.worn_scan.comparing import Worn, laid_on
+from core.worn_scan.gap import WornSkin
+from core.worn_scan.least_squares import Normal, cost, normal, spread_of
+
+POSE = Pose("mm", "+z", "-y", np.eye(4), True, "", 0.0)
+
+
+@pytest.fixture(scope="module")
+def stages() -> Stages:
+    design = replace(sample_design("mannequin"), lines=(), volume="exact")
+    return build(design.with_line("mid-bust", 0.88))
+
+
+def as_body(mesh: Mesh, pose: Pose = POSE) -> Body:
+    return Body(mesh, pose, (), "worn")
+
+
+def lying(stages: Stages, seed: int = 1, **how: object) -> tuple[Worn, np.ndarray]:
+    mesh, matrix = scanned(worn_mesh(stages, stages.design), stages, np.random.default_rng(seed), **how)
+    body = as_body(mesh)
+    return laid_on("worn.ply", body, align(stages, body)), matrix
+
+
+def flat(height: float) -> Mesh:
+    """A square of 100 mm in 200 triangles at a height, facing up."""
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(11) * 10.0, np.arange(11) * 10.0))
+    corner = np.array([at for at in range(110) if at % 11 < 10])
+    halves = [(corner, corner + 1, corner + 12), (corner, corner + 12, corner + 11)]
+    faces = np.concatenate([np.stack(half, axis=1) for half in halves])
+    return Mesh(np.stack([x, y, np.full(121, height)], axis=1), faces)
+
+
+def test_a_gap_is_the_way_along_the_normal_and_none_where_there_is_no_skin() -> None:
+    skin = WornSkin(flat(5.0))
+    up, slanted = np.array([0.0, 0.0, 1.0]), np.array([0.6, 0.0, 0.8])
+    places = np.array([[33.0, 44.0, 0.0], [33.0, 44.0, 9.0], [33.0, 44.0, 0.0], [150.0, 44.0, 0.0]])
+    gaps = skin.gaps(places, np.array([up, up, slanted, up]))
+    assert gaps[:3] == pytest.approx([-5.0, 4.0, -5.0 / 0.8])
+    assert np.isnan(gaps[3])
+    assert np.isnan(skin.gaps(places[:1], -up[None])).all(), "the back of a skin is none"
+
+
+def test_gaps_on_a_rough_skin_have_its_mean() -> None:
+    rng = np.random.default_rng(5)
+    rough = flat(0.0)
+    rough = rough.moved(rough.vertices + rng.normal(size=rough.vertices.shape) * (0.0, 0.0, 1.0))
+    x, y = rng.uniform(10.0, 90.0, (2, 4000))
+    for height in (-3.0, 0.0, 3.0):
+        places = np.stack([x, y, np.full(len(x), height)], axis=1)
+        gaps = WornSkin(rough).gaps(places, np.tile((0.0, 0.0, 1.0), (len(x), 1)))
+        # The mean of 121 vertices with a deviation of 1 mm: 0.1 mm; the nearest place would be 0.3 mm off.
+        assert np.nanmean(gaps) - height == pytest.approx(-rough.vertices[:, 2].mean(), abs=0.12)
+
+
+def test_huber_counts_far_gaps_by_their_distance() -> None:
+    gaps = np.array([-1.0, 1.0, -1.0, 1.0, 0.0])
+    assert cost(gaps, 1.0) == pytest.approx(0.8)
+    assert cost(np.array([30.0, -30.0]), 1.0) == pytest.approx(2.0 * 2.0 * 30.0 - 4.0)
+    assert spread_of(np.array([-3.0, 3.0, -3.0, 3.0])) == pytest.approx(1.4826 * 3.0)
+
+
+def test_the_spread_of_an_answer_is_wider_where_neighbours_are_off_together() -> None:
+    rng = np.random.default_rng(2)
+    slopes, patches = np.ones((400, 1)), np.repeat(np.arange(20), 20)
+    alone, together = rng.normal(size=400), np.repeat(rng.normal(size=20), 20)
+    sure, unsure = (
+        float(np.sqrt(normal(gaps, slopes, 10.0, patches).covariance[0, 0])) for gaps in (alone, together)
+    )
+    assert sure == pytest.approx(1.0 / 20.0, rel=0.5)
+    assert unsure == pytest.approx(1.0 / np.sqrt(20.0), rel=0.5)
+
+
+def test_an_offset_in_common_is_nobodys_to_tell() -> None:
+    slopes = np.linspace(0.0, 1.0, 50)[:, None]
+    gaps = 2.0 * slopes[:, 0] + 7.0
+    step = normal(gaps, slopes, 1e3, np.arange(50), offset=True).step()
+    assert step == pytest.approx([-2.0])
+    assert isinstance(normal(gaps, slopes, 1.0, np.arange(50)), Normal)
+
+
+def test_a_worn_scan_is_laid_on_the_first_by_still_skin(stages: Stages) -> None:
+    worn, matrix = lying(stages)
+    laid = worn.alignment
+    back = laid.matrix @ matrix
+    turn = np.degrees(np.linalg.norm([back[2, 1], back[0, 2], back[1, 0]]))
+    middle = np.append(stages.control.mesh.vertices.mean(axis=0), 1.0)
+    assert turn < 0.1
+    assert np.linalg.norm((back @ middle - middle)[:3]) < 0.15
+    assert laid.met > 0.99
+    assert 0.5 < laid.rms < 0.9, "1 mm at each vertex, less between vertices"
+    assert (laid.turns < 0.05).all()
+
+
+def test_predicted_less_real_is_the_noise_where_the_prediction_is_right(stages: Stages) -> None:
+    worn, _ = lying(stages, hole=25.0)
+    right = compare(stages, predicted(stages), worn)
+    assert abs(right.all_of_it.mean) < 0.15
+    assert right.all_of_it.rms < 0.8
+    assert 0.8 < right.all_of_it.seen < 0.99, "there is a hole"
+    assert np.isnan(right.values).any()
+    thick = compare(stages, predicted(stages), worn, thickness=2.0)
+    assert thick.all_of_it.mean == pytest.approx(right.all_of_it.mean + 2.0)
+    rest = compare(stages, stages.control.mesh.vertices, worn)
+    assert rest.all_of_it.rms > 1.5 * right.all_of_it.rms
+    assert rest.sides["left"].rms == pytest.approx(rest.sides["right"].rms, rel=0.2)
+
+
+def test_another_person_another_size_and_too_little_are_refused(stages: Stages) -> None:
+    mesh = stages.body.mesh
+    with pytest.raises(ScanError, match=r"0\.1 times as large.*read in cm.*Tell its unit"):
+        align(stages, as_body(mesh.moved(0.1 * mesh.vertices), replace(POSE, unit="cm")))
+    wider = mesh.moved(mesh.vertices * (1.15, 1.0, 1.0))
+    with pytest.raises(ScanError, match=r"does not fit the first: \d+ % .* 85 % are needed"):
+        align(stages, as_body(wider))
+    front = only(mesh, mesh.vertices[:, 1] < stages.control.mesh.vertices[:, 1].min() + 60.0)
+    with pytest.raises(ScanError, match=r"shows \d+ % of the skin that no line moves"):
+        align(stages, as_body(front))
+
+
+def test_arms_held_otherwise_matter_little(stages: Stages) -> None:
+    mesh = stages.body.mesh
+    x = mesh.vertices[:, 0]
+    arm = np.abs(x) > np.abs(stages.control.mesh.vertices[:, 0]).max() + 20.0
+    lifted = mesh.vertices + np.where(arm, 30.0, 0.0)[:, None] * (0.0, -1.0, 0.0)
+    laid = align(stages, as_body(mesh.moved(lifted)))
+    assert laid.matrix == pytest.approx(np.eye(4), abs=0.05)
+
+
+def test_turned_is_a_rotation_about_its_middle() -> None:
+    matrix = turned(np.array([0.0, 0.0, np.pi / 2.0]), np.array([1.0, 0.0, 0.0]))
+    assert matrix @ [2.0, 0.0, 3.0, 1.0] == pytest.approx([1.0, 1.0, 3.0, 1.0])
+
+
+def test_another_mesh_is_the_same_skin(stages: Stages) -> None:
+    other = other_mesh(stages.body.mesh)
+    assert len(other.vertices) != len(stages.body.mesh.vertices)
+    gaps = WornSkin(other).gaps(stages.moving.rest, stages.moving.normals(stages.moving.rest))
+    assert np.nanquantile(np.abs(gaps), 0.95) < 0.3
