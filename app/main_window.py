@@ -33,6 +33,7 @@ from app.keeping.measures_desk import MeasuresDesk
 from app.keeping.own_measures_desk import OwnMeasuresDesk
 from app.keeping.pressure_desk import PressureDesk
 from app.keeping.recovery_desk import RecoveryDesk
+from app.keeping.spread_desk import SpreadDesk
 from app.keeping.variant_desk import VariantDesk
 from app.keeping.variant_figures import VariantFigures
 from app.layout import Layout
@@ -106,7 +107,7 @@ class MainWindow(QMainWindow):
         self.keeping_desk, self.recovery_desk = KeepingDesk(self), RecoveryDesk(self)
         self.history_desk, self.variant_desk = HistoryDesk(self, self.history), VariantDesk(self)
         self.variant_figures = VariantFigures(self, self.variants)
-        self.measures_desk = MeasuresDesk(self, self.result)
+        self.measures_desk, self.spread_desk = MeasuresDesk(self, self.result), SpreadDesk(self, self.result)
         self.own_measures_desk = OwnMeasuresDesk(self, self.result)
         self.even_desk = EvenDesk(self, self.result)
         self.pressure_desk = PressureDesk(self, self.garment)

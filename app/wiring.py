@@ -30,7 +30,7 @@ def _connect_work(window: MainWindow) -> None:
     window.session.working.connect(job_desk.show_work)
     window.session.frame_ready.connect(window.limits_desk.follow)
     window.session.frame_ready.connect(window.doctor_desk.follow)
-    window.lines_desk.feasible = window.limits_desk.feasible
+    window.lines_desk.leeways = window.limits_desk.leeways
     window.jobs.changed.connect(job_desk.show)
     window.view.busy.cancelled.connect(job_desk.cancel)
     window.status.job_cancelled.connect(job_desk.cancel)
@@ -59,6 +59,10 @@ def _connect_session(window: MainWindow) -> None:
     session.frame_ready.connect(desk.show_frame)
     session.frame_ready.connect(lambda *_: window.pressure_desk.follow())
     session.frame_ready.connect(lambda *_: window.even_desk.follow())
+    for changed in (session.frame_ready, session.design_changed):
+        changed.connect(lambda *_: window.spread_desk.follow())
+    window.spread_desk.found.connect(window.measures_desk.show_spread)
+    window.spread_desk.found.connect(window.section_desk.show_spread)
     session.frame_ready.connect(window.export_desk.show_frame)
     session.frame_ready.connect(lambda *_: window.report_desk.follow())
     session.design_changed.connect(lambda *_: window.report_desk.follow())

@@ -37,7 +37,7 @@ from core.measuring.plus_minus import (
     Spread,
 )
 from core.pipeline import Stages, build
-from core.spread import spreads
+from core.spread import Spreading
 
 SAMPLES = Path(__file__).resolve().parents[1] / "resources" / "samples"
 SCANS = (".ply", ".obj", ".stl", ".off")
@@ -68,7 +68,7 @@ def measure(name: str, stages: Stages, draws: int) -> None:
     """Print how both ways spread one design."""
     trials = Trials(stages)
     begun = time.process_time()
-    *_, spread = spreads(trials, assumed())
+    spread = Spreading(trials).whole()
     told = time.process_time() - begun
     begun = time.process_time()
     found = sampled(trials, knobs(stages, assumed()), draws)

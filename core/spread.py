@@ -6,15 +6,16 @@ derivatives (``core.advice.propagated``), or sampled by solving designs anew (``
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
 from core.advice.assumed import Assumed, assumed
-from core.advice.knobs import Turned, knobs
+from core.advice.knobs import Knob, Turned, knobs
 from core.advice.propagated import Effect, Propagation, effects
 from core.advice.trials import Trials
 from core.errors import UserError
@@ -24,40 +25,51 @@ from core.pipeline import Stages
 from core.progress import Progress, quiet
 
 
-def spread_of(
-    stages: Stages,
-    sizes: Assumed | None = None,
-    progress: Progress = quiet,
-    former: Trials | None = None,
-) -> Spread:
-    """Return how far the figures of a design may be off; see ``spreads``."""
-    *_, last = spreads(Trials(stages, former), sizes or assumed(), progress)
-    return last
-
-
-def spreads(trials: Trials, sizes: Assumed, progress: Progress = quiet) -> Iterator[Spread]:
-    """Yield how far the figures of a design may be off, first without landmarks, which are slow, then whole.
+class Spreading:
+    """Finds how far the figures of a design may be off, the ``quick`` part, then the ``whole``.
 
     Raises NoAnswerError where the design has no exact answer, and Cancelled.
     """
-    # Two BLAS threads make these small products many times slower.
-    with threadpool_limits(1):
-        propagation = Propagation(trials)
-        turning = knobs(trials.base, sizes)
-        quick = [knob for knob in turning if knob.source != LANDMARKS]
-        slow = [knob for knob in turning if knob.source == LANDMARKS]
-        found: list[Effect] = []
-        failed = 0
-        for at, effect in enumerate(effects(propagation, [*quick, *slow])):
-            if at == len(quick) and at:
-                yield _spread(propagation, found, sizes, failed)
-            progress("propagating", at / (len(turning) + 2.0))
-            failed += effect is None
-            found += [effect] if effect else []
-        progress("the other contact", (len(turning) + 1.0) / (len(turning) + 2.0))
-        contact, figures = _other_contact(trials)
-        whole = _spread(propagation, found, sizes, failed)
-        yield replace(whole, sources=SOURCES, other=figures, contact=contact)
+
+    def __init__(self, trials: Trials, sizes: Assumed | None = None) -> None:
+        self.trials, self.sizes = trials, sizes or assumed()
+        self._found: list[Effect] = []
+        self._failed = 0
+        self._propagation: Propagation | None = None
+
+    def quick(self, progress: Progress = quiet) -> Spread:
+        """Return the spread by all sources but the landmarks, which are slow."""
+        return self._by([knob for knob in self._knobs if knob.source != LANDMARKS], progress)
+
+    def whole(self, progress: Progress = quiet) -> Spread:
+        """Return the spread by all sources, and the figures with the other skin contact."""
+        if self._propagation is None:
+            self.quick(progress)
+        whole = self._by([knob for knob in self._knobs if knob.source == LANDMARKS], progress)
+        progress("the other contact", 1.0)
+        with threadpool_limits(1):
+            contact, figures = _other_contact(self.trials)
+        return replace(whole, sources=SOURCES, other=figures, contact=contact)
+
+    @cached_property
+    def _knobs(self) -> tuple[Knob, ...]:
+        return knobs(self.trials.base, self.sizes)
+
+    def _by(self, turning: Sequence[Knob], progress: Progress) -> Spread:
+        # Two BLAS threads make these small products many times slower.
+        with threadpool_limits(1):
+            progress("propagating", 0.0)
+            self._propagation = self._propagation or Propagation(self.trials)
+            for at, effect in enumerate(effects(self._propagation, turning)):
+                self._failed += effect is None
+                self._found += [effect] if effect else []
+                progress("propagating", (at + 1.0) / (len(turning) + 1.0))
+            return _spread(self._propagation, self._found, self.sizes, self._failed)
+
+
+def spread_of(stages: Stages, sizes: Assumed | None = None, progress: Progress = quiet) -> Spread:
+    """Return how far the figures of a design may be off; see ``Spreading``."""
+    return Spreading(Trials(stages), sizes).whole(progress)
 
 
 def _other_contact(trials: Trials) -> tuple[str, Mapping[str, float]]:

@@ -23,7 +23,7 @@ from core.pipeline import Stages, build
 from core.profile import Plane, Slicer
 from core.progress import Cancelled
 from core.sewing.tensions import line_tensions
-from core.spread import spreads
+from core.spread import Spreading
 
 SURE = replace(assumed(), unsure_landmark_mm=0.0)
 """Of the mannequin only the folds are sure: fewer landmarks are quicker."""
@@ -41,7 +41,8 @@ def trials(plain: Stages) -> Trials:
 
 @pytest.fixture(scope="module")
 def told(trials: Trials) -> list[Spread]:
-    return list(spreads(trials, SURE))
+    finding = Spreading(trials, SURE)
+    return [finding.quick(), finding.whole()]
 
 
 @pytest.mark.parametrize("contact", ["glued", "sliding"])
@@ -129,7 +130,7 @@ def test_it_is_let_go_of_at_once(trials: Trials) -> None:
         raise Cancelled
 
     with pytest.raises(Cancelled):
-        list(spreads(trials, SURE, stop))
+        Spreading(trials, SURE).whole(stop)
 
 
 def test_values_are_carried_to_where_a_section_runs(plain: Stages) -> None:

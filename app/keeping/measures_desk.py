@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, cast
 
 from PySide6.QtCore import QObject
@@ -9,9 +10,11 @@ from PySide6.QtCore import QObject
 from app.asking.jobs import Job
 from app.dress.wishes import wish, wish_for
 from app.keeping.tables import copy_table, save_table
+from app.panels.measure_view import MeasureView
 from app.panels.result import ResultPanel
 from app.presenting.measures import as_table, measure_views, measured_views
 from app.presenting.sizes import size_views
+from app.presenting.spread import spread_views
 from app.presenting.verdict import doubt_of
 from app.wording.words import number, tr
 from core.body import Body
@@ -37,6 +40,7 @@ class MeasuresDesk(QObject):
         self._rest: Measures | None = None
         self._worn: Measures | None = None
         self._tried: tuple[Measure, Measure] | None = None
+        self._views: list[MeasureView] = []  # what was measured, without what it may be off by
         panel.marked.connect(self._show_mark)
         panel.framed.connect(self._look_at)
         panel.opened.connect(self.refresh)
@@ -56,8 +60,21 @@ class MeasuresDesk(QObject):
     def refresh(self) -> None:
         """Bring the table up to date, if it is seen; unseen it would cost each frame the same."""
         if self._frame is not None and self._panel.isVisible():
-            self._panel.set_rows(measure_views(self._frame), doubt_of(self._frame))
+            self._panel.set_rows(self._spread(measure_views(self._frame)), doubt_of(self._frame))
             self._measure(self._frame)
+
+    def show_spread(self) -> None:
+        """Show beside what is known how far it may be off."""
+        if self._frame is None or not self._panel.isVisible():
+            return
+        self._panel.set_rows(self._spread(measure_views(self._frame)), doubt_of(self._frame))
+        if self._panel.measured:
+            stale = self._panel.stale
+            self._panel.set_measured(self._spread(self._views))
+            self._panel.set_stale(stale)
+
+    def _spread(self, views: Sequence[MeasureView]) -> list[MeasureView]:
+        return spread_views(views, *self._window.spread_desk.shown)
 
     def _measure(self, frame: Frame) -> None:
         """Measure the body of a frame beside the window, once it rests."""
@@ -87,7 +104,8 @@ class MeasuresDesk(QObject):
         self._rest, self._worn = cast(tuple[Measures, Measures], found)
         frame = self._asked
         assert frame is not None  # a job that was let go of does not come here
-        self._panel.set_measured(measured_views(self._rest, self._worn, frame.stages.design.own_measures))
+        self._views = measured_views(self._rest, self._worn, frame.stages.design.own_measures)
+        self._panel.set_measured(self._spread(self._views))
         self._show_sizes()
         self._show_mark()
 

@@ -9,11 +9,14 @@ from PySide6.QtCore import QPoint, QRect, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetrics, QPainter
 
 from app.dress.theme import font
-from app.panels.measure_view import MeasureView
+from app.panels.measure_view import MeasureView, plus_minus
 from app.wording.tokens import Tokens
 
 ROW, NAME, FOOT, EDGE = 30, 20, 30, 4
 """Heights of a row, of a name on a line of its own and of the buttons of an open row; the margin [px]."""
+
+OFF = 13
+"""What a row is higher by where ± stands under its figures [px]."""
 
 CELLS, BAR = (48, 54, 48), 28
 """Widths of the figures before, after and change, and of the bar [px]."""
@@ -21,6 +24,7 @@ CELLS, BAR = (48, 54, 48), 28
 LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
 RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 _WRAPPED = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap
+_FAINT = 0.5  # of what is of a former shape
 _GAP = 4  # over each paragraph of an open row
 
 
@@ -50,12 +54,17 @@ class Spot:
         """Where the line with the figures begins."""
         return self.top + (NAME if self.wide else 0)
 
+    @property
+    def line(self) -> int:
+        """How high the line with the figures is, with ± under them [px]."""
+        return ROW + (OFF if self.view.off else 0)
+
     @cached_property
     def texts(self) -> list[tuple[str, str, QRect]]:
         """What stands under the figures: words, the kind of type, and where."""
         told = [(self.view.caption, "caption")] if self.view.caption else []
         told += [(each, "secondary") for each in self.view.details] if self.opened else []
-        result, top = [], self.figures + ROW - 4
+        result, top = [], self.figures + self.line - 4
         for words, role in told:
             wide = max(self.width - 2 * EDGE, 60)
             high = _wrapped_height(words, role, wide)
@@ -66,13 +75,13 @@ class Spot:
     @property
     def foot(self) -> QRect:
         """Where the buttons of an opened row of one's own stand."""
-        low = self.texts[-1][2].bottom() + _GAP if self.texts else self.figures + ROW
+        low = self.texts[-1][2].bottom() + _GAP if self.texts else self.figures + self.line
         return QRect(EDGE, low, self.width - 2 * EDGE, FOOT if self.opened and self.view.own else 0)
 
     @cached_property
     def height(self) -> int:
         """How high the row is [px]."""
-        high = self.figures + ROW - self.top
+        high = self.figures + self.line - self.top
         if self.texts:
             high += sum(rect.height() for _, _, rect in self.texts)
         if self.opened:
@@ -151,8 +160,22 @@ def _paint_figures(painter: QPainter, tokens: Tokens, spot: Spot) -> None:
         painter.setFont(font(role, tabular=True))
         painter.setPen(QColor(color))
         painter.drawText(cell, RIGHT, view.written(value, signed))
+    if view.off:
+        _paint_off(painter, tokens, spot)
     if view.change is not None:
         _paint_bar(painter, tokens, places[-1], view.change / _full_bar(view.unit))
+
+
+def _paint_off(painter: QPainter, tokens: Tokens, spot: Spot) -> None:
+    """Paint how far figures may be off, under them."""
+    painter.save()
+    painter.setOpacity(painter.opacity() * (_FAINT if spot.view.off_faint else 1.0))
+    painter.setFont(font("caption", tabular=True))
+    painter.setPen(QColor(tokens.text_caption))
+    for cell, off in zip(cells(spot.width, spot.figures + ROW - 9, OFF + 4), spot.view.off, strict=False):
+        if off is not None:
+            painter.drawText(cell, RIGHT, plus_minus(off))
+    painter.restore()
 
 
 def _paint_bar(painter: QPainter, tokens: Tokens, cell: QRectF, share: float) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from app.wording.words import colon, number, tr
+from core.measuring.plus_minus import digits, rounded
 
 
 @dataclass(frozen=True)
@@ -15,6 +16,8 @@ class MeasureView:
     An ``estimate`` may be off by ``plus_minus``; what it was taken from is ``sure`` to that share [1], if
     that is known. ``key`` is that of a measure of the body, ``own`` if it is the designer's; ``group`` is
     its heading. The change of an ``exact`` one is told elsewhere too: it is the same figure everywhere.
+    ``off`` is how far before, after and change may be off, ``off_faint`` if that is of a former shape;
+    ``off_told`` says from what. ``moves`` names how bust points moved, where that is the change.
     """
 
     label: str
@@ -32,6 +35,10 @@ class MeasureView:
     sure: float | None = None
     own: bool = False
     exact: bool = False
+    off: tuple[float | None, ...] = ()
+    off_faint: bool = False
+    off_told: tuple[str, ...] = ()
+    moves: str = ""
 
     @property
     def change(self) -> float | None:
@@ -58,7 +65,7 @@ class MeasureView:
             return self.note
         if not self.estimate:
             return self.reference
-        if not self.plus_minus:
+        if not self.plus_minus or self.off:  # what is off stands beside it, with all sources
             return tr("an estimate")
         off = number(self.plus_minus, digits_of(self.unit))
         return tr("an estimate, ± {off} {unit}").format(off=off, unit=self.unit)
@@ -67,7 +74,7 @@ class MeasureView:
     def details(self) -> tuple[str, ...]:
         """What is told where there is room: how it is taken, its name in the standard, how sure it is."""
         if not self.key:
-            return ()
+            return self.off_told
         named = tr("ISO 8559-1: {name}").format(name=self.iso) if self.iso else tr("Not in ISO 8559-1")
         sure = tr("What it is taken from is sure to {percent} %")
         said = (
@@ -76,7 +83,7 @@ class MeasureView:
             "" if self.sure is None or not self.known else sure.format(percent=number(100 * self.sure, 0)),
             "" if self.note == self.caption else self.note,
         )
-        return tuple(each for each in said if each)
+        return (*(each for each in said if each), *self.off_told)
 
     def written(self, value: float | None, signed: bool = False) -> str:
         """Return a value as it stands in the table."""
@@ -92,6 +99,11 @@ class MeasureView:
             f"{self.written(each)} {self.unit}" for each in (self.before, self.after) if each is not None
         ]
         return f"{self.label}{colon()}{' → '.join(values)} {self.caption}".rstrip()
+
+
+def plus_minus(off: float) -> str:
+    """Return how far a figure may be off as it is written."""
+    return f"± {number(rounded(off), digits(off))}"
 
 
 def digits_of(unit: str) -> int:

@@ -15,7 +15,7 @@ from app.dress.theme import font, label, tokens_of
 from app.dress.wishes import wish, wish_for
 from app.panels.figure_field import FigureField
 from app.showing.live_plot import PullTitle, Quantity
-from app.showing.profile_plot import Drawn, ProfilePlot
+from app.showing.profile_plot import BAND_INK, Drawn, ProfilePlot
 from app.wording.words import number, tr
 
 STEPS = 2
@@ -154,7 +154,8 @@ class ProfilePanel(FloatingPanel):
     def show_curves(self, drawn: Drawn, readout: str, *, again: bool) -> None:
         """Draw the curves; ``again`` shows all that changed."""
         self.plot.show_curves(drawn, again=again)
-        self.keys.show_roles([role for role in CurveKeys.ROLES if drawn.curves.get(role)])
+        banded = ["band"] if drawn.bands else []
+        self.keys.show_roles([*(role for role in CurveKeys.ROLES if drawn.curves.get(role)), *banded])
         self.readout.setText(readout)
 
 
@@ -200,6 +201,7 @@ class CurveKeys(QWidget):
             "before": tr("Before"),
             "after": tr("After"),
             "other": tr("other side, mirrored"),
+            "band": tr("may be off"),
         }
         self.setFixedHeight(self.sizeHint().height())
 
@@ -216,13 +218,19 @@ class CurveKeys(QWidget):
         painter, tokens = QPainter(self), tokens_of(self)
         painter.setFont(font("caption"))
         inks = {"before": tokens.ghost_curve, "after": tokens.accent, "other": tokens.warn_mark}
+        inks["band"] = tokens.accent
         x, y = 2.0, self.height() / 2.0
         for role in self._roles:
             pen = QPen(QColor(inks[role]), 2.0)
             if role == "before":
                 pen.setDashPattern([3.0, 2.0])
-            painter.setPen(pen)
-            painter.drawLine(QPointF(x, y), QPointF(x + 18.0, y))
+            if role == "band":
+                ground = QColor(inks[role])
+                ground.setAlphaF(BAND_INK)
+                painter.fillRect(QRectF(x, y - 4.0, 18.0, 8.0), ground)
+            else:
+                painter.setPen(pen)
+                painter.drawLine(QPointF(x, y), QPointF(x + 18.0, y))
             painter.setPen(QColor(tokens.text_quiet))
             painter.drawText(QPointF(x + 23.0, y + 4.0), self._words[role])
             x += 23.0 + painter.fontMetrics().horizontalAdvance(self._words[role]) + 14.0

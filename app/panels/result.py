@@ -80,8 +80,10 @@ class ResultPanel(QStackedWidget):
         self._column.addWidget(self.sizes)
         self.cards = QVBoxLayout()
         self._column.addLayout(self.cards)
+        self.feet = QVBoxLayout()
         for each in (self._waiting, self._table, self._note):
             self._column.addWidget(each)
+        self._column.addLayout(self.feet)
         self._column.addStretch(1)
         self._area = QScrollArea()
         self._area.setAccessibleName(tr("Measures"))

@@ -16,6 +16,7 @@ from core.live import Frame
 from core.measures import Measures, measure_rows
 from core.measuring.definitions import definition_of
 from core.measuring.own import OWN
+from core.measuring.plus_minus import LIFT, OUT
 from core.solver import Marks
 
 
@@ -88,13 +89,13 @@ def _bust_rows(frame: Frame) -> Iterator[MeasureView]:
     both, left, right = tr("Bust point"), tr("Bust point left"), tr("Bust point right")
     height, forward = tr("{what}, height"), tr("{what}, forward")
     up, was_up = _up(now) - low, _up(rest) - low
-    yield MeasureView(height.format(what=both), "mm", was_up, up, above, exact=True)
-    for side, was, then in (
-        (left, rest.nipple_left_z, now.nipple_left_z),
-        (right, rest.nipple_right_z, now.nipple_right_z),
+    yield MeasureView(height.format(what=both), "mm", was_up, up, above, exact=True, moves=LIFT)
+    for side, was, then, moves in (
+        (left, rest.nipple_left_z, now.nipple_left_z, f"{LIFT} left"),
+        (right, rest.nipple_right_z, now.nipple_right_z, f"{LIFT} right"),
     ):
-        yield MeasureView(height.format(what=side), "mm", was - low, then - low, above)
-    yield MeasureView(forward.format(what=both), "mm", _out(rest), _out(now), before, exact=True)
+        yield MeasureView(height.format(what=side), "mm", was - low, then - low, above, moves=moves)
+    yield MeasureView(forward.format(what=both), "mm", _out(rest), _out(now), before, exact=True, moves=OUT)
     foremost = tr("Foremost place of the skin")
     was, then = rest.apex_z - low, now.apex_z - low
     yield MeasureView(height.format(what=foremost), "mm", was, then, above)

@@ -32,6 +32,9 @@ from core.mesh import Floats
 LEFT, BOTTOM, EDGE = 34.0, 18.0, 6.0
 """Room for the numbers of the axes, and round the curves [px]."""
 
+BAND_INK = 0.28
+"""How strong the band is that tells how far a curve may be off, in parts of the curve's own ink."""
+
 _FINEST = 22.0  # grid lines are never nearer to each other [px]
 
 
@@ -40,12 +43,15 @@ class Drawn:
     """What is drawn: curves of (k, 2) places [mm] by role, and pairs of marks (former, present), each (2,).
 
     Roles: "before" is dashed, "after" strong, "other" the mirrored side. ``home``, shape (2, 2) [mm], is the
-    box that is seen first.
+    box that is seen first. ``bands`` are outlines, by role, of where the skin may lie; ``faint`` until all of
+    it is known.
     """
 
     curves: dict[str, Sequence[Floats]] = field(default_factory=dict)
     marks: Sequence[tuple[Floats, Floats]] = ()
     home: Floats = field(default_factory=lambda: np.array([[-100.0, -100.0], [100.0, 100.0]]))
+    bands: dict[str, list[Floats]] = field(default_factory=dict)
+    faint: bool = False
 
 
 class ProfilePlot(QWidget):
@@ -124,6 +130,13 @@ class ProfilePlot(QWidget):
             "other": QPen(QColor(tokens.warn_mark), 1.6),
             "after": QPen(QColor(tokens.accent), 2.2),
         }
+        for role, outlines in self._drawn.bands.items():
+            ink = QColor(looks[role].color())
+            ink.setAlphaF(BAND_INK * (0.5 if self._drawn.faint else 1.0))
+            for outline in outlines:
+                path = self._path(outline)
+                path.setFillRule(Qt.FillRule.WindingFill)
+                painter.fillPath(path, ink)
         for role, pen in looks.items():
             painter.setPen(pen)
             for places in self._drawn.curves.get(role, ()):

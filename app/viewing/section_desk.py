@@ -18,18 +18,17 @@ from app.presenting.verdict import is_result
 from app.showing.plane_handle import PlaneHandle
 from app.showing.profile_plot import Drawn
 from app.showing.viewport import Viewport
+from app.viewing.section_marks import apex_pairs, bands, bust_points, home, side_of
 from app.wording.words import number, tr
 from core.errors import UserError
 from core.export import write_profile
 from core.live import Frame
 from core.mesh import Floats
-from core.profile import AXES, Curve, Plane, Slicer, apexes, mirrored, nearest, stand_out
+from core.profile import AXES, Curve, Plane, Slicer, mirrored, nearest, stand_out
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
 
-_AROUND = 12.0  # what is seen beside the part that can move [mm]
-_NEAR_BUST_POINT = 10.0  # a plane that far from it still shows it [mm]
 _NEAR = 25.0  # how near to a curve the pointer reads it [px]
 
 
@@ -75,6 +74,7 @@ class SectionDesk(QObject):
     def set_on(self, on: bool) -> None:
         """Show or hide the plane and its panel."""
         self.is_on = self._again = on
+        self._window.spread_desk.follow()
         self.refresh()
 
     def choose_axis(self, axis: str) -> None:
@@ -163,6 +163,11 @@ class SectionDesk(QObject):
         for body in self._view.beside.live:
             body.viewport.request_draw()
 
+    def show_spread(self) -> None:
+        """Draw how far the curves may be off, as far as that is known."""
+        if self.is_on and not self._plot_clock.isActive():
+            self._plot_clock.start()
+
     def follow(self) -> None:
         """Cut the body of the session's frame, and show the curves; the view is being drawn anyway."""
         frame = self._window.session.frame
@@ -227,59 +232,27 @@ class SectionDesk(QObject):
             return
         plane, (low, high) = self._slicer.plane, self._now.box
         self.panel.show_plane(plane.axis, plane.at, low[plane.number], high[plane.number])
-        sides = "other" in self.curves
+        sides, now, curves = "other" in self.curves, self._now, self.curves
         roles = ("after", "other") if sides else ("before", "after")
-        pairs = self._apexes("other", "after") if sides else self._bust_points()
+        pairs = apex_pairs(now, plane, curves["other"], curves["after"]) if sides else bust_points(now, plane)
+        spread = None if sides else self._window.spread_desk.of(now.frame)
         drawn = Drawn(
-            {role: [curve.places for curve in self.curves[role]] for role in roles}, pairs, self._home()
+            {role: [curve.places for curve in curves[role]] for role in roles},
+            pairs,
+            home(now, plane),
+            bands(now, self._slicer, curves, spread),
+            spread is not None and not spread.whole,
         )
         words = sides_words(plane.axis, pairs) if sides else self._words()
         self.panel.show_curves(drawn, words, again=self._again)
         self._again = False
         self._point(self._place)
 
-    @property
-    def _side(self) -> str:
-        assert self._now is not None
-        assert self._slicer is not None
-        return "left" if self._slicer.plane.at > self._now.stages.moving.middle else "right"
-
     def _words(self) -> str:
         assert self._now is not None
-        frame = self._now.frame
-        return section_words(self.axis, self._side, bust_move(frame)) if is_result(frame) else ""
-
-    def _bust_points(self) -> list[tuple[Floats, Floats]]:
-        """Return a bust point before and after, each (2,) [mm], if the plane stands upright through it."""
-        assert self._now is not None
         assert self._slicer is not None
-        plane, stages, side = self._slicer.plane, self._now.stages, self._side
-        mark = stages.landmarks.points.get(f"bust_point_{side}")
-        if plane.axis != "x" or mark is None or abs(mark.position[0] - plane.at) > _NEAR_BUST_POINT:
-            return []
-        move = bust_move(self._now.frame)
-        step = move.left if side == "left" else move.right
-        former = plane.flat(mark.position)
-        return [(former, former + np.array([step.forward, step.up]))]
-
-    def _home(self) -> Floats:
-        """Return the box of what can move, in the plane, (2, 2) [mm]."""
-        assert self._now is not None
-        assert self._slicer is not None
-        control = self._now.stages.control
-        free = self._slicer.plane.flat(control.mesh.vertices[~control.fixed])
-        return np.stack([free.min(axis=0) - _AROUND, free.max(axis=0) + _AROUND])
-
-    def _apexes(self, former: str, present: str) -> list[tuple[Floats, Floats]]:
-        """Return the apexes of two kinds of curves, pair by pair, each (2,) [mm]."""
-        assert self._now is not None
-        assert self._slicer is not None
-        control = self._now.stages.control
-        free = control.mesh.vertices[~control.fixed]
-        box = free.min(axis=0), free.max(axis=0), self._now.stages.moving.middle
-        plane = self._slicer.plane
-        found = [apexes(plane, self.curves[role], *box) for role in (former, present)]
-        return list(zip(*found, strict=True)) if len(found[0]) == len(found[1]) else []
+        frame, side = self._now.frame, side_of(self._now, self._slicer.plane)
+        return section_words(self.axis, side, bust_move(frame)) if is_result(frame) else ""
 
     def _point(self, place: Floats | None) -> None:
         """Read how far the curves are apart at a place of the plot, (2,) [mm]."""

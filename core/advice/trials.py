@@ -45,7 +45,8 @@ def balance_of(stages: Stages) -> Balance:
         balance = solve_exact(stages.model, ratios)
     if not balance.found:
         raise NoAnswerError(
-            "No balance was found with the lines at these lengths.", "Set them nearer to 100 %."
+            "No balance was found with the lines at these lengths.",
+            "Set them nearer to 100 %, or let turns hold the volume.",
         )
     return balance
 

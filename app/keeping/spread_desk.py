@@ -1,0 +1,145 @@
+"""The desk of ±: how far the figures of a settled design may be off, worked out for who looks at them."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from typing import TYPE_CHECKING, cast
+
+from PySide6.QtCore import QObject, QTimer, Signal
+
+from app.asking.jobs import Job
+from app.panels.result import ResultPanel
+from app.panels.spread_card import SpreadCard
+from app.presenting.spread import left_out_sentences, source_sentences, spread_view
+from app.presenting.verdict import doubt_of
+from app.wording.words import tr
+from core.advice.trials import Trials
+from core.design import Design
+from core.live import Frame
+from core.measuring.plus_minus import Spread
+from core.progress import Progress
+from core.spread import Spreading
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+
+PAUSE = 600
+"""So long a design must rest before the work begins: who tries lengths is not to share the processor [ms]."""
+
+KEPT = 12
+"""Designs whose ± is kept, so that undone steps and other variants show theirs at once."""
+
+
+class SpreadDesk(QObject):
+    """Keeps how far the figures of designs may be off, and tells below the measures what that means.
+
+    ``found`` says that there is more of it, or less.
+    """
+
+    found = Signal()
+
+    def __init__(self, window: MainWindow, panel: ResultPanel) -> None:
+        super().__init__(window)
+        self._window, self._panel = window, panel
+        self.card = SpreadCard(source_sentences(), left_out_sentences())
+        panel.feet.addWidget(self.card)
+        self._known: dict[Design, Spread] = {}
+        self._last: Spread | None = None
+        self._trials: Trials | None = None
+        self._body: object = None
+        self._job: Job | None = None
+        self._asked: Design | None = None
+        self._given_up: Design | None = None
+        self._clock = QTimer(self, interval=PAUSE, singleShot=True)
+        self._clock.timeout.connect(self._begin)
+        panel.opened.connect(self.follow)
+        self.found.connect(self._show)
+
+    @property
+    def shown(self) -> tuple[Spread | None, bool]:
+        """What is known of the design that is shown, else of the last one, and whether that is faint."""
+        frame = self._window.session.frame
+        known = None if frame is None else self.of(frame)
+        if known is None:
+            return (self._last if frame is not None and not doubt_of(frame) else None), True
+        return known, not known.whole
+
+    def of(self, frame: Frame) -> Spread | None:
+        """Return how far the figures of a frame may be off, if that is known and it is a result."""
+        return None if frame.at_work or doubt_of(frame) else self._known.get(frame.stages.design)
+
+    def follow(self) -> None:
+        """Begin with a design once it rests; whatever is edited meanwhile ends that."""
+        frame, design = self._window.session.frame, self._window.session.design
+        if frame is None or design is None:
+            return
+        if frame.stages.body is not self._body:
+            self._body, self._last, self._trials = frame.stages.body, None, None
+            self._known.clear()
+        if self._asked is not None and self._asked is not design:
+            self._window.jobs.cancel(self._job)
+            self._job = self._asked = None
+        known = self._known.get(design)
+        missing = known is None or not known.whole
+        if not (self._looked_at and self._window.is_settled() and not doubt_of(frame)):
+            self._clock.stop()
+        elif missing and self._asked is None and self._given_up is not design:
+            self._clock.start()
+        self.found.emit()
+
+    @property
+    def _looked_at(self) -> bool:
+        return self._panel.isVisible() or self._window.section_desk.is_on
+
+    def _begin(self) -> None:
+        """Work out the quick part, then the whole."""
+        frame = self._window.session.frame
+        if frame is None or not self._window.is_settled() or self._asked is not None:
+            return
+        self._asked, stages, former = frame.stages.design, frame.stages, self._trials
+
+        def quick(progress: Progress) -> tuple[Spreading, Spread]:
+            finding = Spreading(Trials(stages, former))
+            return finding, finding.quick(progress)
+
+        self._run(quick, self._go_on)
+
+    def _go_on(self, found: object) -> None:
+        finding, first = cast(tuple[Spreading, Spread], found)
+        self._trials, design = finding.trials, finding.trials.base.design
+        self._keep(design, first)
+        self._run(finding.whole, lambda whole: self._end(design, cast(Spread, whole)))
+
+    def _end(self, design: Design, whole: Spread) -> None:
+        self._job = self._asked = None
+        self._keep(design, whole)
+
+    def _run(self, work: Callable[[Progress], object], done: Callable[[object], None]) -> None:
+        said = tr("Working out how sure the figures are")
+        self._job = self._window.jobs.run(said, work, done, self._fail, left=self._leave_off)
+
+    def _keep(self, design: Design, spread: Spread) -> None:
+        self._known[design] = self._last = spread
+        while len(self._known) > KEPT:
+            del self._known[next(iter(self._known))]
+        self.found.emit()
+
+    def _fail(self, error: Exception) -> None:
+        logging.error("how sure figures are was not found", exc_info=error)
+        self._leave_off()
+
+    def _leave_off(self) -> None:
+        self._given_up, self._job, self._asked = self._asked, None, None
+        self.found.emit()
+
+    def _show(self) -> None:
+        """Tell below the measures what the ± means, or why there is none."""
+        frame = self._window.session.frame
+        if frame is None or not self._panel.isVisible():
+            return
+        spread, faint = self.shown
+        given_up = self._given_up is not None and self._given_up is self._window.session.design
+        waiting = tr("How far they may be off was not worked out.") if given_up else ""
+        waiting = waiting or tr("How far they may be off is worked out once the run rests.")
+        self.card.show_view(spread_view(spread, "" if doubt_of(frame) else waiting, faint))

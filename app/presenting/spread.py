@@ -1,0 +1,108 @@
+"""What is said of how far figures may be off: beside measures, below them, and where it comes from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from app.panels.measure_view import MeasureView, plus_minus
+from app.panels.spread_card import SpreadView
+from app.wording.words import language, listed, number, say, tr
+from core.advice.assumed import origins
+from core.measuring.plus_minus import AFTER, BEFORE, CHANGE, LIFT, OUT, Spread
+from core.pressure import LEFT_OUT
+from core.sheet import NOT_MODELLED
+
+LEAST = 0.01
+"""A source with a smaller share of the variance is not named [1]."""
+
+
+def source_words(source: str) -> str:
+    """Return a source in a word or two."""
+    return {
+        "landmarks": tr("landmarks"),
+        "scan": tr("scan"),
+        "tissue": tr("tissue"),
+        "line": tr("stiffness of lines"),
+        "tape": tr("cutting and sewing"),
+        "elastic": tr("elastics"),
+        "root": tr("top of the root"),
+    }[source]
+
+
+def source_sentences() -> tuple[str, ...]:
+    """Return where each source's size comes from, in the language in use."""
+    return tuple(words.told(language()) for words in origins().values())
+
+
+def left_out_sentences() -> tuple[str, ...]:
+    """Return what no figure takes into account; the sheet says the same."""
+    return tuple(say(each) for each in (*NOT_MODELLED, *LEFT_OUT))
+
+
+def spread_views(views: Iterable[MeasureView], spread: Spread | None, faint: bool) -> list[MeasureView]:
+    """Return measures with their ±; ``faint`` are those of a former shape, or not whole yet."""
+    if spread is None:
+        return list(views)
+    return [_with_off(view, spread, faint) for view in views]
+
+
+def _with_off(view: MeasureView, spread: Spread, faint: bool) -> MeasureView:
+    keys = _keys(view)
+    offs = tuple(None if key is None else spread.plus_minus(key) for key in keys)
+    told = tuple(
+        None if off is None or value is None else off
+        for off, value in zip(offs, (view.before, view.after, view.change), strict=True)
+    )
+    if not any(each is not None for each in told):
+        return view
+    return replace(view, off=told, off_faint=faint, off_told=_shares(keys, told, spread, view.unit))
+
+
+def _keys(view: MeasureView) -> tuple[str | None, str | None, str | None]:
+    if view.key:
+        return f"{BEFORE}:{view.key}", f"{AFTER}:{view.key}", f"{CHANGE}:{view.key}"
+    return None, None, view.moves or None
+
+
+def _shares(
+    keys: Iterable[str | None], offs: Iterable[float | None], spread: Spread, unit: str
+) -> tuple[str, ...]:
+    heads = (tr("Before"), tr("After"), tr("Change"))
+    lines = []
+    for key, off, head in zip(keys, offs, heads, strict=True):
+        doubt = spread.doubts.get(key) if key else None
+        if doubt is None or off is None:
+            continue
+        parts = [
+            f"{source_words(source)} {number(100.0 * share, 0)} %"
+            for source, share in doubt.shares.items()
+            if share >= LEAST
+        ]
+        said = tr("{head}: {off} {unit}").format(head=head, off=plus_minus(off), unit=unit)
+        lines.append(f"{said} ({listed(parts)})" if parts else said)
+    return tuple(lines)
+
+
+def spread_view(spread: Spread | None, waiting: str, faint: bool) -> SpreadView:
+    """Return what stands below the measures; ``waiting`` says why there is no ± yet."""
+    if spread is None:
+        return SpreadView(waiting)
+    meaning = tr("± is twice the standard deviation: 95 % of all cases, if errors are normal.")
+    if not spread.whole:
+        more = tr("Landmarks are still being added: these are too small.")
+        return SpreadView(f"{meaning} {more}" if language() == "en" else f"{meaning}{more}", faint=faint)
+    return SpreadView(meaning, _contact(spread), faint)
+
+
+def _contact(spread: Spread) -> str:
+    if LIFT not in spread.other:
+        return ""
+    up, out = (number(spread.other[key], 1, signed=True) for key in (LIFT, OUT))
+    if spread.contact == "sliding":
+        said = tr("If lines slid over the skin instead: bust points {up} mm up, {out} mm forward.")
+    else:
+        said = tr("If lines stuck to the skin instead: bust points {up} mm up, {out} mm forward.")
+    between = tr("The truth lies between the two, and no ± holds it.")
+    told = said.format(up=up, out=out)
+    return f"{told} {between}" if language() == "en" else f"{told}{between}"
