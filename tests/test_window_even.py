@@ -16,6 +16,7 @@ from core.evenness import BeforeAfter, evenness
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 PERSON = [str(SAMPLES / "person.ply")]
+SIDES = ("left", "right")
 
 
 def opened(window: MainWindow, mid: float = 0.95, full: float = 0.97) -> Script:
@@ -43,126 +44,123 @@ def told(window: MainWindow) -> BeforeAfter:
     return evenness(frame.stages, frame.control_points)
 
 
-def test_the_card_tells_what_differs_and_fades_with_the_design() -> None:
+def test_the_card_tells_what_differs_shows_where_and_makes_it_even(monkeypatch: pytest.MonkeyPatch) -> None:
     def script(window: MainWindow) -> Script:
         yield from opened(window)
-        card, now = window.even_desk.card, told(window)
-        assert card.summary is not None
-        assert card.says.text() == f"Bust points: right {-now.after.higher:.1f} mm higher."
-        first, *_ = card.summary.views
-        assert (first.before, first.after) == (f"R {-now.before.higher:.1f}", f"R {-now.after.higher:.1f}")
-        assert first.shares[1] == pytest.approx(now.after.higher / 10.0)
-        seen = [row.title.text() for row in card._rows if row.title.isVisible()]
-        assert len(seen) == 4
-        card.fold.click()
-        seen = [row.title.text() for row in card._rows if row.title.isVisible()]
-        assert "Left stands out [ml]" in seen
-        assert "keep its volume" in card.notes.text()
-        window.session.preview_line("mid-bust", 0.93)
-        yield lambda: faint(card) and card.summary is not None
-        assert not card.make.isEnabled()
-        window.session.cancel_preview()
-        yield lambda: is_fresh(window)
-        assert card.make.isEnabled()
+        shows_the_map(window)
+        yield from tells_and_fades(window)
+        yield from makes_even(window, monkeypatch)
 
     run_main(PERSON, script)
 
 
-def test_the_map_is_shown_from_the_card_and_its_legend_tells_ml() -> None:
-    def script(window: MainWindow) -> Script:
-        yield from opened(window)
-        card, maps = window.even_desk.card, window.map_desk
-        assert card.look.text() == "Show on the body"
-        card.look.click()
-        assert maps.name == "sides"
-        assert card.look.text() == "Hide the map"
-        skin = told(window).after.skin
-        assert skin is not None
-        assert f"left {skin.left_more:.0f} ml, right {skin.right_more:.0f} ml" in maps.legend._note.text()
-        maps.choose("displacement")
-        assert card.look.text() == "Show on the body"
-        assert "ml" not in maps.legend._note.text()
-        maps.choose("sides")
-        card.look.click()
-        assert maps.name == ""
-
-    run_main(PERSON, script)
-
-
-def test_a_line_is_split_by_its_row_the_key_and_the_menu_as_one_step() -> None:
-    def script(window: MainWindow) -> Script:
-        undrawn(window)
-        yield settled(window)
-        window.activateWindow()
-        yield window.isActiveWindow
-        before = window.session.design
-        assert before is not None
-        link = window.lines.rows["mid-bust"].details._tools["link"]
-        for split in (
-            lambda: QTest.keyClick(window.lines, Qt.Key.Key_L),
-            lambda: window.lines.do("split"),
-            link.click,
-        ):
-            window.lines.select("mid-bust")
-            assert "Split it" in link.toolTip()
-            split()
-            yield lambda: "mid-bust left" in window.lines.rows and window.is_settled()
-            assert window.session.undo_stack.undoText() == "Mid-bust split into left and right"
-            assert list(window.lines.rows)[1:4] == ["mid-bust", "mid-bust left", "mid-bust right"]
-            left, whole = window.lines.rows["mid-bust left"], window.lines.rows["mid-bust"]
-            assert left.view.ratio == before.ratio("mid-bust")
-            assert left.view.color == whole.view.color
-            assert left.view.title == "Mid-bust, left"
-            assert left._open
-            assert whole.view.ratio == 1.0
-            window.actions_.undo.trigger()
-            yield lambda: "mid-bust left" not in window.lines.rows and window.is_settled()
-            assert window.session.design == before
-        window.lines.select("under-bust")
-        assert not window.lines.rows["under-bust"].view.splits, "it moves nothing"
-
-    run_main([str(SAMPLES / "mannequin.ply")], script)
+def tells_and_fades(window: MainWindow) -> Script:
+    """What differs, with sides; and while a line is dragged all of it is faint."""
+    card, now = window.even_desk.card, told(window)
+    assert card.summary is not None
+    assert card.says.text() == f"Bust points: right {-now.after.higher:.1f} mm higher."
+    first, *_ = card.summary.views
+    assert (first.before, first.after) == (f"R {-now.before.higher:.1f}", f"R {-now.after.higher:.1f}")
+    assert first.shares[1] == pytest.approx(now.after.higher / 10.0)
+    seen = [row.title.text() for row in card._rows if row.title.isVisible()]
+    assert len(seen) == 4
+    card.fold.click()
+    seen = [row.title.text() for row in card._rows if row.title.isVisible()]
+    assert "Left stands out [ml]" in seen
+    assert "keep its volume" in card.notes.text()
+    window.session.preview_line("mid-bust", 0.93)
+    yield lambda: faint(card) and card.summary is not None
+    assert not card.make.isEnabled()
+    window.session.cancel_preview()
+    yield lambda: is_fresh(window)
+    assert card.make.isEnabled()
 
 
-def test_make_even_parts_the_lines_and_fills_the_wishes_in(monkeypatch: pytest.MonkeyPatch) -> None:
-    def script(window: MainWindow) -> Script:
-        begun: list[tuple[Design | None, list[tuple[str, float]]]] = []
+def shows_the_map(window: MainWindow) -> None:
+    """The button lays the map on the body and takes it off; the legend tells ml."""
+    card, maps = window.even_desk.card, window.map_desk
+    assert card.look.text() == "Show on the body"
+    card.look.click()
+    assert maps.name == "sides"
+    assert card.look.text() == "Hide the map"
+    skin = told(window).after.skin
+    assert skin is not None
+    assert f"left {skin.left_more:.0f} ml, right {skin.right_more:.0f} ml" in maps.legend._note.text()
+    maps.choose("displacement")
+    assert card.look.text() == "Show on the body"
+    assert "ml" not in maps.legend._note.text()
+    maps.choose("sides")
+    card.look.click()
+    assert maps.name == ""
 
-        def begin(goals: object) -> None:
-            frame = window.session.frame
-            design = frame.stages.design if frame else None
-            begun.append((design, [(goal.name, goal.value) for goal in goals]))  # type: ignore[attr-defined]
 
-        monkeypatch.setattr(window.ask_desk, "begin", begin)
-        yield from opened(window)
-        card, before = window.even_desk.card, window.session.design
-        assert card.hint.text() == "Make even begins by setting left and right apart: Full bust, Mid-bust."
-        count = window.session.undo_stack.count()
-        card.make.click()
-        yield lambda: bool(begun)
-        (design, goals), after = begun[0], window.session.design
-        assert goals[:2] == [("left higher", 0.0), ("left further out", 0.0)]
-        assert after is not None
-        assert design == after
-        assert after.worn() == {f"{line} {side}" for line in ("mid-bust", "full-bust") for side in SIDES}
-        assert window.session.undo_stack.count() == count + 1
-        assert window.session.undo_stack.undoText() == "Left and right apart: Full bust, Mid-bust"
+def makes_even(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> Script:
+    """Lines are parted in one step and the wishes filled in; not if the design was changed meanwhile."""
+    begun: list[tuple[Design | None, list[tuple[str, float]]]] = []
+
+    def begin(goals: object) -> None:
+        frame = window.session.frame
+        design = frame.stages.design if frame else None
+        begun.append((design, [(goal.name, goal.value) for goal in goals]))  # type: ignore[attr-defined]
+
+    monkeypatch.setattr(window.ask_desk, "begin", begin)
+    card, before = window.even_desk.card, window.session.design
+    assert card.hint.text() == "Make even begins by setting left and right apart: Full bust, Mid-bust."
+    count = window.session.undo_stack.count()
+    card.make.click()
+    yield lambda: bool(begun)
+    (design, goals), after = begun[0], window.session.design
+    assert goals[:2] == [("left higher", 0.0), ("left further out", 0.0)]
+    assert after is not None
+    assert design == after
+    assert after.worn() == {f"{line} {side}" for line in ("mid-bust", "full-bust") for side in SIDES}
+    assert window.session.undo_stack.count() == count + 1
+    assert window.session.undo_stack.undoText() == "Left and right apart: Full bust, Mid-bust"
+    window.actions_.undo.trigger()
+    yield settled(window)
+    assert window.session.design == before
+    yield lambda: is_fresh(window)
+    card.make.click()
+    window.session.edit(lambda d: d.with_line("mid-bust", 0.96), "Another")
+    yield lambda: is_fresh(window)
+    assert len(begun) == 1, "what was looked for was for another design"
+
+
+def splits(window: MainWindow) -> Script:
+    """A line is split by its row, the key and the menu, each as one step."""
+    window.desk.go_to("lines")
+    window.activateWindow()
+    yield window.isActiveWindow
+    before = window.session.design
+    assert before is not None
+    link = window.lines.rows["mid-bust"].details._tools["link"]
+    for split in (
+        lambda: QTest.keyClick(window.lines, Qt.Key.Key_L),
+        lambda: window.lines.do("split"),
+        link.click,
+    ):
+        window.lines.select("mid-bust")
+        assert "Split it" in link.toolTip()
+        split()
+        yield lambda: "mid-bust left" in window.lines.rows and window.is_settled()
+        assert window.session.undo_stack.undoText() == "Mid-bust split into left and right"
+        assert list(window.lines.rows)[1:4] == ["mid-bust", "mid-bust left", "mid-bust right"]
+        left, whole = window.lines.rows["mid-bust left"], window.lines.rows["mid-bust"]
+        assert left.view.ratio == before.ratio("mid-bust")
+        assert left.view.color == whole.view.color
+        assert left.view.title == "Mid-bust, left"
+        assert left._open
+        assert whole.view.ratio == 1.0
         window.actions_.undo.trigger()
-        yield settled(window)
+        yield lambda: "mid-bust left" not in window.lines.rows and window.is_settled()
         assert window.session.design == before
-        yield lambda: is_fresh(window)
-        card.make.click()
-        window.session.edit(lambda d: d.with_line("mid-bust", 0.96), "Another")
-        yield lambda: is_fresh(window) and not window.jobs.at_work()
-        assert len(begun) == 1, "what was looked for was for another design"
-
-    run_main(PERSON, script)
+    window.lines.select("under-bust")
+    assert not window.lines.rows["under-bust"].view.splits, "it moves nothing"
 
 
-SIDES = ("left", "right")
-
-
-def test_an_even_body_has_nothing_to_be_made_even(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_even_body_has_nothing_to_be_made_even_and_a_line_is_split_all_the_same(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     asked: list[object] = []
     monkeypatch.setattr(desk_module, "evenness", lambda *given: asked.append(given) or evenness(*given))
 
@@ -176,5 +174,6 @@ def test_an_even_body_has_nothing_to_be_made_even(monkeypatch: pytest.MonkeyPatc
         assert card.says.text() == "Both bust points lie alike within 0.5 mm."
         assert not card.make.isEnabled()
         assert len(asked) == 1
+        yield from splits(window)
 
     run_main([str(SAMPLES / "mannequin.ply")], script)
