@@ -11,7 +11,7 @@ from itertools import chain
 from threadpoolctl import threadpool_limits
 
 from core.advice.fight import Fight, fight_of
-from core.advice.outlook import outlook
+from core.advice.outlook import Outlook, outlook
 from core.advice.remedy import (
     Change,
     Cure,
@@ -114,6 +114,9 @@ def _treated(found: Diagnosis, search: Search) -> Diagnosis:
             chosen = replace(stages, design=choice.design)
             cure = cure or search.smallest(with_setting(choice, ways(chosen)))[0]
     cure = cure or search.first_of(off_changes(stages))
+    if cure is None and not search.tried:
+        for change in choices:
+            search.tried_out(change)  # to know the nearest
     if cure is not None:
         return replace(found, cure=cure, others=tuple(others))
     worn = (line.name for line in stages.model.lines if line.constrains)
@@ -130,9 +133,12 @@ def borne_gain(stages: Stages, progress: Progress = quiet) -> float | None:
     Where the turns of a gain come to rest is worked out anew for each that is tried.
     """
 
+    seen: Outlook | None = None
+
     def grows(gain: float) -> bool:
+        nonlocal seen
         progress("diagnosing", 0.0)
-        seen = outlook(replace(stages, design=replace(stages.design, gain=gain)))
+        seen = outlook(replace(stages, design=replace(stages.design, gain=gain)), seen)
         return seen is None or seen.growth > 1.0
 
     low, high = 0.0, min(2.0 * stages.gain_limit, _MOST_GAIN)

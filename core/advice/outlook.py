@@ -28,6 +28,7 @@ FADES = 0.975
 PUSH = 0.02
 """How far the push moves a point at most [mm]: small enough for turns to answer in proportion."""
 
+_FAR = 0.1  # of the lengths from which another balance is looked for [1]
 _SPAN = 30
 _ROUNDS = 12
 _NEAR = 1e-7  # volume errors this far apart are the same [1]
@@ -55,32 +56,44 @@ class Outlook:
         return self.growth < FADES
 
 
-def outlook(stages: Stages) -> Outlook | None:
-    """Return how the run of a design will end, None where there is nothing for it to rest at."""
+def outlook(stages: Stages, near: Outlook | None = None) -> Outlook | None:
+    """Return how the run of a design will end, None where there is nothing for it to rest at.
+
+    From an outlook ``near`` by it is found more quickly.
+    """
     model, targets = stages.model, targets_of(stages.design, stages)
-    balance = _resting(stages, model, targets)
+    balance = _resting(stages, model, targets, _start(near, model, targets))
     if not balance.found:
         return None
     condition = shape_of(model).condition(model.tensegric.expand(balance.state.moved))
     return Outlook(model, targets, balance, condition)
 
 
-def _resting(stages: Stages, model: ConstrainedModel, targets: Targets) -> Balance:
+def _start(near: Outlook | None, model: ConstrainedModel, targets: Targets) -> Balance | None:
+    """Return the balance of ``near`` if a search can start there."""
+    if near is None or near.model is not model:
+        return None
+    alike = (near.targets.control == "exact") == (targets.control == "exact")
+    far = np.abs(np.subtract(near.targets.ratios, targets.ratios)).max(initial=0.0)
+    return near.balance if alike and far <= _FAR else None
+
+
+def _resting(stages: Stages, model: ConstrainedModel, targets: Targets, near: Balance | None) -> Balance:
     if targets.control == "exact":
         if stages.design.dense_volume:
-            return solve_body_exact(model, targets.ratios, stages.body_change)
-        return solve_exact(model, targets.ratios)
+            return solve_body_exact(model, targets.ratios, stages.body_change, near=near)
+        return solve_exact(model, targets.ratios, near=near)
     # Turns measure both breasts together, whatever the exact answer holds.
     both = replace(model.tensegric, mechanics=replace(model.mechanics, volume_of="both"))
-    return _kept(replace(model, tensegric=both), targets)
+    return _kept(replace(model, tensegric=both), targets, near)
 
 
-def _kept(model: ConstrainedModel, targets: Targets) -> Balance:
+def _kept(model: ConstrainedModel, targets: Targets, near: Balance | None) -> Balance:
     """Return the balance at the volume that a control keeps: another than at rest where it has no memory.
 
     There the pressure is the gain times what is missing; that is closed in on by secants.
     """
-    here = solve_exact(model, targets.ratios)
+    here = solve_exact(model, targets.ratios, near=near)
     if targets.control in ("adaptive", "accumulating") or not here.found:
         return here
     gain = targets.gain if targets.control == "conventional" else 0.0

@@ -14,13 +14,14 @@ from dataclasses import dataclass, replace
 from functools import partial, reduce
 from typing import Any
 
-from core.advice.outlook import outlook
+from core.advice.outlook import Outlook, outlook
 from core.advice.standing import Standing, gone_on, standing
 from core.design import Design
 from core.errors import UserError
 from core.lines import RATIO_LIMITS
 from core.pipeline import Stages, build
 from core.progress import Progress
+from core.solving.condition import CALM_RANGE, STRAIN_RANGE
 
 LENGTH_STEP = 0.001
 """Ratio of lengths that a person sets [1]."""
@@ -29,6 +30,7 @@ GAIN_STEP = 0.01
 """Gain that a person sets, in probe units [1]."""
 
 _LEAST_GAIN = 0.1
+_WORTH = 1.5  # times the smallest change that looks good: what is larger is not worth a search
 _TRIES = 14
 _MOST_TOGETHER = 95  # %: beyond that nothing is left of the garment
 _FURTHER = 1.08  # a step that a run did not bear out is made larger by so much, then more
@@ -111,20 +113,17 @@ def _length(design: Design, names: tuple[str, ...], sign: int, grid: int, steps:
 def settings(design: Design, complaint: str) -> Iterator[Change]:
     """Yield other choices of the model that may end a complaint, the least far-reaching first."""
     moving = complaint in ("vibrating", "diverging", "settling")
-    if design.line_force == "explicit" and moving:
-        yield _set(replace(design, line_force="implicit"), "line_force")
-    if moving:
-        for control in ("adaptive", "exact"):
-            if design.volume not in (control, "exact"):
-                yield _set(replace(design, volume=control), "volume")
-    elif design.volume == "exact":
-        yield _set(replace(design, volume="adaptive"), "volume")
-    if design.line_hold == "held":
-        yield _set(replace(design, line_hold="spring"), "line_hold")
+    in_step = [_set(design, "line_force", "implicit")]
+    controls = [_set(design, "volume", control) for control in ("adaptive", "exact")[: 1 + moving]]
+    spring = [_set(design, "line_hold", "spring")]
+    order = [*in_step, *controls, *spring] if moving else [*spring, *controls, *in_step]
+    for change in order:
+        if change.design != design:
+            yield change
 
 
-def _set(design: Design, key: str) -> Change:
-    return Change("setting", design, setting=(key, getattr(design, key)))
+def _set(design: Design, key: str, value: str) -> Change:
+    return Change("setting", replace(design, **{key: value}), setting=(key, value))  # type: ignore[arg-type]
 
 
 def with_setting(setting: Change, ways: Iterator[Way]) -> Iterator[Way]:
@@ -168,6 +167,7 @@ class Search:
 
     def __init__(self, sick: Standing, progress: Progress) -> None:
         self._sick, self._progress = sick, progress
+        self._near: Outlook | None = None
         self.tried: list[Cure] = []
         design = sick.stages.design
         steady = design.volume in ("adaptive", "accumulating", "none") and design.line_hold == "spring"
@@ -176,9 +176,12 @@ class Search:
     def _bears(self, stages: Stages) -> bool:
         """Return whether the outlook of a changed design is good."""
         self._progress("diagnosing", 0.0)
-        seen = outlook(stages)
+        if _too_far(stages, CALM_RANGE if self._sick.complaint == "strained" else STRAIN_RANGE):
+            return False
+        seen = outlook(stages, self._near)
         if seen is None or seen.condition.folded or seen.condition.overstrained:
             return False
+        self._near = seen
         if self._sick.complaint == "strained" and seen.condition.strained:
             return False
         return seen.stays if self._swings else True
@@ -189,15 +192,18 @@ class Search:
         except UserError:
             return False  # an elastic beyond its curve, for example
 
-    def first_good(self, way: Way) -> int | None:
-        """Return the fewest steps on a way whose outlook is good, if that gets no worse with more of them."""
-        none, steps = 0, 1
-        while steps <= way.most and not self._hopeful(way.at(steps)):
-            none, steps = steps, 2 * steps
-        if steps > way.most:
-            if none >= way.most or not self._hopeful(way.at(way.most)):
+    def first_good(self, way: Way, largest: float = math.inf) -> int | None:
+        """Return the fewest steps on a way whose outlook is good, if that gets no worse with more of them.
+
+        Changes of more than the ``largest`` size [%] are not looked for.
+        """
+        none, steps = 0, min(1, way.most)
+        while steps > none and not self._hopeful(way.at(steps)):
+            none, steps = steps, min(2 * steps, way.most)
+            if way.at(none + 1 if none < way.most else none).size > largest:
                 return None
-            steps = way.most
+        if steps == none:
+            return None
         while steps - none > 1:
             middle = (none + steps) // 2
             none, steps = (none, middle) if self._hopeful(way.at(middle)) else (middle, steps)
@@ -222,9 +228,10 @@ class Search:
 
     def smallest(self, ways: Iterator[Way]) -> tuple[Cure | None, list[Change]]:
         """Return the smallest change on any way that a run bears out, and those that looked good besides."""
-        hopes = []
+        hopes: list[tuple[float, int, int, Way]] = []
         for number, way in enumerate(ways):
-            steps = self.first_good(way)
+            smallest = min((hope[0] for hope in hopes), default=math.inf)
+            steps = self.first_good(way, _WORTH * smallest)
             if steps is not None:
                 hopes.append((way.at(steps).size, number, steps, way))
         heapq.heapify(hopes)
@@ -247,10 +254,14 @@ class Search:
     def first_of(self, changes: Iterator[Change]) -> Cure | None:
         """Return the first of some changes that a run bears out."""
         for change in changes:
-            try:
-                cure = self.tried_out(change)
-            except UserError:
-                continue
-            if cure.ends:
+            if self._hopeful(change) and (cure := self.tried_out(change)).ends:
                 return cure
         return None
+
+
+def _too_far(stages: Stages, bounds: tuple[float, float]) -> bool:
+    """Return whether lines are held at lengths at which some of their edges must be outside ``bounds``."""
+    held = stages.design.line_hold == "held"
+    names = {line.name for line in stages.model.lines if line.constrains}
+    worn = (line.ratio for line in stages.design.lines if line.name in names)
+    return held and any(not bounds[0] <= ratio <= bounds[1] for ratio in worn)

@@ -1,0 +1,198 @@
+"""The doctor: forces that add up, what is named as fighting, and changes that end it, run by another path."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.wording.samples import sample_design
+from core.advice.fight import fight_of
+from core.advice.outlook import outlook
+from core.advice.remedy import GAIN_STEP, LENGTH_STEP
+from core.comparison import Comparison
+from core.design import Design
+from core.design_lines import LineTraits
+from core.doctor import Diagnosis, diagnose
+from core.own_lines import ready_made
+from core.pipeline import Stages, build, targets_of
+from core.progress import Cancelled
+from core.settled import settled_frame
+from core.solution import run
+from core.template import read_template
+
+
+@cache
+def body() -> Stages:
+    return build(replace(sample_design("mannequin"), lines=()))
+
+
+def made(lines: dict[str, float], **settings: Any) -> Stages:
+    design = replace(body().design, **settings)
+    for name, ratio in lines.items():
+        design = design.with_line(name, ratio)
+    return build(design, body())
+
+
+def treated(lines: dict[str, float], **settings: Any) -> Diagnosis:
+    return diagnose(made(lines, **settings))
+
+
+def told_from_rest(design: Design) -> str:
+    return settled_frame(design, body()).verdict.told
+
+
+def told_going_on(before: Stages, design: Design) -> str:
+    """How it ends where a run that stands is given the changed design, as the solver of the window does."""
+    comparison = Comparison(before.model, targets_of(before.design, before), before.watch)
+    while not comparison.resting:
+        comparison.advance()
+    after = build(design, before)
+    comparison.retarget(after.model, targets_of(design, after), fresh=True)
+    while not comparison.resting:
+        comparison.advance()
+    return comparison.verdict.told
+
+
+def cured(found: Diagnosis) -> Design:
+    assert found.cure is not None
+    return found.cure.change.design
+
+
+@pytest.mark.parametrize("hold", ["spring", "held"])
+def test_in_a_balance_all_forces_add_up_to_nothing(hold: str) -> None:
+    stages = made({"mid-bust": 0.93, "full-bust": 0.95}, line_hold=hold)
+    fight = fight_of(stages)
+    solved = run(replace(stages, design=replace(stages.design, volume="exact")))
+    newtons = fight.skin / np.linalg.norm(stages.model.tensegric.gradient(solved.state.moved), axis=1).sum()
+    skin = -newtons * stages.model.tensegric.gradient(solved.state.moved)
+    total = skin + sum(pull.force for pull in fight.pulls)
+    assert np.abs(total).max() < 1e-7 * np.abs(skin).max()
+    assert [pull.lines for pull in fight.pulls] == [("mid-bust",), ("full-bust",), ()]
+
+
+def test_newtons_are_those_of_the_tissue_and_angles_do_not_hang_on_it() -> None:
+    soft, firm = (
+        fight_of(made({"mid-bust": 0.9}, tissue_stiffness=stiffness)) for stiffness in (300.0, 600.0)
+    )
+    for one, other in zip(soft.pulls, firm.pulls, strict=True):
+        assert other.newtons == pytest.approx(2.0 * one.newtons)
+        assert other.to_volume == pytest.approx(one.to_volume)
+    assert soft.pulls[1].to_volume < 5.0, "one pressure each side presses along the gradient"
+    assert soft.pulls[0].to_volume > 100.0, "a line that is shorter takes volume away"
+
+
+def test_a_short_line_fights_the_volume_and_a_long_one_the_short_one() -> None:
+    alone = fight_of(made({"mid-bust": 0.8})).worst
+    assert alone is not None
+    assert (alone.one.lines, alone.other.lines) == (("mid-bust",), ())
+    both = fight_of(made({"mid-bust": 0.8, "full-bust": 1.2})).worst
+    assert both is not None
+    assert {both.one.lines, both.other.lines} == {("mid-bust",), ("full-bust",)}
+
+
+def test_where_two_pairs_fight_alike_none_is_named() -> None:
+    fight = fight_of(made({"mid-bust": 0.9}))
+    twice = replace(fight, clashes=(fight.clashes[0], fight.clashes[0]))
+    assert fight.worst is not None
+    assert twice.worst is None
+    assert fight_of(made({})).worst is None
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [{"volume": "adaptive"}, {"volume": "conventional", "gain": 1.2}, {"volume": "none"}],
+    ids=lambda settings: settings["volume"],
+)
+def test_an_outlook_knows_where_turns_come_to_rest(settings: dict[str, Any]) -> None:
+    stages = made({"mid-bust": 0.9}, **settings)
+    seen = outlook(stages)
+    assert seen is not None
+    assert np.abs(seen.balance.state.moved - run(stages).state.moved).max() < 0.1
+    assert seen.stays
+
+
+def test_an_outlook_tells_when_a_swing_grows() -> None:
+    below, above = (made({"mid-bust": 0.9}, volume="conventional", gain=gain) for gain in (1.5, 1.65))
+    low, high = outlook(below), outlook(above)
+    assert low is not None and high is not None  # noqa: PT018
+    assert low.growth < 1.0 < high.growth
+    assert run(above).verdict.motion == "vibrating"
+
+
+def test_of_a_calm_design_nothing_is_wrong() -> None:
+    found = treated({"mid-bust": 0.97})
+    assert (found.complaint, found.cure, found.others) == ("", None, ())
+
+
+def test_too_high_a_gain_is_lowered_no_more_than_needed() -> None:
+    found = treated({"mid-bust": 0.95}, volume="conventional", gain=1.7)
+    assert (found.complaint, found.verdict.period) == ("vibrating", pytest.approx(2.0, abs=0.1))
+    gain = cured(found).gain
+    assert gain is not None and found.bears is not None  # noqa: PT018
+    assert found.bears - 6 * GAIN_STEP < gain < found.bears < 1.7
+    assert found.onset is not None and found.onset > 1.0  # noqa: PT018
+    assert told_from_rest(cured(found)) == "settled"
+    assert told_going_on(found.stages, cured(found)) == "settled"
+
+
+@pytest.mark.parametrize("volume", ["adaptive", "exact"])
+def test_strain_is_ended_by_the_shortest_way(volume: str) -> None:
+    found = treated({"mid-bust": 0.9}, volume=volume)
+    assert found.complaint == "strained"
+    ratio = cured(found).ratio("mid-bust")
+    assert ratio > 0.9
+    assert found.longer_mm(found.cure.change) > 0.0  # type: ignore[union-attr]
+    assert told_from_rest(cured(found)) == "settled"
+    assert told_from_rest(cured(found).with_line("mid-bust", ratio - 2 * LENGTH_STEP)) == "strained"
+
+
+def test_what_nobody_can_hold_is_set_to_what_can_be_held() -> None:
+    found = treated({"mid-bust": 0.5}, volume="exact", line_hold="held")
+    assert (found.complaint, found.fight.share < 1.0) == ("unreachable", True)
+    assert cured(found).line_hold == "held"
+    assert told_from_rest(cured(found)) in ("settled", "strained")
+
+
+def test_a_late_force_is_let_act_in_step() -> None:
+    found = treated({"mid-bust": 0.95}, line_force="explicit")
+    assert found.complaint == "diverging"
+    assert cured(found) == replace(found.stages.design, line_force="implicit")
+    assert told_from_rest(cured(found)) == "settled"
+
+
+def test_locked_lines_stay_and_are_named() -> None:
+    locked = (LineTraits("mid-bust", locked=True),)
+    found = diagnose(build(replace(made({"mid-bust": 0.85}).design, traits=locked), body()))
+    assert (found.complaint, found.cure, found.locked) == ("overstrained", None, ("mid-bust",))
+    swings = replace(found.stages.design, volume="conventional", gain=1.7).with_traits(LineTraits("mid-bust"))
+    swings = swings.with_line("mid-bust", 0.95).with_traits(locked[0])
+    assert cured(diagnose(build(swings, body()))).lines == swings.lines
+
+
+def test_linked_lines_go_together() -> None:
+    pair = ready_made(read_template("168"))["straps"]
+    design = replace(body().design, own_lines=pair)
+    for line in pair:
+        design = design.with_line(line.name, 0.7)
+    found = diagnose(build(design, body()))
+    assert found.complaint in ("strained", "overstrained", "folded")
+    after = cured(found)
+    assert after.ratio("strap left") == after.ratio("strap right") > 0.7
+    assert [pull.lines for pull in found.fight.pulls] == [("strap left", "strap right"), ()]
+
+
+def test_work_is_let_go_of_at_once() -> None:
+    heard = []
+
+    def hear(what: str, share: float) -> None:
+        heard.append(what)
+        if len(heard) == 5:
+            raise Cancelled
+
+    with pytest.raises(Cancelled):
+        diagnose(made({"mid-bust": 0.9}), hear)
+    assert len(heard) == 5
