@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from app.wording.samples import sample_design
 from benchmarks.worn_pairs import only, other_mesh, scanned, worn_mesh
 from core.body import Body
 from core.calibration import compare, predicted
 from core.errors import ScanError
 from core.mesh import Mesh
 from core.pipeline import Stages, build
+from core.project import open_project
 from core.standing.upright import Pose
 from core.worn_scan.aligning import align, turned
 from core.worn_scan.comparing import Worn, laid_on
@@ -25,8 +26,9 @@ POSE = Pose("mm", "+z", "-y", np.eye(4), True, "", 0.0)
 
 @pytest.fixture(scope="module")
 def stages() -> Stages:
-    design = replace(sample_design("mannequin"), lines=(), volume="exact")
-    return build(design.with_line("mid-bust", 0.88))
+    """One line on a mannequin of 2,100 corners, as an older version kept it."""
+    small = open_project(Path(__file__).parent / "releases" / "0.1.0" / "first.busk").design
+    return build(replace(small, volume="exact").with_line("mid-bust", 0.85))
 
 
 def as_body(mesh: Mesh, pose: Pose = POSE) -> Body:
@@ -34,7 +36,8 @@ def as_body(mesh: Mesh, pose: Pose = POSE) -> Body:
 
 
 def lying(stages: Stages, seed: int = 1, **how: object) -> tuple[Worn, np.ndarray]:
-    mesh, matrix = scanned(worn_mesh(stages, stages.design), stages, np.random.default_rng(seed), **how)
+    rng, how = np.random.default_rng(seed), {"noise": 0.4, "resampled": False} | how
+    mesh, matrix = scanned(worn_mesh(stages, stages.design), stages, rng, **how)
     body = as_body(mesh)
     return laid_on("worn.ply", body, align(stages, body)), matrix
 
@@ -105,7 +108,7 @@ def test_a_worn_scan_is_laid_on_the_first_by_still_skin(stages: Stages) -> None:
     assert turn < 0.1
     assert np.linalg.norm((back @ middle - middle)[:3]) < 0.15
     assert laid.met > 0.99
-    assert 0.5 < laid.rms < 0.9, "1 mm at each vertex, less between vertices"
+    assert 0.2 < laid.rms < 0.5, "0.4 mm at each vertex, less between vertices"
     assert (laid.turns < 0.05).all()
 
 
@@ -113,7 +116,7 @@ def test_predicted_less_real_is_the_noise_where_the_prediction_is_right(stages: 
     worn, _ = lying(stages, hole=25.0)
     right = compare(stages, predicted(stages), worn)
     assert abs(right.all_of_it.mean) < 0.15
-    assert right.all_of_it.rms < 0.8
+    assert right.all_of_it.rms < 0.5
     assert 0.8 < right.all_of_it.seen < 0.99, "there is a hole"
     assert np.isnan(right.values).any()
     thick = compare(stages, predicted(stages), worn, thickness=2.0)
@@ -149,8 +152,9 @@ def test_turned_is_a_rotation_about_its_middle() -> None:
     assert matrix @ [2.0, 0.0, 3.0, 1.0] == pytest.approx([1.0, 1.0, 3.0, 1.0])
 
 
-def test_another_mesh_is_the_same_skin(stages: Stages) -> None:
-    other = other_mesh(stages.body.mesh)
-    assert len(other.vertices) != len(stages.body.mesh.vertices)
-    gaps = WornSkin(other).gaps(stages.moving.rest, stages.moving.normals(stages.moving.rest))
-    assert np.nanquantile(np.abs(gaps), 0.95) < 0.3
+def test_another_mesh_is_the_same_skin() -> None:
+    body = flat(0.0)
+    other = other_mesh(body)
+    assert not np.isin(other.vertices, body.vertices).all()
+    places = body.vertices[(np.abs(body.vertices[:, :2] - 50.0) < 40.0).all(axis=1)] + (0.0, 0.0, 1.0)
+    assert WornSkin(other).gaps(places, np.tile((0.0, 0.0, 1.0), (len(places), 1))) == pytest.approx(1.0)

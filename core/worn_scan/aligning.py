@@ -39,7 +39,7 @@ _STILL = ("side_left", "side_right", "armpit_left", "armpit_right", "back_centre
 _HEIGHTS = (0.0, -25.0, 25.0, -50.0, 50.0)  # starts above and below what landmarks tell [mm]
 _TURNS = (0.0, -0.2, 0.2)  # and turned about the vertical [rad]
 _KEPT = 0.7  # of the still skin, the nearest: the rest may be arms, or not there
-_ROUNDS, _STILL_STEP = 40, 1e-5
+_ROUNDS, _COARSE_ROUNDS, _STILL_STEP = 40, 7, 1e-5
 _SIZES = {"m": 1000.0, "inch": 25.4, "cm": 10.0, "mm": 1.0}
 
 
@@ -152,7 +152,7 @@ def _coarse(places: Points, worn: Body, starts: Iterator[Floats]) -> Floats:
     best, least = np.eye(4), np.inf
     for start in starts:
         matrix = start
-        for _ in range(12):
+        for _ in range(_COARSE_ROUNDS):
             here = moved(matrix, few)
             at = tree.query(here)[1]
             facing = normals[at]
