@@ -9,12 +9,13 @@ import pytest
 from shapes import fitted, torso
 
 from app.cli import main
-from app.lining.limits_desk import feasible_of
+from app.panels.leeway_words import sentence, tone_at
 from core.advice.limits import PRECISION, SIGNS, all_limits, limits_of, shortest
 from core.comparison import shape_of
 from core.elastics import find_elastic
 from core.errors import LineError
 from core.exact import solve_exact
+from core.leeway import leeway_of
 from core.lines import RATIO_LIMITS
 from core.mechanics import Mechanics
 from core.model import constrained_model
@@ -186,10 +187,11 @@ def test_a_line_of_elastic_ends_where_a_shorter_one_is_refused(built, contact):
     assert build(stages.design.with_line("mid-bust", end.ratio + PRECISION), stages)
     with pytest.raises(LineError, match="its table ends at 70 %"):
         build(stages.design.with_line("mid-bust", end.ratio - PRECISION), stages)
-    told = feasible_of(limits_of(stages, "mid-bust"))
-    assert (told.why, told.impossible) == ("stretched", end.ratio)
-    assert told.tone(0.52) == "bad"
-    assert "the table of its elastic ends at" in told.sentence().lower()
+    told = leeway_of(stages, "mid-bust")
+    assert told.zones[0].reasons[0].why == "stretched"
+    assert told.red_below == end.ratio
+    assert tone_at(told, 0.52) == "bad"
+    assert "eyond the table of its elastic below" in sentence(told)
 
 
 def test_a_line_of_nothing_in_particular_ends_at_no_table(built):

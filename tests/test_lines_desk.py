@@ -10,13 +10,17 @@ from window_tools import Script, drag, run_main, settled, undrawn
 
 from app.asking.editing import Editing
 from app.main_window import MainWindow
-from app.panels.length_groove import Feasible
 from app.panels.notice import Notice
 from app.presenting.lines import titled
 from core.design import Design, ScanSource
 from core.design_lines import LineTraits, OwnLine
 from core.document import Document
+from core.leeway import Leeway, Reason, Zone
 from core.presets import built_in, preset_from
+
+FOLDS_BELOW_93 = Leeway(
+    "mid-bust", (Zone("red", 0.5, 0.93, (Reason("folded", 0.5, 0.93),)), Zone("green", 0.93, 1.3))
+)
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -169,7 +173,7 @@ def preset(window: MainWindow) -> Script:
     yield settled(window)
     a_preset_that_leads_lines_otherwise_says_so_and_can_be_taken_back(window)
     row = window.lines.rows["mid-bust"]
-    window.lines_desk.feasible = lambda _: {"mid-bust": Feasible(0.95, 0.93)}
+    window.lines_desk.leeways = lambda _: {"mid-bust": (FOLDS_BELOW_93, False)}
     window.lines_desk.show_rows()
     wall = row.slider._x_of(0.93)
     drag(window, "mid-bust", round(wall - 10 - row.slider._x_of(0.97)), release=False)

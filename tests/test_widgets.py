@@ -14,13 +14,23 @@ from PySide6.QtWidgets import QApplication, QLabel, QPushButton
 from pytestqt.qtbot import QtBot
 
 from app.dress.theme import apply_theme
-from app.panels.length_groove import LONGEST, SHORTEST, Feasible
+from app.panels.length_groove import LONGEST, SHORTEST
 from app.panels.length_slider import LengthSlider
 from app.panels.line_row import LineView
 from app.panels.lines import LinesPanel
 from app.wording.words import use_language
+from core.leeway import Leeway, Reason, Zone
 
 WAIST = LineView("waist", "Waist", "#7A1F2E", 1.0, 400.0, 396.0, True, True, 700.0)
+RED_BELOW_97 = Leeway(
+    "waist",
+    (
+        Zone("red", 0.5, 0.97, (Reason("folded", 0.5, 0.97),)),
+        Zone("amber", 0.97, 0.99, (Reason("strained", 0.5, 0.99),)),
+        Zone("green", 0.99, 1.0),
+        Zone("slack", 1.0, 1.3, (Reason("slack", 1.0, 1.3),)),
+    ),
+)
 RIBS = LineView("under-bust", "Under-bust", "#5A3F94", 1.0, 390.0, None, False, True, 745.0)
 
 
@@ -199,7 +209,7 @@ def test_the_numbers_of_a_dragged_line_stay_with_the_hand(lines: LinesPanel) -> 
 @pytest.mark.parametrize(("ratio", "tone"), [(1.0, ""), (0.984, "warn"), (0.96, "bad"), (0.992, "")])
 def test_a_gap_has_the_tone_of_the_groove_at_its_length(lines: LinesPanel, ratio: float, tone: str) -> None:
     view = LineView("waist", "Waist", "#7A1F2E", ratio, 400.0, 398.0, True, True, 700.0)
-    lines.set_lines([replace(view, feasible=Feasible(strained=0.99, impossible=0.97)), RIBS])
+    lines.set_lines([replace(view, leeway=RED_BELOW_97), RIBS])
     lines.select("waist")
     shown = [each for each in lines.rows["waist"].findChildren(QLabel) if each.isVisible()]
     gap = next(each for each in shown if each.text().startswith(("+", "−")))

@@ -12,7 +12,8 @@ from window_tools import Script, points, run_main, settled, undrawn
 
 from app.lining.band_pull import STEP
 from app.main_window import MainWindow
-from app.panels.length_groove import RESISTANCE, Feasible
+from app.panels.length_groove import RESISTANCE
+from core.leeway import Leeway, Reason, Zone
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -184,7 +185,10 @@ def test_a_pulled_band_minds_links_locks_and_limits() -> None:
 
 def the_red_resists_as_in_the_slider(window: MainWindow) -> None:
     ratio, start = ratio_of(window), on_band(window, "mid-bust")
-    window.lines_desk.feasible = lambda _: {"mid-bust": Feasible(impossible=ratio - 0.01, why="folded")}
+    wall = ratio - 0.01
+    red = Zone("red", 0.5, wall, (Reason("folded", 0.5, wall),))
+    leeway = Leeway("mid-bust", (red, Zone("green", wall, 1.3)))
+    window.lines_desk.leeways = lambda _: {"mid-bust": (leeway, False)}
     window.lines_desk.show_rows()
     pull(window, start, QPoint(0, -10 - round(RESISTANCE) + 2))
     assert window.band_pull._ratio == pytest.approx(ratio - 0.01)

@@ -8,10 +8,12 @@ from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QCursor, QHelpEvent
 from PySide6.QtWidgets import QToolTip
 
-from app.panels.length_groove import LONGEST, RESISTANCE, SHORTEST, Feasible, resisted, wall_of
+from app.panels.leeway_words import refusal
+from app.panels.length_groove import LONGEST, RESISTANCE, SHORTEST, resisted, wall_of
 from app.panels.line_row import LineRow, locked_tip
 from app.showing.band_grip import BandGrip
 from app.wording.words import tr
+from core.leeway import Leeway
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -33,7 +35,7 @@ class BandPull(QObject):
         self._name = ""
         self._start = self._ratio = 1.0
         self._way = 0.0
-        self._feasible: Feasible | None = None
+        self._leeway: Leeway | None = None
         self._wall: float | None = None
         grip = self._viewport.findChild(BandGrip)
         assert grip is not None
@@ -91,8 +93,8 @@ class BandPull(QObject):
             return
         self._name, self._way = name, 0.0
         self._start = self._ratio = design.ratio(name)
-        self._feasible = row.view.feasible
-        self._wall = wall_of(self._feasible, self._start)
+        self._leeway = None if row.view.stale else row.view.leeway
+        self._wall = wall_of(self._leeway, self._start)
         self._window.job_desk.show()
 
     def _pull(self, pixels: float, fine: bool) -> None:
@@ -110,8 +112,7 @@ class BandPull(QObject):
 
     def _tell(self, stopped: bool) -> None:
         """Say why it goes no further without a stronger pull."""
-        reason = self._feasible.reason() if stopped and self._feasible is not None else ""
-        words = tr("Not this short: {reason}.").format(reason=reason) if reason else ""
+        words = refusal(self._leeway) if stopped else ""
         QToolTip.showText(QCursor.pos(), words, self._viewport)
 
     def _drop(self) -> None:

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Qt
 
-from app.panels.length_groove import Feasible
-from app.presenting.lines import line_views, pair_title, row_title
+from app.presenting.lines import Shown, line_views, pair_title, row_title
 from app.presenting.pressure import pressed_view
 from app.wording.words import number, tr
 from core.design import Design
@@ -30,7 +29,7 @@ class LinesDesk(QObject):
         super().__init__(window)
         self._window = window
         self._session = window.session
-        self.feasible: Callable[[Frame], Mapping[str, Feasible]] = lambda _: {}
+        self.leeways: Callable[[Frame], Mapping[str, Shown]] = lambda _: {}
         self._frame: Frame | None = None
         self._add_actions()
 
@@ -44,7 +43,7 @@ class LinesDesk(QObject):
         frame = self._frame
         if frame is not None:
             hidden = self._window.view.hidden_lines
-            views = line_views(frame.stages.design, frame, hidden, self.feasible(frame))
+            views = line_views(frame.stages.design, frame, hidden, self.leeways(frame))
             pressed = self._window.pressure_desk.of_elastics(frame)
             self._window.lines.set_lines([pressed_view(view, pressed) for view in views])
 

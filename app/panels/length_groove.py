@@ -1,16 +1,15 @@
-"""The groove of a line's slider: how short the line may become, seen before it is tried."""
+"""The groove of a line's slider: how far the line can go, seen before it is tried."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QBrush, QColor, QPainter, QPen
 
 from app.wording.tokens import Tokens
-from app.wording.words import number, tr
+from core.leeway import AMBER, GREEN, RED, SLACK, Leeway
 
 GROOVE_Y, GROOVE_HEIGHT = 11.0, 6.0
 """Middle of the groove below the slider's top, and its height [px]."""
@@ -22,63 +21,8 @@ RESISTANCE = 24.0
 """How much further a hand must pull to get a line into the red [px]."""
 
 _BESIDE = 0.02  # room beside a typed length that widens the groove [1]
-_AT_REST = 0.9995  # amber that begins there is not this line's doing [1]
 _GAP = 1.5  # between two zones [px]
 _QUIET, _STALE = 0.42, 0.2  # strength of the zones of a line that is not in hand, and of those not up to date
-
-
-@dataclass(frozen=True)
-class Feasible:
-    """How short a line can be set, as shares of its rest length [1]; None for what does not begin at all.
-
-    Below ``strained`` the skin strains more than it likes, below ``impossible`` there is no body to show, and
-    ``why`` says it: "overstrained", "folded", "inverted", "unreachable" where no balance is found, or
-    "stretched" where the table of the line's elastic ends.
-    ``stale`` while new limits are worked out.
-    """
-
-    strained: float | None = None
-    impossible: float | None = None
-    why: str = "folded"
-    stale: bool = False
-
-    @property
-    def amber(self) -> float | None:
-        """Where the amber begins, if some of it lies above the red."""
-        if self.strained is None or (self.impossible is not None and self.strained <= self.impossible):
-            return None
-        return self.strained
-
-    def sentence(self) -> str:
-        """Return the limits in words."""
-        parts = []
-        if self.amber is not None and self.amber >= _AT_REST:
-            parts.append(tr("Strained by the other lines already"))
-        elif self.amber is not None:
-            parts.append(tr("Strained below {percent} %").format(percent=number(100.0 * self.amber)))
-        if self.impossible is not None:
-            parts.append(self.reason())
-        words = " · ".join(part.replace(" %", "\N{NO-BREAK SPACE}%") for part in parts) or tr(
-            "No limit down to half its length."
-        )
-        return words[:1].upper() + words[1:]
-
-    def tone(self, ratio: float) -> str:
-        """Return how a set length [1] stands: "bad" in the red, "warn" in the amber, else nothing."""
-        if self.impossible is not None and ratio < self.impossible:
-            return "bad"
-        return "warn" if self.amber is not None and ratio < self.amber else ""
-
-    def reason(self) -> str:
-        """Return what is wrong in the red."""
-        words = {
-            "overstrained": tr("overstrained below {percent} %"),
-            "inverted": tr("inside out below {percent} %"),
-            "unreachable": tr("cannot be reached below {percent} %"),
-            "stretched": tr("the table of its elastic ends at {percent} %"),
-        }
-        percent = number(100.0 * (self.impossible or 0.0))
-        return words.get(self.why, tr("folds below {percent} %")).format(percent=percent)
 
 
 def ends_for(ratio: float) -> tuple[float, float]:
@@ -90,9 +34,9 @@ def ends_for(ratio: float) -> tuple[float, float]:
     )
 
 
-def wall_of(feasible: Feasible | None, ratio: float) -> float | None:
+def wall_of(leeway: Leeway | None, ratio: float) -> float | None:
     """Return the ratio at which a pull that begins at ``ratio`` meets the red, if it does [1]."""
-    red = feasible.impossible if feasible is not None else None
+    red = leeway.red_below if leeway is not None else None
     return red if red is not None and ends_for(ratio)[0] < red <= ratio else None
 
 
@@ -106,44 +50,53 @@ def paint_groove(
     tokens: Tokens,
     x_of: Callable[[float], float],
     ends: tuple[float, float],
-    feasible: Feasible | None,
+    leeway: Leeway | None,
+    *,
     strong: bool,
+    stale: bool,
 ) -> None:
     """Paint the groove between ``ends`` (ratios [1]); ``strong`` for a line that is in hand.
 
-    Longer than at rest nothing was worked out, so the groove stays plain there.
+    Zones that are ``stale`` belong to the design before: they are faint until new ones come.
     """
     painter.setPen(Qt.PenStyle.NoPen)
     short, long = x_of(ends[0]), x_of(ends[1])
-    top = GROOVE_Y - GROOVE_HEIGHT / 2
+    groove = QRectF(short, GROOVE_Y - GROOVE_HEIGHT / 2, long - short, GROOVE_HEIGHT)
     painter.setBrush(QColor(tokens.groove))
-    painter.drawRoundedRect(QRectF(short, top, long - short, GROOVE_HEIGHT), 3, 3)
-    if feasible is not None:
-        opacity = painter.opacity()
-        for start, end, colour, hatched in _zones(feasible, tokens, ends[0]):
-            left = x_of(start) + (_GAP / 2 if start > ends[0] else 0.0)
-            zone = QRectF(left, top, x_of(end) - _GAP / 2 - left, GROOVE_HEIGHT)
-            painter.setBrush(QColor(tokens.panel))
-            painter.drawRoundedRect(zone.adjusted(-_GAP, 0, _GAP, 0), 1, 1)
-            painter.setOpacity(_STALE if feasible.stale else 1.0 if strong else _QUIET)
-            painter.setBrush(QColor(colour))
-            painter.drawRoundedRect(zone, 2, 2)
-            painter.setOpacity(opacity)
-            if hatched:
-                _hatch(painter, zone, QColor(tokens.panel))
+    painter.drawRoundedRect(groove, 3, 3)
+    opacity = painter.opacity()
+    for tone, start, end in _zones(leeway, ends):
+        left = x_of(start) + (_GAP / 2 if start > ends[0] else 0.0)
+        right = x_of(end) - (_GAP / 2 if end < ends[1] else 0.0)
+        zone = QRectF(left, groove.top(), max(right - left, 1.0), GROOVE_HEIGHT)
+        painter.setBrush(QColor(tokens.panel))
+        painter.drawRoundedRect(zone.adjusted(-_GAP, 0, _GAP, 0), 1, 1)
+        painter.setOpacity(_STALE if stale else 1.0 if strong else _QUIET)
+        _paint_zone(painter, tokens, zone, tone)
+        painter.setOpacity(opacity)
     _tick(painter, x_of(1.0), QColor(tokens.control))
 
 
-def _zones(feasible: Feasible, tokens: Tokens, least: float) -> list[tuple[float, float, str, bool]]:
-    """Return start, end, colour and hatching of the zones from the least ratio to that at rest."""
-    red = min(max(feasible.impossible or least, least), 1.0)
-    amber = min(max(feasible.amber or red, red), 1.0)
-    zones = [
-        (least, red, tokens.zone_bad, True),
-        (red, amber, tokens.zone_warn, False),
-        (amber, 1.0, tokens.zone_ok, False),
-    ]
-    return [zone for zone in zones if zone[1] > zone[0]]
+def _zones(leeway: Leeway | None, ends: tuple[float, float]) -> list[tuple[str, float, float]]:
+    """Return tone, start and end of the zones that lie between the ends of the groove [1]."""
+    zones = leeway.zones if leeway is not None else ()
+    seen = [(zone.tone, max(zone.short, ends[0]), min(zone.long, ends[1])) for zone in zones]
+    return [zone for zone in seen if zone[2] > zone[1]]
+
+
+def _paint_zone(painter: QPainter, tokens: Tokens, zone: QRectF, tone: str) -> None:
+    """Paint one zone; where a line is slack the groove is hollow: nothing pulls there."""
+    colours = {GREEN: tokens.zone_ok, AMBER: tokens.zone_warn, RED: tokens.zone_bad}
+    if tone == SLACK:
+        painter.setPen(QPen(QColor(tokens.control), 1.0))
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.drawRoundedRect(zone.adjusted(0.5, 0.5, -0.5, -0.5), 2, 2)
+        painter.setPen(Qt.PenStyle.NoPen)
+        return
+    painter.setBrush(QColor(colours[tone]))
+    painter.drawRoundedRect(zone, 2, 2)
+    if tone == RED:
+        _hatch(painter, zone, QColor(tokens.panel))
 
 
 def _hatch(painter: QPainter, zone: QRectF, colour: QColor) -> None:

@@ -18,20 +18,20 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QAbstractSlider, QSizePolicy, QToolTip, QWidget
 
 from app.dress.theme import tokens_of
+from app.panels.leeway_words import hint
 from app.panels.length_groove import (
     GROOVE_HEIGHT,
     GROOVE_Y,
     LONGEST,
     RESISTANCE,
     SHORTEST,
-    Feasible,
     ends_for,
     paint_groove,
     resisted,
     wall_of,
 )
 from app.wording.tokens import LINE_COLORS
-from app.wording.words import tr
+from core.leeway import Leeway
 
 STEPS_TO_ONE = 100_000  # one step of the slider is 1/1000 %
 
@@ -42,8 +42,8 @@ _SMALLEST_WEDGE = 0.0005  # a reached length nearer to the set one shows no wedg
 class LengthSlider(QAbstractSlider):
     """A slider from 80 to 112 % with a wedge under the groove at the reached length.
 
-    It is wider where a length beyond these was typed. The groove shows how short the line may become; a hand
-    meets resistance where that ends.
+    It is wider where a length beyond these was typed. The groove shows how far the line can go, and tells
+    why where the pointer rests; a hand meets resistance in the red.
 
     ``previewed`` (share of the rest length) while the handle is dragged; ``committed`` once on release or at
     a key; ``cancelled`` when Esc ends a drag and the old value is back.
@@ -57,7 +57,8 @@ class LengthSlider(QAbstractSlider):
         super().__init__(parent)
         self._color = color
         self._reached: float | None = None
-        self._feasible: Feasible | None = None
+        self._leeway: Leeway | None = None
+        self._stale = False
         self._strong = False
         self._before_drag = 0
         self._grip = 0.0
@@ -102,10 +103,10 @@ class LengthSlider(QAbstractSlider):
             self._color = color
             self.update()
 
-    def set_feasible(self, feasible: Feasible | None) -> None:
-        """Show how short the line may become, or that this is not known."""
-        if feasible != self._feasible:
-            self._feasible = feasible
+    def set_leeway(self, leeway: Leeway | None, stale: bool = False) -> None:
+        """Show how far the line can go, or that this is not known; ``stale``: of the design before."""
+        if (leeway, stale) != (self._leeway, self._stale):
+            self._leeway, self._stale = leeway, stale
             self.update()
 
     def set_strong(self, strong: bool) -> None:
@@ -115,9 +116,9 @@ class LengthSlider(QAbstractSlider):
             self.update()
 
     def event(self, event: QEvent) -> bool:
-        if isinstance(event, QHelpEvent) and self._feasible is not None and self._is_red(event.pos().x()):
-            why = tr("Not this short: {reason}.").format(reason=self._feasible.reason())
-            QToolTip.showText(event.globalPos(), why, self)
+        if isinstance(event, QHelpEvent) and self._leeway is not None and not self._stale:
+            told = hint(self._leeway, self._ratio_under(event.pos().x()))
+            QToolTip.showText(event.globalPos(), f"{told}\n\n{self.toolTip()}", self)
             return True
         return super().event(event)
 
@@ -127,7 +128,7 @@ class LengthSlider(QAbstractSlider):
             return
         self._before_drag, self._previewed = self.value(), False
         self._grip = event.position().x() - self._x_of(self.ratio())
-        self._wall = wall_of(self._feasible, self.ratio())
+        self._wall = wall_of(None if self._stale else self._leeway, self.ratio())
         self.setSliderDown(True)
         if abs(self._grip) > _HANDLE_RADIUS + 3:
             self._grip = 0.0
@@ -170,8 +171,9 @@ class LengthSlider(QAbstractSlider):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setPen(Qt.PenStyle.NoPen)
         strong = self._strong or self.underMouse() or self.isSliderDown()
-        paint_groove(painter, tokens_of(self), self._x_of, self._ends, self._feasible, strong)
-        if self._feasible is None:
+        groove = tokens_of(self), self._x_of, self._ends, self._leeway
+        paint_groove(painter, *groove, strong=strong, stale=self._stale)
+        if self._leeway is None:
             self._paint_way(painter)
         if self._reached is not None and abs(self._reached - self.ratio()) > _SMALLEST_WEDGE:
             short, long = self._ends
@@ -214,9 +216,11 @@ class LengthSlider(QAbstractSlider):
         share = (x - _END_ROOM) / max(self.width() - 2 * _END_ROOM, 1.0)
         return self._ends[0] + share * (self._ends[1] - self._ends[0])
 
-    def _is_red(self, x: float) -> bool:
-        red = self._feasible.impossible if self._feasible is not None else None
-        return red is not None and self._ratio_at(x) < red
+    def _ratio_under(self, x: float) -> float:
+        """Return the length that is told about at a place: on the handle the set one [1]."""
+        if abs(x - self._x_of(self.ratio())) <= _HANDLE_RADIUS:
+            return self.ratio()
+        return min(max(self._ratio_at(x), self._ends[0]), self._ends[1])
 
     def _paint_way(self, painter: QPainter) -> None:
         """Darken the groove between the length at rest and the set one."""

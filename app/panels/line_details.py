@@ -10,6 +10,8 @@ from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWi
 from app.dress.parts import IconLabel, ToolButton, hairline, sentence
 from app.dress.theme import label, set_tag, set_tip
 from app.panels.elastic_pull import ElasticPull
+from app.panels.leeway_words import sentence as told
+from app.panels.leeway_words import tone_at
 from app.panels.line_parts import PaletteMenu, StiffnessField
 from app.panels.line_view import LineView, SideView
 from app.wording.words import number, tr
@@ -71,7 +73,7 @@ class LineDetails(QWidget):
             for each in figures:
                 each.setVisible(row < len(sides) and (each is not figures[0] or len(sides) > 1))
         unit = "mm" if len(sides) == 1 else ""  # two sides leave no room for it in each figure
-        tone = view.feasible.tone(ratio) if worn and view.feasible is not None else ""
+        tone = tone_at(view.leeway, ratio) if worn else ""
         for side, figures in zip(sides, self._figures, strict=False):
             _show_side(side, ratio, "" if view.elastic else tone, unit, figures, bool(view.elastic))
         made = tr("Unstretched"), tr("Reached"), tr("Stretched by")
@@ -83,13 +85,12 @@ class LineDetails(QWidget):
 
     def show_view(self, view: LineView) -> None:
         """Show limits and stiffness, and what can be done; a line that is only measured has none."""
-        limits = view.feasible
         for each in (self._set, self._tools["reset"]):
             each.setVisible(view.constrained)
-        self._limits.setVisible(limits is not None)
-        if limits is not None:
-            self._limit.setText(limits.sentence())
-            tone = limits.tone(view.ratio)
+        self._limits.setVisible(view.leeway is not None)
+        if view.leeway is not None:
+            self._limit.setText(told(view.leeway))
+            tone = tone_at(view.leeway, view.ratio)
             self._sign.show_icon("warning" if tone else "info", tone or "text_caption")
         self._pull.setVisible(view.constrained and not view.elastic)  # an elastic has its own
         self._presses.setVisible(bool(view.elastic))

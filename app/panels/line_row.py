@@ -232,7 +232,7 @@ class LineRow(QFrame):
 
     def _show_slider(self, view: LineView) -> None:
         self.slider.set_color(view.color)
-        self.slider.set_feasible(view.feasible)
+        self.slider.set_leeway(view.leeway, view.stale)
         self.slider.set_ratio(view.ratio)
         self.slider.set_reached(None if view.reached_mm is None else view.reached_mm / view.rest_mm)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.panels.length_groove import Feasible
+from core.leeway import Leeway
 
 
 @dataclass(frozen=True)
@@ -30,6 +30,7 @@ class LineView:
     ``elastic`` is what it is made of, if anything: its length is then that of the elastic unstretched.
     ``pressed`` tells what an elastic presses with and what that means, in the ``tone`` of its light; empty
     while it is not known.
+    ``leeway`` is how far it can go, None while that is not known; ``stale`` that of the design before.
     ``width_mm`` is that of its band; ``stiffness`` [1] its own, or None for the ``usual_stiffness``.
     """
 
@@ -50,7 +51,8 @@ class LineView:
     width_mm: float = 12.0
     stiffness: float | None = None
     usual_stiffness: float = 16.0
-    feasible: Feasible | None = None
+    leeway: Leeway | None = None
+    stale: bool = False
     apart: str = ""
     pair_title: str = ""
     elastic: str = ""

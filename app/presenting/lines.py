@@ -7,13 +7,13 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 from functools import cache
 
-from app.panels.length_groove import Feasible
 from app.panels.line_view import LineView, SideView
 from app.seeing.band import band_width
 from app.wording.tokens import LINE_COLORS
 from app.wording.words import listed, say, tr
 from core.design import Design
 from core.design_lines import partner_of
+from core.leeway import Leeway
 from core.lines import Line
 from core.live import Frame
 from core.splitting import can_split
@@ -24,6 +24,9 @@ LINE_COLOURS = {"full-bust": "#0A5F73", "mid-bust": "#E5536B", "under-bust": "#5
 
 OWN_COLOURS = ("#E2A32F", "#6FA3F5", "#7A1F2E", "#A9ABC9", "#8C8B2C", "#C2571A")
 """Colours of own lines, one after the other; a pair of lines for both sides shares one."""
+
+Shown = tuple[Leeway, bool]
+"""How far a line can go, and whether that was of the design before."""
 
 PALETTE = LINE_COLORS
 """The colours that a line can be given."""
@@ -110,7 +113,7 @@ def line_colours(names: Iterable[str], design: Design | None = None) -> dict[str
 
 
 def line_views(
-    design: Design, frame: Frame, hidden: Collection[str], feasible: Mapping[str, Feasible] | None = None
+    design: Design, frame: Frame, hidden: Collection[str], leeways: Mapping[str, Shown] | None = None
 ) -> list[LineView]:
     """Return the rows of the list, top line first, then own lines; a linked pair is one row."""
     lines = {line.name: line for line in frame.stages.model.lines}
@@ -119,8 +122,9 @@ def line_views(
         pair = tuple(each for each in sorted(design.linked(name)) if each in lines)
         if name == pair[0]:
             view = _view(design, frame, [lines[each] for each in pair], colour)
-            limits = (feasible or {}).get(name)
-            rows.append(replace(view, visible=not set(pair) <= set(hidden), feasible=limits))
+            leeway, stale = (leeways or {}).get(name, (None, False))
+            visible = not set(pair) <= set(hidden)
+            rows.append(replace(view, visible=visible, leeway=leeway, stale=stale))
     return rows
 
 

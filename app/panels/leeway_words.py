@@ -1,0 +1,120 @@
+"""What is said of the leeway of a line: the zone of a length, its number and its reason."""
+
+from __future__ import annotations
+
+from app.wording.words import number, tr
+from core.leeway import AMBER, GREEN, RED, SLACK, Leeway, Reason, Zone
+from core.lines import RATIO_LIMITS
+from core.sewing.comfort import comfort
+
+_TONES = {AMBER: "warn", RED: "bad"}
+_AT_REST = 0.9995  # slack that begins there needs no word: any line is, set longer than at rest [1]
+
+
+def tone_at(leeway: Leeway | None, ratio: float) -> str:
+    """Return how a set length [1] stands: "bad" in the red, "warn" in the amber, else nothing."""
+    return _TONES.get(leeway.at(ratio).tone, "") if leeway is not None else ""
+
+
+def sentence(leeway: Leeway) -> str:
+    """Return in one line where a line stops being well, from long to short."""
+    reasons = dict.fromkeys(reason for zone in leeway.zones for reason in _told(zone))
+    slack = [each for each in reasons if each.tone == SLACK and each.short < _AT_REST]
+    amber = [each for each in reasons if each.tone == AMBER]
+    first = [each for each in reasons if each.tone == RED][:1]
+    order = [*slack, *sorted(amber, key=lambda each: -each.long), *first]
+    words = " · ".join(_glued(placed(each)) for each in order) or tr("No limit down to half its length.")
+    return words[:1].upper() + words[1:]
+
+
+def hint(leeway: Leeway, ratio: float) -> str:
+    """Return what is told where the pointer rests: the zone of a length [1], and why it is one."""
+    zone = leeway.at(ratio)
+    lines = [_range(_name(zone), zone.short, zone.long)]
+    lines += [f"{_upper(placed(each))}: {meaning(each)}." for each in _told(zone)]
+    if zone.tone == GREEN:
+        lines += [_upper(_range(_name(each), each.short, each.long)) for each in _beside(leeway, zone)]
+        if not leeway.pressure_known:
+            lines.append(tr("Pressure is not looked at: it is made of no elastic."))
+    return "\n".join(_glued(line) for line in lines)
+
+
+def refusal(leeway: Leeway | None) -> str:
+    """Return why a hand meets resistance, empty if there is nothing red below."""
+    reasons = _told(leeway.zones[0]) if leeway is not None and leeway.zones[0].tone == RED else ()
+    return tr("Not this short: {reason}.").format(reason=placed(reasons[0])) if reasons else ""
+
+
+def placed(reason: Reason) -> str:
+    """Return a reason in a few words, and the lengths that it holds for."""
+    words = {
+        "strained": tr("strained"),
+        "vibrating": tr("would vibrate"),
+        "pressing": tr("presses too much"),
+        "slack": tr("slack"),
+        "overstrained": tr("overstrained"),
+        "folded": tr("folds"),
+        "inverted": tr("inside out"),
+        "stretched": tr("beyond the table of its elastic"),
+        "unreachable": tr("cannot be reached"),
+    }[reason.why]
+    if reason.always:
+        return tr("{what} by the other lines, whatever this one does").format(what=words)
+    where = _range(words, reason.short, reason.long)
+    return tr("{where} (by the other lines)").format(where=where) if _of_others(reason) else where
+
+
+def meaning(reason: Reason) -> str:
+    """Return what a reason means, with the number at which it begins."""
+    return {
+        "strained": tr("skin is stretched or pressed together by more than 20 % somewhere"),
+        "vibrating": tr("turns with the conventional force do not come to rest"),
+        "pressing": tr("its band presses with more than {kpa} kPa somewhere").format(
+            kpa=number(comfort().red_kpa, 0)
+        ),
+        "slack": tr("it would have to push, which no band can"),
+        "overstrained": tr("skin is stretched or pressed together by more than 30 % somewhere"),
+        "folded": tr("a triangle of the control mesh turns to its side"),
+        "inverted": tr("a triangle of the control mesh shows its back"),
+        "stretched": tr("nothing is known of the elastic there"),
+        "unreachable": tr("no balance is found there"),
+    }[reason.why]
+
+
+def _told(zone: Zone) -> tuple[Reason, ...]:
+    """Return the reasons that make a zone what it is."""
+    return tuple(reason for reason in zone.reasons if reason.tone == zone.tone)
+
+
+def _beside(leeway: Leeway, zone: Zone) -> tuple[Zone, ...]:
+    """Return the zones beside one, the shorter first."""
+    at = leeway.zones.index(zone)
+    return (*leeway.zones[max(at - 1, 0) : at], *leeway.zones[at + 1 : at + 2])
+
+
+def _of_others(reason: Reason) -> bool:
+    return reason.others and reason.tone != SLACK
+
+
+def _name(zone: Zone) -> str:
+    return {GREEN: tr("Green"), AMBER: tr("Amber"), RED: tr("Red"), SLACK: tr("Slack")}[zone.tone]
+
+
+def _range(what: str, short: float, long: float) -> str:
+    low, high = RATIO_LIMITS
+    figures = {"short": number(100.0 * short), "long": number(100.0 * long)}
+    if short <= low and long >= high:
+        return tr("{what} at any length").format(what=what)
+    if short <= low:
+        return tr("{what} below {long} %").format(what=what, **figures)
+    if long >= high:
+        return tr("{what} above {short} %").format(what=what, **figures)
+    return tr("{what} from {short} to {long} %").format(what=what, **figures)
+
+
+def _glued(words: str) -> str:
+    return words.replace(" %", "\N{NO-BREAK SPACE}%")
+
+
+def _upper(words: str) -> str:
+    return words[:1].upper() + words[1:]
