@@ -1,0 +1,151 @@
+"""The doctor in the window: what the notice says, its button as one step, and when it keeps quiet."""
+
+from __future__ import annotations
+
+import pytest
+from window_tools import Script, run_main, settled, undrawn
+
+from app.desks.doctor_desk import ABOUT
+from app.main_window import MainWindow
+from app.panels.notice import REFUSED, Notice
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+def notice_of(window: MainWindow) -> Notice:
+    notice = window.notices.notice()
+    assert notice is not None
+    return notice
+
+
+def told(window: MainWindow) -> bool:
+    """Whether the doctor has said what he found: then there are figures to unfold."""
+    notice = window.notices.notice()
+    return notice is not None and bool(notice.details) and window.doctor_desk._job is None
+
+
+def words(window: MainWindow) -> list[str]:
+    return [text for text, _ in notice_of(window).actions]
+
+
+def test_a_vibration_is_told_at_once_and_ended_by_one_button() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.session.choose_control("conventional")
+        window.session.change({"gain": 1.7}, "gain")
+        yield settled(window)
+        assert "does not come to rest" in notice_of(window).sentence
+        assert words(window) == ["Use Adaptive"]
+        yield lambda: told(window)
+        notice = notice_of(window)
+        assert notice.sentence.startswith(
+            "Mid-bust and the volume pull against each other: the bust point swings"
+        )
+        assert notice.sentence.endswith("every 2 turns.")
+        said, other = words(window)
+        assert (said[:18], other) == ("Lower the gain to ", "Use Adaptive")
+        assert "that this shape bears" in notice.details
+        steps = window.session.undo_stack.count()
+        window.notices._buttons[0].click()
+        yield settled(window)
+        frame = window.session.frame
+        assert frame is not None
+        assert frame.verdict.told == "settled"
+        assert window.session.undo_stack.count() == steps + 1
+        assert window.session.undo_stack.undoText() == said
+        assert window.notices.notice() is None
+        window.actions_.undo.trigger()
+        yield settled(window)
+        yield lambda: told(window)
+        assert words(window)[0] == said
+
+    run_main([], script)
+
+
+def test_strain_is_told_calmly_once_and_never_again() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.session.preview_line("mid-bust", 0.9)
+        yield lambda: window.session.frame is not None and not window.session.frame.at_work
+        assert not window.doctor_desk._later.isActive(), "while a hand drags nothing is said"
+        window.lines_desk.commit_length("mid-bust", 0.9)
+        yield settled(window)
+        assert window.notices.notice() is None
+        assert window.doctor_desk._later.isActive(), "who is still at work hears nothing"
+        yield lambda: told(window)
+        assert notice_of(window).tone == "info"
+        assert not notice_of(window).lasting
+        assert words(window)[0].startswith("Lengthen Mid-bust by ")
+        window.notices.close_notice()
+        window.lines_desk.commit_length("mid-bust", 0.95)
+        yield settled(window)
+        window.actions_.undo.trigger()
+        yield settled(window)
+        assert not window.doctor_desk._later.isActive()
+        window.doctor_desk.ask()
+        yield lambda: told(window)
+        window.notices._buttons[0].click()
+        yield settled(window)
+        frame = window.session.frame
+        assert frame is not None
+        assert frame.verdict.told == "settled"
+
+    run_main([], script)
+
+
+def test_a_length_that_was_refused_gets_the_nearest_that_is_not() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.session.change({"line_hold": "held", "volume": "exact"}, "held")
+        yield settled(window)
+        window.lines_desk.commit_length("mid-bust", 0.5)
+        yield lambda: told(window)
+        notice = notice_of(window)
+        assert (notice.tone, notice.about) == ("bad", REFUSED)
+        assert notice.sentence == "Mid-bust cannot be held at 50.0 % of its rest length."
+        assert "pull against each other" in notice.hint
+        assert words(window)[0].startswith("Set Mid-bust to ")
+        window.notices._buttons[0].click()
+        yield settled(window)
+        design = window.session.design
+        assert design is not None
+        assert 0.8 < design.ratio("mid-bust") < 0.95
+        assert f"{100.0 * design.ratio('mid-bust'):.1f} %" in window.session.undo_stack.undoText()
+
+    run_main([], script)
+
+
+def test_asked_of_a_calm_design_he_says_that_nothing_is_wrong() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        (command,) = (each for _, each in window.actions_.all() if each.text() == "What is wrong here?")
+        command.trigger()
+        yield lambda: told(window)
+        assert notice_of(window).tone == "ok"
+        assert notice_of(window).sentence.startswith("Nothing is wrong")
+        window.lines_desk.commit_length("mid-bust", 0.97)
+        yield lambda: window.notices.notice() is None
+        assert not [each for each in window.notices._waiting if each.about == ABOUT]
+
+    run_main([], script)
+
+
+def test_what_was_edited_meanwhile_is_not_told_of() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.lines_desk.commit_length("mid-bust", 0.6)
+        yield lambda: window.doctor_desk._job is not None
+        job = window.doctor_desk._job
+        assert notice_of(window).sentence.startswith("The skin folds over")
+        window.lines_desk.commit_length("mid-bust", 0.96)
+        yield settled(window)
+        assert job is not None
+        assert not job.wanted
+        assert window.notices.notice() is None
+
+    run_main([], script)
