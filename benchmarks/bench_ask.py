@@ -3,7 +3,8 @@
 Run: python benchmarks/bench_ask.py [FOLDER] [--cases N] [--elastic N]; scans of a folder come
 to the two samples.
 In each of 200 cases glued or sliding lines, a set of them and their lengths are drawn by chance, such that
-the body looks natural; one to three figures of what comes out are asked for, with all lines at 100 %.
+the body looks natural; one to three figures of what comes out are asked for, with all lines at 100 %, in
+every fourth case the profile through a bust point.
 Then 40 cases with two lines of elastic, from 97 %, that press no more than they may.
 Prints a line for each case, then what is met, what is missed, and processor time; --put puts that table into
 docs/ask.md.
@@ -25,6 +26,7 @@ from app.wording.samples import SAMPLES, sample_design
 from core.aims.answers import free_lines
 from core.aims.figure import Goal
 from core.aims.girth import GIRTH
+from core.aims.outline import profile_name
 from core.aims.readings import NAMES, reading
 from core.design import Design, ScanSource
 from core.elastics import find_elastic
@@ -39,6 +41,7 @@ from core.solution import run
 
 MET = 0.5  # mm
 SHORTEST, SHORTEST_ELASTIC, LOOSE = 0.85, 0.75, 0.97
+HEIGHTS = 5.0  # of a profile [mm]
 ELASTICS = ("plush 12", "picot 10", "picot 12")
 TIMES = ("in the middle", "at 95 %", "at most")
 
@@ -120,11 +123,23 @@ def known(rng: np.random.Generator, start: Stages) -> tuple[Stages, np.ndarray]:
             return stages, points
 
 
-def case(rng: np.random.Generator, start: Stages) -> Case:
+def figures(rng: np.random.Generator, start: Stages) -> list[str]:
+    """Return one to three figures by chance, no more than lines are free."""
+    count = int(rng.integers(1, 1 + min(3, len(list(free_lines(start))))))
+    return [str(name) for name in rng.choice(NAMES, count, replace=False)]
+
+
+def profile(rng: np.random.Generator, start: Stages) -> list[str]:
+    """Return the figures of a profile of some side, where the body can be reshaped."""
+    heights = start.control.mesh.vertices[~start.control.fixed, 2]
+    section = str(rng.choice(["left", "right"]))
+    return [profile_name(section, height) for height in np.arange(heights.min(), heights.max(), HEIGHTS)]
+
+
+def case(rng: np.random.Generator, start: Stages, *, curve: bool = False) -> Case:
     """Return how one question by chance is answered."""
     truth, points = known(rng, start)
-    count = int(rng.integers(1, 1 + min(3, len(list(free_lines(start))))))
-    names = rng.choice(NAMES, count, replace=False).tolist()
+    names = profile(rng, start) if curve else figures(rng, start)
     goals = tuple(Goal(name, reading(truth, name)(points).value) for name in names)
     begun = time.process_time()
     reply = ask(start, goals)
@@ -149,8 +164,9 @@ def main() -> None:
     for number in range(options.cases + options.elastic):
         elastic = number >= options.cases
         dressed = (of_elastic if elastic else worn)(rng, on[number % len(on)])
-        (made if elastic else cases).append(done := case(rng, dressed))
-        goals = ", ".join(f"{goal.name} {goal.value:.1f}" for goal in done.goals)
+        curve = not elastic and number % 4 == 3
+        (made if elastic else cases).append(done := case(rng, dressed, curve=curve))
+        goals = ", ".join(f"{goal.name} {goal.value:.1f}" for goal in done.goals[:3])
         told = "" if done.told else ", told not to be reached"
         print(
             f"{done.miss:8.4f} mm {1e3 * done.seconds:6.0f} ms {done.answers:3} {done.name}: {goals}{told}",
@@ -162,6 +178,8 @@ def main() -> None:
         "glued": [each for each in cases if ", glued, " in each.name],
         "sliding": [each for each in cases if ", sliding, " in each.name],
         "a girth and another figure": [each for each in girths if len(each.goals) == 2],
+        "an apex, with or without others": [each for each in cases if asks(each, "apex ")],
+        "a profile, every 5 mm": [each for each in cases if asks(each, "profile ")],
         "beside these: lines of elastic": made,
     }
     rows = [(name, *row(chosen)) for name, chosen in groups.items() if chosen]
@@ -170,6 +188,11 @@ def main() -> None:
     print(told)
     if options.put:
         put("ask.md", "asked", told)
+
+
+def asks(case: Case, begins: str) -> bool:
+    """Tell whether any figure of a case has a name that begins so."""
+    return any(goal.name.startswith(begins) for goal in case.goals)
 
 
 def row(cases: list[Case]) -> tuple[str, ...]:

@@ -75,7 +75,7 @@ def answer_words(reply: Reply, goals: Sequence[Goal]) -> str:
         said = tr("Nearest so far: {nearest}. Lengths, elastics and pressures did not come to agree.")
         return said.format(nearest=nearest)
     said = tr("Not reachable: nearest is {nearest}, because {reasons}.")
-    return said.format(nearest=nearest, reasons=tr(" and ").join(_reasons(reply)))
+    return said.format(nearest=nearest, reasons=tr(", and ").join(_reasons(reply)))
 
 
 def _nearest(reply: Reply, goals: Sequence[Goal]) -> Iterable[str]:

@@ -1,0 +1,91 @@
+"""What the window says while the result is asked for, in both languages."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from app.presenting.asking import answer_words, change_words, figure_title, kept_words, step_words
+from app.wording.samples import sample_design
+from app.wording.words import speaking
+from core.aims.figure import Goal
+from core.aims.outline import profile_name
+from core.aims.readings import NAMES
+from core.design import Design
+from core.request import Reply
+
+
+def design() -> Design:
+    return sample_design().with_line("mid-bust", 0.93).with_line("full-bust", 0.999)
+
+
+def reply(**changes: object) -> Reply:
+    plain = Reply(
+        design(), {"lift": 2.04}, False, 1.0, (), (), False, True, {}, 4.0, (), 1.0, 3, longest=0.999
+    )
+    return replace(plain, **changes)
+
+
+GOALS = (Goal("lift", 5.0),)
+
+
+@pytest.mark.parametrize(
+    ("changes", "english", "japanese"),
+    [
+        ({"reachable": True}, "Reached.", "到達できます。"),
+        (
+            {"at_end": ("full-bust", "mid-bust")},
+            "Not reachable: nearest is Bust point up +2.0 mm, because Mid-bust may not be shorter, and "
+            "Full bust may not be longer.",
+            "到達できません。最も近いのは BPの上昇 +2.0 mm。理由：バスト下部はこれ以上短くできません、"
+            "バスト上部はこれ以上長くできません。",
+        ),
+        (
+            {"pressing": ("mid-bust",), "strained": True},
+            "Not reachable: nearest is Bust point up +2.0 mm, because Mid-bust may not press more than 4.0 "
+            "kPa, and the body would be strained more than looks natural.",
+            "到達できません。最も近いのは BPの上昇 +2.0 mm。理由：バスト下部は 4.0 kPa を超えて押せません、"
+            "肌の伸縮が自然な範囲を超えます。",
+        ),
+        (
+            {"agreed": False},
+            "Nearest so far: Bust point up +2.0 mm. Lengths, elastics and pressures did not come to agree.",
+            "これまでで最も近い結果：BPの上昇 +2.0 mm。長さ、ゴム、圧力が折り合いませんでした。",
+        ),
+    ],
+)
+def test_an_answer_is_one_sentence(changes: dict[str, object], english: str, japanese: str) -> None:
+    answer = reply(**changes)
+    assert answer_words(answer, GOALS) == english
+    with speaking("ja"):
+        assert answer_words(answer, GOALS) == japanese
+
+
+def test_of_a_profile_it_is_told_how_far_it_is_off() -> None:
+    heights = [profile_name("left", 300.0), profile_name("left", 310.0)]
+    goals = [Goal(name, 100.0) for name in heights]
+    answer = reply(reached={heights[0]: 103.0, heights[1]: 96.0})
+    said = "Profile through the left bust point off by 3.5 mm in the mean, 4.0 mm at most"
+    assert said in answer_words(answer, goals)
+    assert step_words([*GOALS, *goals]) == (
+        "Asked for: Bust point up +5.0 mm, Profile through the left bust point"
+    )
+
+
+def test_changes_are_told_line_by_line_and_what_presses() -> None:
+    before = design().with_line("mid-bust", 0.95)
+    assert change_words(before, reply(pressure={"mid-bust": 2.46})) == [
+        "Mid-bust 95.0 → 93.0 %",
+        "presses with 2.5 kPa at most",
+    ]
+    assert change_words(design(), reply()) == ["No line changes"]
+    assert kept_words(design(), ["mid-bust", "strap left"]) == "Locked, so kept: Mid-bust."
+    assert kept_words(design(), []) == ""
+
+
+def test_every_figure_has_a_title_of_its_own_in_both_languages() -> None:
+    titles = {figure_title(name) for name in NAMES}
+    assert len(titles) == len(NAMES)
+    with speaking("ja"):
+        assert not titles & {figure_title(name) for name in NAMES}
