@@ -165,6 +165,8 @@ class Layout(QObject):
             window.ask_desk.leave()
         elif window.inspector.panel() is window.model:
             window.model.left.emit()
+        elif window.inspector.panel() is window.worn_desk.page:
+            window.worn_desk.page.left.emit()
         elif window.view.beside.way in ("wipe", "side"):
             window.view.compare_by("after")
         else:

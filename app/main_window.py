@@ -36,6 +36,7 @@ from app.keeping.recovery_desk import RecoveryDesk
 from app.keeping.spread_desk import SpreadDesk
 from app.keeping.variant_desk import VariantDesk
 from app.keeping.variant_figures import VariantFigures
+from app.keeping.worn_desk import WornDesk
 from app.layout import Layout
 from app.lining.ask_desk import AskDesk
 from app.lining.band_pull import BandPull
@@ -109,7 +110,8 @@ class MainWindow(QMainWindow):
         self.variant_figures = VariantFigures(self, self.variants)
         self.measures_desk, self.spread_desk = MeasuresDesk(self, self.result), SpreadDesk(self, self.result)
         self.own_measures_desk = OwnMeasuresDesk(self, self.result)
-        self.even_desk = EvenDesk(self, self.result)
+        self.even_desk, self.worn_desk = EvenDesk(self, self.result), WornDesk(self, self.result)
+        self.inspector.add("worn", self.worn_desk.page)
         self.pressure_desk = PressureDesk(self, self.garment)
         self.map_desk, self.section_desk = MapDesk(self), SectionDesk(self)
         self.start_desk, self.plot_desk = StartDesk(self), PlotDesk(self)

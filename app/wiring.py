@@ -60,9 +60,13 @@ def _connect_session(window: MainWindow) -> None:
     session.frame_ready.connect(lambda *_: window.pressure_desk.follow())
     session.frame_ready.connect(lambda *_: window.even_desk.follow())
     for changed in (session.frame_ready, session.design_changed):
+        changed.connect(lambda *_: window.worn_desk.follow())
+    for changed in (session.frame_ready, session.design_changed):
         changed.connect(lambda *_: window.spread_desk.follow())
     window.spread_desk.found.connect(window.measures_desk.show_spread)
     window.spread_desk.found.connect(window.section_desk.show_spread)
+    window.spread_desk.found.connect(window.report_desk.follow)
+    window.report_desk.action.triggered.connect(window.spread_desk.follow)
     session.frame_ready.connect(window.export_desk.show_frame)
     session.frame_ready.connect(lambda *_: window.report_desk.follow())
     session.design_changed.connect(lambda *_: window.report_desk.follow())
@@ -176,6 +180,7 @@ def _connect_maps(window: MainWindow) -> None:
     tools["section"].triggered.connect(section.set_on)
     maps.changed.connect(section.refresh)
     maps.changed.connect(window.even_desk.follow_map)
+    maps.changed.connect(window.worn_desk.follow)
     window.even_desk.found.connect(maps.refresh)
     window.landmarks.landmark_selected.connect(section.follow_landmark)
     view.viewport.pin_pressed.connect(section.follow_landmark)

@@ -23,6 +23,13 @@ def ask_open(parent: QWidget) -> str:
     return path
 
 
+def ask_scan(parent: QWidget, title: str) -> str:
+    """Return the scan that the user wants to compare with, or an empty text."""
+    kinds = f"{tr('Scans')} ({PATTERNS})"
+    path, _ = QFileDialog.getOpenFileName(parent, title, str(last_folder("opened")), kinds)
+    return path
+
+
 def ask_table(parent: QWidget, title: str) -> str:
     """Return the table that the user wants to bring in, or an empty text."""
     kinds = "CSV (*.csv *.tsv *.txt)"

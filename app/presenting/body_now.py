@@ -73,7 +73,9 @@ class BodyNow:
 
     def at_rest(self, name: str) -> Floats:
         """Return the values of a map at all vertices of the body at rest, (n,); they are the caller's own."""
-        return self._sides_at_rest.copy() if name == "sides" else np.zeros(len(self.rest.vertices))
+        if name == "sides":
+            return self._sides_at_rest.copy()
+        return np.full(len(self.rest.vertices), np.nan if name == "worn" else 0.0)
 
     def pulls(self) -> dict[str, Floats]:
         """Return how the segments of the worn lines pull, by line, each (k,) [%]."""

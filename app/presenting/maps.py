@@ -21,10 +21,17 @@ from core.sewing.comfort import comfort
 LINE_MAPS = ("pull", "pressure")
 """Maps that lie on the bands."""
 
-MAPS = ("displacement", "strain", "sides", *LINE_MAPS)
+MAPS = ("displacement", "strain", "sides", "worn", *LINE_MAPS)
 """Maps in the order in which a key goes through them."""
 
-_LEAST = {"sides": 5.0, "pressure": 5.0}  # no map shows less than this [mm, kPa]; both limits are seen
+BOTH_WAYS = ("displacement", "sides", "worn")
+"""Maps whose values go both ways from zero."""
+
+_LEAST = {
+    "sides": 5.0,
+    "worn": 5.0,
+    "pressure": 5.0,
+}  # no map shows less than this [mm, kPa]; both limits are seen
 _ROUND = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 
 
@@ -62,6 +69,14 @@ def _skin_maps() -> list[MapKind]:
                 "trunk without the breasts matches best."
             ),
             tr("+ stands out more than the other side"),
+            both_ways=True,
+        ),
+        MapKind(
+            "worn",
+            tr("Predicted less real"),
+            "mm",
+            tr("How far the predicted skin stands before (+) or behind (−) that of the worn scan."),
+            tr("+ predicted further out than real"),
             both_ways=True,
         ),
     ]
@@ -121,7 +136,7 @@ def bridge_words(off: float) -> str:
 
 def ramp_of(name: str, low: float, high: float, clay: str) -> Ramp:
     """Return the colours of a map between two values; zero is the colour "#rrggbb" of the body's material."""
-    if name in ("displacement", "sides"):
+    if name in BOTH_WAYS:
         return Ramp((*MAP_LESS, clay, *MAP_MORE), low, high, clay)
     return Ramp((clay, *MAP_AMOUNT), low, high, clay)
 
@@ -132,7 +147,7 @@ def automatic_range(name: str, values: Floats) -> tuple[float, float]:
         return 0.0, 100.0
     seen = np.abs(values[np.isfinite(values)])
     high = rounded_up(max(float(seen.max(initial=0.0)), _LEAST.get(name, 1.0)))
-    return (-high, high) if name in ("displacement", "sides") else (0.0, high)
+    return (-high, high) if name in BOTH_WAYS else (0.0, high)
 
 
 def rounded_up(value: float) -> float:

@@ -51,7 +51,8 @@ class MapDesk(QObject):
         self._window, self._view = window, window.view
         self._kinds = {kind.name: kind for kind in map_kinds()}
         self.name = ""
-        self._seen = MapValues(self._view.beside, window.pressure_desk)
+        desks = window.pressure_desk, window.even_desk, window.worn_desk
+        self._seen = MapValues(self._view.beside, *desks)
         self.pinned: tuple[Pinned, ...] = ()
         self._flagged: tuple[Pinned, ...] = ()
         self._by_hand: dict[str, tuple[float, float]] = {}
@@ -78,6 +79,7 @@ class MapDesk(QObject):
         self.flags.pinned.connect(self.pin)
         self.flags.pulled.connect(self.unpin)
         self._window.pressure_desk.found.connect(self.refresh)
+        self._window.worn_desk.compared.connect(self.refresh)
         self._window.pressure_desk.place_asked.connect(self.look_at_most)
 
     @property
@@ -89,7 +91,7 @@ class MapDesk(QObject):
 
     def cycle(self) -> None:
         """Go on to the next map, and after the last one to none."""
-        names = ("", *MAPS)
+        names = ("", *(name for name in MAPS if name != "worn" or self._window.worn_desk.worn))
         self.choose(names[(names.index(self.name) + 1) % len(names)])
 
     def choose(self, name: str) -> None:
@@ -194,7 +196,7 @@ class MapDesk(QObject):
 
     def _values_of(self, view: BodyView) -> Floats:
         now = self._seen.now_of(view)
-        return self._values if now is None or now is self.now else now.values(self.name)
+        return self._values if now is None or now is self.now else self._seen.on_skin(self.name, now)
 
     def _read(self, frame: Frame) -> None:
         """Read the values off the bodies and choose the range that they are shown in."""
@@ -208,10 +210,9 @@ class MapDesk(QObject):
             said = self._seen.note(self.name, self._on_bands[bodies[0]])
             self.legend.show_note(said or self._kinds[self.name].note)
         else:
-            if self.name == "sides":
-                said = self._window.even_desk.note(frame, self._view.after)
-                self.legend.show_note(said or self._kinds[self.name].note)
-            self._values, self._on_bands = self.now.values(self.name), {}
+            said = self._seen.skin_note(self.name, frame, self._view.after)
+            self.legend.show_note(said or self._kinds[self.name].note)
+            self._values, self._on_bands = self._seen.on_skin(self.name, self.now), {}
             beside = [self._values] + [self._values_of(view) for view in bodies[1:]]
         values = np.concatenate([np.empty(0), *beside])
         by_hand, (low, high) = self._by_hand.get(self.name), automatic_range(self.name, values)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from weakref import WeakKeyDictionary
 
+from app.keeping.even_desk import EvenDesk
 from app.keeping.pressure_desk import PressureDesk
+from app.keeping.worn_desk import WornDesk
 from app.presenting.body_now import BodyNow
 from app.presenting.maps import pressure_note
 from app.viewing.band_map import BandValues, pressures_on, pulls_on
@@ -12,14 +14,15 @@ from app.viewing.beside import Beside
 from app.viewing.body_view import BodyView
 from app.wording.words import tr
 from core.live import Frame
+from core.mesh import Floats
 from core.press_list import PressList
 
 
 class MapValues:
     """Reads maps off the bodies that ``beside`` shows; ``now`` is the session's own, once there is one."""
 
-    def __init__(self, beside: Beside, pressure: PressureDesk) -> None:
-        self._beside, self._pressure = beside, pressure
+    def __init__(self, beside: Beside, pressure: PressureDesk, even: EvenDesk, worn: WornDesk) -> None:
+        self._beside, self._pressure, self._even, self._worn = beside, pressure, even, worn
         self.now: BodyNow | None = None
         self._others: WeakKeyDictionary[BodyView, BodyNow] = WeakKeyDictionary()
         self._pressed: WeakKeyDictionary[BodyNow, PressList | None] = WeakKeyDictionary()
@@ -40,6 +43,16 @@ class MapValues:
         if now is None or now.frame is not view.frame:
             now = self._others[view] = BodyNow(view.frame)
         return now
+
+    def on_skin(self, name: str, now: BodyNow) -> Floats:
+        """Return the values of a map on the skin of one of the bodies, at its ``rows`` (k,) [mm, %]."""
+        return self._worn.values(now.frame) if name == "worn" else now.values(name)
+
+    def skin_note(self, name: str, frame: Frame, after: bool) -> str:
+        """Return what is to be said first of a map on the skin, or nothing."""
+        if name == "sides":
+            return self._even.note(frame, after)
+        return self._worn.note(frame) if name == "worn" else ""
 
     def on_bands(self, name: str, view: BodyView) -> BandValues:
         """Return the values of a map on the bands of one of the bodies, or those of its former shape."""

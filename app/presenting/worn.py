@@ -1,0 +1,156 @@
+"""What the window says of a worn scan: how it lies, predicted less real, the numbers that were found."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from app.panels.worn_page import FigureRow, NumberRow
+from app.presenting.lines import line_title
+from app.wording.words import joined, listed, number, tr
+from core.calibration import Difference, Figures, Found, Worn
+from core.design import Design
+from core.design_calibration import Calibration, FoundNumber
+from core.mesh import Floats
+from core.worn_scan.numbers import FIRM_CHEST, LENGTH, LINE_STIFFNESS, PRESTRESS, STIFFNESS, TISSUE
+
+
+def aligned_words(worn: Worn) -> str:
+    """Return how well a worn scan lies on the first, in a sentence or two."""
+    laid = worn.alignment
+    met = tr("{share} % of the skin that no line moves lies within 5 mm of it; {mm} mm in the mean.").format(
+        share=number(100.0 * laid.met, 0), mm=number(laid.rms, 1)
+    )
+    sure = tr("Sure to ±{turn}° and ±{mm} mm.").format(
+        turn=number(2.0 * float(laid.turns.max()), 2), mm=number(2.0 * float(laid.shifts.max()), 1)
+    )
+    return joined([met, sure])
+
+
+def figure_rows(difference: Difference) -> tuple[FigureRow, ...]:
+    """Return predicted less real in rows: all, her left, her right."""
+    named = {"left": tr("Left"), "right": tr("Right")}
+    rows = [(tr("Moving skin"), difference.all_of_it)]
+    rows += [(named[side], figures) for side, figures in difference.sides.items()]
+    return tuple(FigureRow(title, *_figures(figures)) for title, figures in rows)
+
+
+def _figures(figures: Figures) -> tuple[str, str, str]:
+    if not np.isfinite(figures.rms):
+        return "–", "–", "–"
+    return number(figures.mean, 1, True), number(figures.rms, 1), number(figures.most, 1)
+
+
+def map_values(difference: Difference | None, count: int) -> Floats:
+    """Return predicted less real at ``count`` vertices, (count,) [mm]: no number where it is not known."""
+    values = np.full(count, np.nan)
+    if difference is not None:
+        values[: len(difference.values)] = difference.values
+    return values
+
+
+def bust_words(difference: Difference) -> str:
+    """Return how far the predicted bust points lie from the real ones, in a sentence."""
+    if not difference.bust_points:
+        return tr("The bust points do not show surely on the worn scan.")
+    named = {
+        "left": tr("Left bust point: predicted {up} mm higher, {out} mm further out."),
+        "right": tr("Right bust point: predicted {up} mm higher, {out} mm further out."),
+    }
+    return joined(
+        [
+            named[side].format(up=number(float(way[2]), 1, True), out=number(-float(way[1]), 1, True))
+            for side, way in difference.bust_points.items()
+        ]
+    )
+
+
+def told_words(difference: Difference) -> str:
+    """Return what is said under the figures: the bust points, and how much is compared at all."""
+    return joined([bust_words(difference), shown_words(difference)])
+
+
+def shown_words(difference: Difference) -> str:
+    """Return how much of the moving skin the worn scan shows, where that is not nearly all."""
+    share = difference.all_of_it.seen
+    said = tr("The worn scan shows {share} % of the moving skin.").format(share=number(100.0 * share, 0))
+    return "" if share > 0.9 else said
+
+
+def number_rows(found: Found, design: Design) -> tuple[NumberRow, ...]:
+    """Return the numbers that were found, in rows."""
+    return tuple(
+        NumberRow(
+            number_title(each.name, design),
+            value_words(each, each.before),
+            value_words(each, each.after),
+            f"±{value_words(each, each.plus_minus)}",
+        )
+        for each in found.calibration.numbers
+        if not each.kept
+    )
+
+
+def kept_words(found: Found, design: Design) -> str:
+    """Return which numbers stay as they are, since the scans do not tell them."""
+    names = [number_title(each.name, design) for each in found.calibration.numbers if each.kept]
+    return tr("As they were, since these scans do not tell them: {numbers}.").format(
+        numbers=listed(names)
+    ) if names else ""  # fmt: skip
+
+
+def number_title(name: str, design: Design) -> str:
+    """Return what a number is called."""
+    kind, _, line = name.partition(" of ")
+    if kind == STIFFNESS and line:
+        return tr("Stiffness of {line}").format(line=line_title(line, design))
+    if kind == LENGTH and line:
+        return tr("Length of {line}").format(line=line_title(line, design))
+    return {
+        LINE_STIFFNESS: tr("Stiffness of lines"),
+        FIRM_CHEST: tr("Firm chest"),
+        PRESTRESS: tr("Prestress"),
+        TISSUE: tr("Tissue"),
+    }.get(name, name)
+
+
+def value_words(of: FoundNumber, value: float) -> str:
+    """Return one value of a number, with its unit where it has one."""
+    if of.name == TISSUE:
+        return f"{number(value, 0)} N/m"
+    if of.name.startswith(LENGTH):
+        return f"{number(100.0 * value, 1)} %"
+    return number(value, 3 if of.name in (FIRM_CHEST, PRESTRESS) else 1)
+
+
+def better_words(found: Found) -> str:
+    """Return by how much the prediction comes nearer to the worn scan."""
+    before, after = (number(each.all_of_it.rms, 1) for each in (found.before, found.after))
+    if not found.helped:
+        return tr("No number moved by more than its ±: it stays at {before} mm.").format(before=before)
+    return tr("Predicted less real: {before} → {after} mm.").format(before=before, after=after)
+
+
+def record_words(record: Calibration | None) -> str:
+    """Return what a design keeps of a calibration, in a line; nothing if there was none."""
+    if record is None:
+        return ""
+    return tr("Calibrated on {file}: {before} → {after} mm.").format(
+        file=record.worn, before=number(record.rms_before, 1), after=number(record.rms_after, 1)
+    )
+
+
+def door_words(record: Calibration | None, worn: Worn | None) -> str:
+    """Return what stands on the door: what was calibrated, what is compared, or what is behind it."""
+    if worn is not None:
+        return worn.name
+    return record_words(record) or tr("Predicted less real, from a scan with the garment on")
+
+
+def notes_of(worn: Worn | None, pending: bool) -> Iterator[str]:
+    """Yield what the legend of the map says instead of its own line."""
+    if worn is None:
+        yield tr("Compare with a worn scan first: File menu.")
+    elif pending:
+        yield tr("Compared anew as soon as the run rests.")
