@@ -25,7 +25,8 @@ import numpy as np
 from bench_ask import bodies
 from pages import put, table
 
-from core.advice.evening import ENOUGH, Evened, make_even
+from core.advice.evening import Evened, make_even
+from core.advice.parting import ENOUGH
 from core.design import ScanSource
 from core.errors import UserError
 from core.evenness import Evenness, evenness

@@ -7,15 +7,8 @@ from dataclasses import replace
 import pytest
 
 from app.wording.samples import sample_design
-from core.advice.evening import (
-    ENOUGH,
-    EVEN,
-    even_goals,
-    make_even,
-    moves_one_side,
-    partable,
-    parted,
-)
+from core.advice.evening import EVEN, even_goals, make_even
+from core.advice.parting import ENOUGH, moves_one_side, partable, parted
 from core.aims.readings import reading
 from core.design_lines import LineTraits
 from core.errors import UserError

@@ -11,7 +11,8 @@ from app.commands.asked import reasons
 from app.commands.settings import dressed, made_of
 from app.commands.worn import run_to_body
 from core import __version__
-from core.advice.evening import ENOUGH, Evened, make_even
+from core.advice.evening import Evened, make_even
+from core.advice.parting import ENOUGH
 from core.design import Design
 from core.document import Document
 from core.errors import UserError

@@ -13,15 +13,18 @@ from app.panels.result import ResultPanel
 from app.presenting.even import even_summary, map_note, parted_titles
 from app.presenting.verdict import doubt_of
 from app.wording.words import listed, tr
-from core.advice.evening import Evened, make_even, parted
+from core.advice.parting import parted
 from core.aims.figure import Goal
 from core.design import Design
 from core.evenness import BeforeAfter, evenness
 from core.live import Frame
+from core.pipeline import Stages
+from core.progress import Progress
 from core.template import read_template
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
+    from core.advice.evening import Evened
 
 SIDES = "sides"
 """The map Left and right."""
@@ -111,8 +114,8 @@ class EvenDesk(QObject):
             return
         job = self._window.jobs.run(
             tr("Making left and right even"),
-            lambda progress: make_even(frame.stages, progress=progress),
-            lambda made: self._begin(frame.stages.design, cast(Evened, made)),
+            lambda progress: _made_even(frame.stages, progress),
+            lambda made: self._begin(frame.stages.design, cast("Evened", made)),
             self._window.desk.show_failure,
             waited=True,
         )
@@ -142,3 +145,10 @@ class EvenDesk(QObject):
         elif frame is not None and frame.stages.design is design and not frame.at_work:
             self._wished = None
             self._window.ask_desk.begin(goals)
+
+
+def _made_even(stages: Stages, progress: Progress) -> Evened:
+    """Return what makes a design even; the search is loaded when it is asked for, not at the start."""
+    from core.advice.evening import make_even  # noqa: PLC0415
+
+    return make_even(stages, progress=progress)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from app.panels.even_card import EvenSummary, EvenView
 from app.presenting.lines import line_title, pair_title
 from app.wording.words import joined, listed, number, say, tr
-from core.advice.evening import ENOUGH, moves_one_side, partable
+from core.advice.parting import ENOUGH, moves_one_side, partable
 from core.design import Design
 from core.evenness import BeforeAfter, Evenness, EvenRow, even_rows
 from core.pipeline import Stages

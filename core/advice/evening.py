@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
-from functools import reduce
 
+from core.advice.parting import ENOUGH, moves_one_side, partable, parted
 from core.aims.answers import free_lines
 from core.aims.bust import LIFT, OUT
 from core.aims.even import FURTHER_OUT, HIGHER
 from core.aims.figure import Goal
 from core.aims.readings import reading
-from core.design import Design
 from core.errors import UserError
 from core.evenness import NO_BREAST, Evenness, evenness
 from core.landmark import SIDES
@@ -21,14 +20,10 @@ from core.pipeline import Stages, build
 from core.progress import Progress, quiet
 from core.request import Reply, ask
 from core.solution import run
-from core.splitting import can_split, split
-from core.template import Template, read_template
+from core.template import read_template
 
 EVEN = (Goal(HIGHER, 0.0), Goal(FURTHER_OUT, 0.0))
 """Both bust points equally high and equally far out."""
-
-ENOUGH = 0.5
-"""Bust points that differ by less count as even: they ride on the nearest vertex of the skin [mm]."""
 
 _ALIKE = 0.5  # of two replies that are so nearly as even, the one that keeps more [mm]
 
@@ -52,36 +47,6 @@ class Evened:
     def even(self) -> bool:
         """Whether both bust points come to lie alike."""
         return self.after.furthest < ENOUGH
-
-
-def moves_one_side(stages: Stages) -> bool:
-    """Tell whether a worn line, or those it is linked to, may change and pulls at one side alone."""
-    return any(_one_sided(stages, group) for group in free_lines(stages))
-
-
-def _one_sided(stages: Stages, group: tuple[str, ...]) -> bool:
-    control = stages.control
-    paths = [line.path for line in stages.model.lines if line.name in group]
-    pulled = {int(point) for path in paths for point in path if not control.fixed[point]}
-    sides = {int(control.column[point]) for point in pulled} - {0}
-    return bool(sides) and (min(sides) > 0 or max(sides) < 0)
-
-
-def partable(design: Design, template: Template) -> tuple[str, ...]:
-    """Return the worn lines that can be set apart or split so that left and right change each by itself."""
-    free = [name for name in sorted(design.worn()) if not design.traits_of(name).locked]
-    return tuple(name for name in free if len(design.linked(name)) > 1 or can_split(design, template, name))
-
-
-def parted(design: Design, template: Template) -> Design:
-    """Return the design with linked pairs set apart and lines across both sides split; locked ones stay."""
-    return reduce(lambda after, name: _parted(after, template, name), partable(design, template), design)
-
-
-def _parted(design: Design, template: Template, name: str) -> Design:
-    if len(design.linked(name)) > 1:
-        return design.with_traits(replace(design.traits_of(name), linked=False))
-    return split(design, template, name) if can_split(design, template, name) else design
 
 
 def even_goals(stages: Stages, control_points: Points) -> tuple[Goal, ...]:
