@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from core.cutting import CutList, cut_list
 from core.doubts import doubts
 from core.measures import Measures, before_after, measure_rows
 from core.measuring.definitions import DEFINITIONS
+from core.measuring.plus_minus import Spread
 from core.mesh import Floats, Mesh, Points
 from core.pipeline import Stages
 from core.press_list import PressRow, press_list
@@ -85,6 +86,8 @@ class SectionCurves:
 
     ``bust_point`` is where that lies on the cut before, ``bust_point_after`` after; of a level cut the middle
     of both. A side is cut through its bust point, which moves aside: ``after_at_mm`` is where it is after.
+    ``off_mm`` is how far the skin may be off at each place of the curves after, ``off_before_mm`` before;
+    both are nothing where that was not worked out.
     """
 
     name: str
@@ -96,6 +99,8 @@ class SectionCurves:
     bust_point_after: Pair
     before: tuple[Line2, ...]
     after: tuple[Line2, ...]
+    off_mm: tuple[tuple[float, ...], ...] = ()
+    off_before_mm: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -116,7 +121,8 @@ class Sheet:
     None in any state that is not ``SOUND``. ``measures`` are rows of ``core.measures.measure_rows``,
     ``sizes`` those of ``core.sizes.sizes_text``, the chosen system first, or none and ``no_size`` says why;
     ``pressures`` follow the cut list row by row, ``limits`` are those of their lights; ``doubts`` say what
-    should be looked at before landmarks are trusted.
+    should be looked at before landmarks are trusted. ``off`` is how far figures may be off, by the keys of
+    ``core.measuring.plus_minus``, in their units: nothing where that was not worked out; see ``with_spread``.
     """
 
     heading: Heading
@@ -141,6 +147,7 @@ class Sheet:
     definitions: tuple[dict[str, Any], ...] = field(
         default_factory=lambda: tuple(asdict(each) for each in DEFINITIONS.values())
     )
+    off: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def sound(self) -> bool:
@@ -149,7 +156,8 @@ class Sheet:
 
     def as_data(self) -> dict[str, Any]:
         """Return the sheet ready for JSON."""
-        return {**asdict(self), "limits": dict(self.limits), "model": dict(self.model)}
+        told = {name: dict(getattr(self, name)) for name in ("limits", "model", "off")}
+        return {**asdict(self), **told}
 
 
 def sheet_of(shown: Shown, records: Sequence[Record], heading: Heading, progress: Progress = quiet) -> Sheet:
@@ -186,6 +194,19 @@ def sheet_of(shown: Shown, records: Sequence[Record], heading: Heading, progress
         model=_model(stages),
         versions={"busk": __version__, "python": platform.python_version(), "numpy": np.__version__},
     )
+
+
+def with_spread(sheet: Sheet, stages: Stages, control_points: Points, spread: Spread) -> Sheet:
+    """Return a sheet of ``control_points``, shape (n, 3) [mm], with how far its figures may be off."""
+    rest, places = stages.body.mesh, deform(stages.binding, control_points)
+    sections = []
+    for cut in sheet.sections:
+        slicer = Slicer(rest, Plane(cut.axis, cut.after_at_mm))
+        offs = slicer.along(places, spread.sds * spread.skin)
+        told = tuple(tuple(np.round(each, 3).tolist()) for each in offs)
+        sections.append(replace(cut, off_mm=told, off_before_mm=spread.sds * spread.rest))
+    off = {key: spread.sds * doubt.sd for key, doubt in spread.doubts.items()}
+    return replace(sheet, off=off, sections=tuple(sections))
 
 
 def _sizes(before: Measures, heading: Heading) -> tuple[tuple[dict[str, Any], ...], str]:

@@ -231,6 +231,8 @@ def _add_sheet(parser: argparse.ArgumentParser) -> None:
         help="taken off the under-bust for a tape that is worn tight, 0 to 20, an estimate; else as the "
         "project says",
     )
+    spread = "tell beside figures and curves how far they may be off (±); takes half a minute"
+    parser.add_argument("--spread", action="store_true", help=spread)
 
 
 def _add_files(parser: argparse.ArgumentParser) -> None:

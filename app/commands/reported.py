@@ -16,9 +16,10 @@ from core.design import Design
 from core.errors import UserError
 from core.progress import in_one_go
 from core.project import is_project, open_project, whole_file
-from core.sheet import Heading, Sheet, sheet_of
+from core.sheet import Heading, Sheet, sheet_of, with_spread
 from core.sizes import sizes
 from core.solution import Solution
+from core.spread import spread_of
 from core.writing_out.cells import ENCODING
 from core.writing_out.sheet_file import sheet_csv, sheet_json
 
@@ -31,7 +32,7 @@ class SheetWishes:
     """Where to write: ``out`` the PDF, in a ``language``, ``json`` and ``csv`` if they are named.
 
     ``customer`` and ``allowance`` [mm] are None where those of the project hold; ``system`` of sizes comes
-    first.
+    first. ``spread`` puts ± beside figures, which takes a while.
     """
 
     out: str
@@ -41,6 +42,7 @@ class SheetWishes:
     customer: str | None = None
     system: str = "jp"
     allowance: float | None = None
+    spread: bool = False
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,8 @@ def run_report(
     worn = run_worn(design, lengths, elastics, bare=True)
     solution = worn.solution
     sheet = sheet_of(solution, solution.records, _heading(source, design, wishes))
+    if wishes.spread:
+        sheet = with_spread(sheet, solution.stages, solution.control_points, spread_of(solution.stages))
     for name, text, code in ((wishes.json, sheet_json, "utf-8"), (wishes.csv, sheet_csv, ENCODING)):
         if name:
             with whole_file(Path(name)) as partial:

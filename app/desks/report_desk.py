@@ -57,6 +57,7 @@ class ReportDesk(QObject):
         self._refused = ""  # why there is no sheet of the frame that was asked for
         self._language = ""
         self._laid: tuple[Handout | None, str] = (None, "")
+        self._whole: Frame | None = None  # its figures are of
         self._occlusion: tuple[object, Floats] | None = None
         window.pages.addWidget(self.page)
         said = tr("Sizes, lengths to cut, measures, pressures and pictures on paper: look, save, print")
@@ -159,7 +160,7 @@ class ReportDesk(QObject):
             from app.reporting.pictures import shots  # noqa: PLC0415 (brings VTK along)
 
             sheet, whole, baked = cast(tuple[Sheet, Frame, Floats], found)
-            self._occlusion = (body, baked)
+            self._occlusion, self._whole = (body, baked), whole
             finish, left = partial(done, Handout(sheet, {}, self._colours(frame))), self._leave_off
             drawing, pieces = tr("Drawing the pictures of the sheet"), shots(whole, baked)
             self._job = window.jobs.run_pieces(drawing, pieces, finish, lambda _: finish({}), left=left)
@@ -186,9 +187,10 @@ class ReportDesk(QObject):
 
     def _take(self, handout: Handout) -> None:
         """Show a sheet under its present heading; its sizes are those that it was made with."""
-        made = handout.sheet.heading
+        made, spread = handout.sheet.heading, self._window.spread_desk.on_sheet
         heading = replace(self._heading(), system=made.system, allowance_mm=made.allowance_mm)
-        self.handout = replace(handout, sheet=replace(handout.sheet, heading=heading))
+        sheet = replace(spread(handout.sheet, self._frame, self._whole), heading=heading)
+        self.handout = replace(handout, sheet=sheet)
         self._show()
 
     def _show(self) -> None:
@@ -224,14 +226,12 @@ class ReportDesk(QObject):
     # -- what leaves the window
 
     def _give(self, what: str) -> None:
-        {"pdf": self._save_pdf, "print": self._print, "json": self._save_data, "csv": self._save_table}[
-            what
-        ]()
+        data, table = self._save_data, self._save_table
+        {"pdf": self._save_pdf, "print": self._print, "json": data, "csv": table}[what]()
 
     def _save_pdf(self) -> None:
         pages = self.pages
-        path = self._asked_for(tr("Save the sheet"), ".pdf", "PDF (*.pdf)")
-        if path and pages is not None:
+        if (path := self._asked_for(tr("Save the sheet"), ".pdf", "PDF (*.pdf)")) and pages is not None:
             self._write(path, lambda: write_pdf(path, pages, self._window.session.name))
 
     def _save_data(self) -> None:

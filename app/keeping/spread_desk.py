@@ -19,6 +19,7 @@ from core.design import Design
 from core.live import Frame
 from core.measuring.plus_minus import Spread
 from core.progress import Progress
+from core.sheet import Sheet, with_spread
 from core.spread import Spreading
 
 if TYPE_CHECKING:
@@ -69,6 +70,13 @@ class SpreadDesk(QObject):
         """Return how far the figures of a frame may be off, if that is known and it is a result."""
         return None if frame.at_work or doubt_of(frame) else self._known.get(frame.stages.design)
 
+    def on_sheet(self, sheet: Sheet, frame: Frame | None, whole: Frame | None) -> Sheet:
+        """Return the sheet of a frame, made of ``whole``, with its ± once all of that is known."""
+        spread = None if frame is None else self.of(frame)
+        if spread is None or whole is None or not spread.whole or sheet.off:
+            return sheet
+        return with_spread(sheet, whole.stages, whole.control_points, spread)
+
     def follow(self) -> None:
         """Begin with a design once it rests; whatever is edited meanwhile ends that."""
         frame, design = self._window.session.frame, self._window.session.design
@@ -90,7 +98,8 @@ class SpreadDesk(QObject):
 
     @property
     def _looked_at(self) -> bool:
-        return self._panel.isVisible() or self._window.section_desk.is_on
+        window = self._window
+        return self._panel.isVisible() or window.section_desk.is_on or window.report_desk.is_open
 
     def _begin(self) -> None:
         """Work out the quick part, then the whole."""

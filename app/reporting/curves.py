@@ -84,6 +84,7 @@ def _section(
     centre, step = box.mean(axis=0), next(each for each in _GRID if each * scale >= _NARROWEST)
     low, high = centre - zero + np.array([[-0.5], [0.5]]) * room / scale
     said = elided(tr("grid {mm} mm, 0 at the bust point").format(mm=f"{step:g}"), "caption", width)
+    bands = [_band(curve, off) for curve, off in zip(cut.after, cut.off_mm, strict=False) if len(curve) > 2]
 
     def paint(paper: Paper, x: float, y: float) -> None:
         paper.text(x, y + 2.6, title, "caption")
@@ -101,6 +102,8 @@ def _section(
             paper.rule(left, at, room[0], ink=LIGHT.outline if up == 0.0 else LIGHT.line)
             paper.text(left - 1.4, at + 0.75, number(up, 0, signed=True), "axis", align="right")
         paper.clip(left, top, *room)
+        for band in bands:
+            paper.area(on_page(band), LIGHT.accent)
         for curve in cut.before:
             paper.curve(on_page(curve), LIGHT.text_caption, 0.3, dashed=True)
         for curve in cut.after:
@@ -113,6 +116,16 @@ def _section(
         paper.text(x + width, y + height - 0.6, said, "caption", align="right")
 
     return Block(height, paint)
+
+
+def _band(curve: Sequence[tuple[float, float]], off: Sequence[float]) -> list[tuple[float, float]]:
+    """Return what lies round a curve within ``off`` to either side [mm]."""
+    places = np.array(curve)
+    along = np.gradient(places, axis=0)
+    across = np.stack([along[:, 1], -along[:, 0]], axis=1)
+    across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-9)
+    step = np.array(off)[:, None] * across
+    return [(a, b) for a, b in np.concatenate([places + step, (places - step)[::-1]]).tolist()]
 
 
 def _rounds(low: float, high: float, step: float) -> list[float]:

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from app.presenting.spread import source_words
 from app.reporting.telling import known, system_word
 from app.wording.words import colon, joined, language, listed, say, tr
 from core.measuring.definitions import GIRTHS, TAPE, definition_of
 from core.measuring.own import OWN
+from core.measuring.plus_minus import SOURCES
 from core.sewing.comfort import comfort
 from core.sheet import Sheet
 from core.sizes import built_in
@@ -45,7 +47,7 @@ def note_groups(sheet: Sheet) -> Iterator[tuple[str, list[str]]]:
     told = tr("Before: on the scan. After: on the body as the model reshapes it.")
     yield tr("Measured"), [each for each in (told, size_rule(sheet), size_cautions(sheet)) if each]
     limits = _limits() if sheet.cuts.rows else []
-    if estimated := [*limits, *_unsure(sheet)]:
+    if estimated := [*_meaning(sheet), *limits, *_unsure(sheet)]:
         yield tr("Estimated"), estimated
     yield tr("Not modelled"), [say(each) for each in sheet.left_out]
 
@@ -70,6 +72,17 @@ def size_cautions(sheet: Sheet) -> str:
     between = "；" if language() == "ja" else "; "
     words = between.join(f"{listed(systems)}{colon()}{caution}" for caution, systems in told.items())
     return tr("* Others find another size. {words}").format(words=words) if words else ""
+
+
+def _meaning(sheet: Sheet) -> list[str]:
+    """Return what ± means, if it stands on the sheet."""
+    if not (sheet.off and sheet.sound):
+        return []
+    sources = listed([source_words(each) for each in SOURCES])
+    return [
+        tr("± is twice the standard deviation: 95 % of all cases, if errors are normal."),
+        tr("It holds: {sources}. Whether lines stick or slide is no part of it.").format(sources=sources),
+    ]
 
 
 def _limits() -> list[str]:

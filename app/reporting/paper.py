@@ -199,6 +199,15 @@ class Paper:
         self.painter.setBrush(Qt.BrushStyle.NoBrush)
         self.painter.drawPath(path)
 
+    def area(self, places: Iterable[tuple[float, float]], ink: str) -> None:
+        """Fill what a curve through places on the page encloses [mm], palely."""
+        path = QPainterPath()
+        path.addPolygon(QPolygonF([QPointF(x * UNITS, y * UNITS) for x, y in places]))
+        path.setFillRule(Qt.FillRule.WindingFill)
+        colour = QColor(ink)
+        colour.setAlphaF(0.25)
+        self.painter.fillPath(path, colour)
+
     def picture(self, x: float, y: float, width: float, height: float, picture: QImage) -> None:
         """Draw a picture as large as goes into a box, at its foot and in its middle [mm]."""
         size = QSizeF(picture.size()).scaled(

@@ -19,6 +19,7 @@ HALF = 88.0
 """The width of a column where two stand beside each other [mm]."""
 
 _ROW, _CUT_ROW = 4.6, 5.6
+_OFF = 2.6  # so much higher is a row with ± under its figures
 _FEW = 3  # footnotes that stand below each other
 _EDGES = (78.0, 92.0, 105.0, 116.0, 130.0, 144.0, 151.5, 161.5)  # right ends of the figures of a cut
 _ELASTIC, _LIGHT, _WORD = 35.0, 164.5, 168.0
@@ -197,6 +198,7 @@ def _measure(row: MeasureRow) -> Block:
     room -= text_width(unit, "caption") + 1.6 if unit else 0.0
     name = fitting(row.title, room)
     title = elided(row.title, name, room)
+    high = _ROW + (_OFF if row.off else 0.0)
 
     def paint(paper: Paper, x: float, y: float) -> None:
         base = y + 3.3
@@ -206,9 +208,11 @@ def _measure(row: MeasureRow) -> Block:
             _MEASURED, row.figures, ("before", "figure strong", "figure"), strict=True
         ):
             paper.text(x + edge, base, figure, kind, align="right")
-        paper.rule(x, y + _ROW, HALF, weight=0.1)
+        for edge, off in zip(_MEASURED, row.off, strict=False):
+            paper.text(x + edge, base + _OFF, off, "axis", align="right")
+        paper.rule(x, y + high, HALF, weight=0.1)
 
-    return Block(_ROW, paint)
+    return Block(high, paint)
 
 
 def _title(title: str) -> Block:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import groupby
 from typing import Any
 
+from app.panels.measure_view import plus_minus
 from app.presenting.lines import line_title
 from app.presenting.pressure import light_word
 from app.showing.verdict_chip import state_title
@@ -16,6 +17,7 @@ from core.cutting import CutRow
 from core.design_lines import partner_of
 from core.measuring.definitions import definition_of
 from core.measuring.own import OWN
+from core.measuring.plus_minus import AFTER, BEFORE, CHANGE
 from core.press_list import PressRow
 from core.sewing.comfort import comfort
 from core.sheet import Sheet
@@ -43,12 +45,16 @@ class CutView:
 
 @dataclass(frozen=True)
 class MeasureRow:
-    """A row of the measures, as it is printed; one that is missing has no ``figures`` but a ``note``."""
+    """A row of the measures, as it is printed; one that is missing has no ``figures`` but a ``note``.
+
+    ``off`` stands under the figures: how far each may be off.
+    """
 
     title: str
     unit: str
     figures: tuple[str, ...]
     note: str = ""
+    off: tuple[str, ...] = ()
 
 
 def piece_title(line: str, title: str) -> str:
@@ -115,7 +121,7 @@ def measure_rows(sheet: Sheet) -> list[tuple[str, list[MeasureRow]]]:
     found = []
     for group in order:
         those = [row for name, row in rows if name == group]
-        shown = [_measure_row(row, after=sheet.sound) for row in those if known(row)]
+        shown = [_measure_row(row, sheet) for row in those if known(row)]
         missing = [row for row in those if not known(row)]
         for note, same in groupby(missing, key=lambda row: row["note"]):
             title = listed([measure_title(row) for row in same])
@@ -170,20 +176,24 @@ def _without_figures(view: CutView) -> CutView:
     return replace(view, figures=(width, *(NOTHING for _ in others)), light="", word="")
 
 
-def _measure_row(row: dict[str, Any], *, after: bool) -> MeasureRow:
+def _measure_row(row: dict[str, Any], sheet: Sheet) -> MeasureRow:
     digits = 0 if row["unit"] == "ml" else 1
     figures = (
         _figure(row["before"], digits),
         _figure(row["after"], digits),
         _change(row, digits),
     )
-    figures = figures if after else (figures[0], NOTHING, NOTHING)
+    figures = figures if sheet.sound else (figures[0], NOTHING, NOTHING)
+    offs = [sheet.off.get(f"{kind}:{row['key']}") for kind in (BEFORE, AFTER, CHANGE)] if sheet.sound else []
+    told = tuple("" if off is None else plus_minus(off) for off in offs)
+    told = told if any(told) else ()
     unit = row["unit"].replace("2", "\N{SUPERSCRIPT TWO}")
     unit = "" if unit == "mm" else unit
     if row["estimate"]:
-        off = f" ± {number(row['plus_minus'], digits)}" if row["plus_minus"] >= 0.5 else ""
+        alone = row["plus_minus"] >= 0.5 and not told  # else it is in what stands below
+        off = f" ± {number(row['plus_minus'], digits)}" if alone else ""
         unit = f"{unit} {tr('est.')}{off}".strip()
-    return MeasureRow(measure_title(row), unit, figures)
+    return MeasureRow(measure_title(row), unit, figures, off=told)
 
 
 def _change(row: dict[str, Any], digits: int) -> str:

@@ -6,13 +6,19 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
+from core.measuring.plus_minus import AFTER, BEFORE, CHANGE, LIFT, OUT
 from core.sheet import Sheet
 from core.writing_out.cells import csv_text
 
-COLUMNS = ("section", "key", "title", "unit", "before", "after", "difference", "plus_minus", "note")
+COLUMNS = (
+    *("section", "key", "title", "unit", "before", "after", "difference", "plus_minus", "note"),
+    *("off_before", "off_after", "off_difference"),
+)
 """The columns of the table; what is told of the body as it is worn stands under *after*."""
 
 Row = dict[str, Any]
+
+_OFF = {BEFORE: "before", AFTER: "after", CHANGE: "difference"}
 
 
 def sheet_json(sheet: Sheet) -> str:
@@ -41,7 +47,8 @@ def sheet_rows(sheet: Sheet) -> Iterator[Row]:
     for row in sheet.measures:
         title = f"{row['title']}, {row['side']}" if row["side"] else row["title"]
         known = {key: row[key] for key in ("key", "unit", "before", "after", "difference", "note")}
-        yield {"section": "measure", "title": title, **known, "plus_minus": row["plus_minus"] or None}
+        off = {f"off_{what}": sheet.off.get(f"{kind}:{row['key']}") for kind, what in _OFF.items()}
+        yield {"section": "measure", "title": title, **known, "plus_minus": row["plus_minus"] or None, **off}
     yield from _cut_rows(sheet)
     yield from _pressure_rows(sheet)
     for section, sentences in (("warning", (*sheet.doubts, *sheet.warnings)), ("left out", sheet.left_out)):
@@ -55,9 +62,9 @@ def _shape_rows(sheet: Sheet) -> Iterator[Row]:
     yield {"section": "shape", "key": "volume", "title": "Volume of the model", "unit": "ml", **volume}
     if sheet.lift is None:
         return
-    for key, value in (("up", sheet.lift.up), ("forward", sheet.lift.forward)):
-        title = f"Bust points {key}"
-        yield {"section": "shape", "key": key, "title": title, "unit": "mm", "difference": value}
+    for key, value, off in (("up", sheet.lift.up, LIFT), ("forward", sheet.lift.forward, OUT)):
+        told = {"key": key, "title": f"Bust points {key}", "unit": "mm", "difference": value}
+        yield {"section": "shape", **told, "off_difference": sheet.off.get(off)}
 
 
 def _cut_rows(sheet: Sheet) -> Iterator[Row]:

@@ -1,0 +1,67 @@
+"""± in the real window: beside the measures, below them, round the section's curve; gone or faint when stale."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import core.spread
+from app.main_window import MainWindow
+from app.presenting.spread import left_out_sentences
+from core.advice.assumed import assumed
+from tests.window_tools import Script, run_main, settled, undrawn
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+@pytest.fixture(autouse=True)
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Landmarks are taken as known: a fit for each takes too long for a test of the window."""
+    known = replace(assumed(), landmark_mm=0.0, unsure_landmark_mm=0.0)
+    monkeypatch.setattr(core.spread, "assumed", lambda: known)
+
+
+def whole(window: MainWindow) -> bool:
+    spread, faint = window.spread_desk.shown
+    return spread is not None and not faint and bool(window.result.measured) and not window.result.stale
+
+
+def test_it_is_told_where_it_is_looked_at_and_fades_while_a_line_moves() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        desk, card = window.spread_desk, window.spread_desk.card
+        assert desk._asked is None, "nobody has looked"
+        window.desk.go_to("result")
+        yield lambda: whole(window)
+        views = {view.key: view for view in window.result.measured}
+        waist, volume = views["waist_girth"], views["breast_volume_left"]
+        assert waist.off[0] == pytest.approx(2.5, abs=0.1)
+        assert "scan 100 %" in waist.told()
+        assert views["hip_girth"].off == (), "what is not known has none"
+        assert volume.caption == "an estimate", "the ± stands beside it, with all sources"
+        assert any(view.moves == "lift" and view.off[2] for view in window.result.rows)
+        assert "twice the standard deviation" in card.meaning.text()
+        assert "slid over the skin" in card.contact.text()
+        card.folds[1].click()
+        assert all(
+            any(sentence in words.text() for words in card.findChildren(type(card.meaning)))
+            for sentence in left_out_sentences()
+        )
+        window.section_desk.set_on(True)
+        yield lambda: bool(window.section_desk.panel.plot._drawn.bands)
+        drawn = window.section_desk.panel.plot._drawn
+        assert len(drawn.bands["after"]) == len(drawn.curves["after"])
+        outline, curve = drawn.bands["after"][0], drawn.curves["after"][0]
+        gap = np.linalg.norm(outline[: len(curve)] - curve, axis=1)
+        assert gap.min() == pytest.approx(0.4, abs=0.01)  # the scan alone
+        assert gap.max() > 0.6
+        window.session.preview_line("mid-bust", 0.9)
+        yield lambda: not window.is_settled()
+        assert desk.shown[1], "of a former shape"
+        window.session.cancel_preview()
+        yield lambda: whole(window)
+
+    run_main([], script)
