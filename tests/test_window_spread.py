@@ -1,4 +1,4 @@
-"""± in the real window: beside the measures, below them, round the section's curve; gone or faint when stale."""
+"""± in the real window: beside the measures, below them, round the curve of the section; faint when stale."""
 
 from __future__ import annotations
 
