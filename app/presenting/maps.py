@@ -27,11 +27,7 @@ MAPS = ("displacement", "strain", "sides", "worn", *LINE_MAPS)
 BOTH_WAYS = ("displacement", "sides", "worn")
 """Maps whose values go both ways from zero."""
 
-_LEAST = {
-    "sides": 5.0,
-    "worn": 5.0,
-    "pressure": 5.0,
-}  # no map shows less than this [mm, kPa]; both limits are seen
+_LEAST = {"sides": 5.0, "worn": 5.0, "pressure": 5.0}  # no map shows less [mm, kPa]; both limits are seen
 _ROUND = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 
 

@@ -19,7 +19,7 @@ from core.worn_scan.numbers import FIRM_CHEST, LENGTH, LINE_STIFFNESS, PRESTRESS
 def aligned_words(worn: Worn) -> str:
     """Return how well a worn scan lies on the first, in a sentence or two."""
     laid = worn.alignment
-    met = tr("{share} % of the skin that no line moves lies within 5 mm of it; {mm} mm in the mean.").format(
+    met = tr("{share} % of the skin that no line moves lies within 5 mm of it, {mm} mm off as a rule.").format(
         share=number(100.0 * laid.met, 0), mm=number(laid.rms, 1)
     )
     sure = tr("Sure to ±{turn}° and ±{mm} mm.").format(
@@ -110,7 +110,7 @@ def number_title(name: str, design: Design) -> str:
     return {
         LINE_STIFFNESS: tr("Stiffness of lines"),
         FIRM_CHEST: tr("Firm chest"),
-        PRESTRESS: tr("Prestress"),
+        PRESTRESS: tr("Tension of the springs"),
         TISSUE: tr("Tissue"),
     }.get(name, name)
 
@@ -119,9 +119,9 @@ def value_words(of: FoundNumber, value: float) -> str:
     """Return one value of a number, with its unit where it has one."""
     if of.name == TISSUE:
         return f"{number(value, 0)} N/m"
-    if of.name.startswith(LENGTH):
+    if of.name.startswith(LENGTH) or of.name == PRESTRESS:
         return f"{number(100.0 * value, 1)} %"
-    return number(value, 3 if of.name in (FIRM_CHEST, PRESTRESS) else 1)
+    return number(value, 3 if of.name == FIRM_CHEST else 1)
 
 
 def better_words(found: Found) -> str:
