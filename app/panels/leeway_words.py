@@ -30,12 +30,12 @@ def sentence(leeway: Leeway) -> str:
 def hint(leeway: Leeway, ratio: float) -> str:
     """Return what is told where the pointer rests: the zone of a length [1], and why it is one."""
     zone = leeway.at(ratio)
-    lines = [_range(_name(zone), zone.short, zone.long)]
-    lines += [f"{_upper(placed(each))}: {meaning(each)}." for each in _told(zone)]
-    if zone.tone == GREEN:
-        lines += [_upper(_range(_name(each), each.short, each.long)) for each in _beside(leeway, zone)]
-        if not leeway.pressure_known:
-            lines.append(tr("Pressure is not looked at: it is made of no elastic."))
+    near = _beside(leeway, zone) if zone.tone == GREEN else (zone,)
+    reasons = dict.fromkeys(reason for each in near for reason in _told(each))
+    lines = [] if zone.tone == SLACK else [_range(_name(zone), zone.short, zone.long)]
+    lines += [f"{_upper(placed(each))}: {meaning(each)}." for each in reasons]
+    if zone.tone == GREEN and not leeway.pressure_known:
+        lines.append(tr("Pressure is not looked at: it is made of no elastic."))
     return "\n".join(_glued(line) for line in lines)
 
 
@@ -97,7 +97,7 @@ def _of_others(reason: Reason) -> bool:
 
 
 def _name(zone: Zone) -> str:
-    return {GREEN: tr("Green"), AMBER: tr("Amber"), RED: tr("Red"), SLACK: tr("Slack")}[zone.tone]
+    return {GREEN: tr("Green"), AMBER: tr("Amber"), RED: tr("Red")}[zone.tone]
 
 
 def _range(what: str, short: float, long: float) -> str:

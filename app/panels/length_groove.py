@@ -88,7 +88,7 @@ def _paint_zone(painter: QPainter, tokens: Tokens, zone: QRectF, tone: str) -> N
     """Paint one zone; where a line is slack the groove is hollow: nothing pulls there."""
     colours = {GREEN: tokens.zone_ok, AMBER: tokens.zone_warn, RED: tokens.zone_bad}
     if tone == SLACK:
-        painter.setPen(QPen(QColor(tokens.control), 1.0))
+        painter.setPen(QPen(QColor(tokens.outline), 1.0))
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.drawRoundedRect(zone.adjusted(0.5, 0.5, -0.5, -0.5), 2, 2)
         painter.setPen(Qt.PenStyle.NoPen)
