@@ -24,6 +24,7 @@ from pages import put, table
 
 from app.wording.samples import SAMPLES, sample_design
 from core.aims.answers import free_lines
+from core.aims.curve_file import profile_goals
 from core.aims.figure import Goal
 from core.aims.girth import GIRTH
 from core.aims.outline import profile_name
@@ -141,6 +142,9 @@ def case(rng: np.random.Generator, start: Stages, *, curve: bool = False) -> Cas
     truth, points = known(rng, start)
     names = profile(rng, start) if curve else figures(rng, start)
     goals = tuple(Goal(name, reading(truth, name)(points).value) for name in names)
+    if curve:  # as it comes from a table
+        section, rows = names[0].split()[1], [(float(goal.name.split()[2]), goal.value) for goal in goals]
+        goals = profile_goals(start, section, np.array(rows))
     begun = time.process_time()
     reply = ask(start, goals)
     seconds = time.process_time() - begun

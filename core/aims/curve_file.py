@@ -11,6 +11,7 @@ import numpy as np
 
 from core.aims.figure import Goal
 from core.aims.outline import profile_name
+from core.aims.readings import reading
 from core.errors import UserError
 from core.mesh import Floats
 from core.pipeline import Stages
@@ -18,6 +19,7 @@ from core.pipeline import Stages
 _MOST = 60
 """Heights of a profile that are asked for; of more every so manieth is."""
 
+_STEEP = 3.0  # a skin that comes out so much faster than it rises hangs over [1]
 _STEP = 5.0  # of the heights at which an exported section is read [mm]
 _HEIGHT, _OUT = ("height_mm", "height"), ("out_mm", "out")
 _BYTES = 5_000_000
@@ -59,6 +61,7 @@ def profile_goals(stages: Stages, section: str, curve: Floats) -> tuple[Goal, ..
     heights = stages.control.mesh.vertices[~stages.control.fixed, 2]
     low, high = float(heights.min()), float(heights.max())
     inside = curve[(curve[:, 0] >= low) & (curve[:, 0] <= high)]
+    inside = inside[inside[:, 0] > _overhang(stages, section, inside)]
     if not len(inside):
         raise UserError(
             f"No height of the profile lies where the body can be reshaped, {low:.0f} to {high:.0f} mm.",
@@ -66,6 +69,21 @@ def profile_goals(stages: Stages, section: str, curve: Floats) -> tuple[Goal, ..
         )
     chosen = inside[:: -(-len(inside) // _MOST)]
     return tuple(Goal(profile_name(section, height), out) for height, out in chosen.tolist())
+
+
+def _overhang(stages: Stages, section: str, curve: Floats) -> float:
+    """Return the height [mm] below which a breast hangs over, at rest or as wished; -inf if it does not.
+
+    From there down the foremost place jumps from the breast to the chest: no slope leads over that.
+    """
+    points, top = stages.control.mesh.vertices, stages.rest_marks
+    below = curve[curve[:, 0] < min(top.nipple_left_z, top.nipple_right_z)]
+    rest = [reading(stages, profile_name(section, height))(points).value for height in below[:, 0]]
+    found = -np.inf
+    for outs in (below[:, 1], np.array(rest)):
+        steep = np.abs(np.diff(outs)) > _STEEP * np.diff(below[:, 0])
+        found = max(found, *below[1:, 0][steep], -np.inf)
+    return found
 
 
 def _outline(path: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> Floats:

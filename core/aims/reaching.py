@@ -7,7 +7,7 @@ least tension among all lengths that do it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
 from types import MappingProxyType
@@ -137,13 +137,27 @@ class Search:
     def _near_by(self) -> Floats:
         """Return the nearest from the start or, if that does not reach what is wanted, from elsewhere."""
         best = self.from_here(self.start)
-        for other in (1.0, _HALFWAY):
+        for begin in self._elsewhere():
             if self._reached(self.at(best)):
                 break
-            begin = np.clip(np.full(len(best), other / PERCENT), self._low, self._high)
-            if self._look(begin) is not None:
-                best = min(best, self.from_here(begin), key=lambda lengths: self._amiss(self.at(lengths)))
+            best = min(best, self.from_here(begin), key=self._amiss_at)
         return best
+
+    def _elsewhere(self) -> Iterator[Floats]:
+        """Yield other starts: all lines at rest, all halfway, and the best with one of them alone halfway."""
+        rest = np.clip(np.full(len(self.start), 1.0 / PERCENT), self._low, self._high)
+        halfway = np.clip(np.full(len(self.start), _HALFWAY / PERCENT), self._low, self._high)
+        for begin in (rest, halfway):
+            if self._look(begin) is not None:
+                yield begin
+        if len(rest) > 1:
+            alone = np.where(np.eye(len(rest), dtype=bool), halfway, rest)
+            found = [begin for begin in alone if self._look(begin) is not None]
+            if found:
+                yield min(found, key=self._amiss_at)
+
+    def _amiss_at(self, lengths: Floats) -> float:
+        return self._amiss(self.at(lengths))
 
     def from_here(self, start: Floats) -> Floats:
         """Return where steps after Gauss and Newton lead from ``start``, none of them too bold.
