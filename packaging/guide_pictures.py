@@ -70,6 +70,7 @@ SCREENS: tuple[tuple[str, Callable[[], Design], Scene], ...] = (
     ("start", _mannequin, scenes.start_page),
     *((name, _person, step(name)) for name in ("landmarks", "lines", "result")),
     ("ask", _person, scenes.asking),
+    ("wish", bra, scenes.wishing),
     ("path", _mannequin, scenes.drawing),
     ("garment", made_of_elastics, tab("garment")),
     ("wipe", bra, scenes.wiped),
