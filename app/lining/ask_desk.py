@@ -18,6 +18,7 @@ from app.presenting.asking import (
     figure_title,
     is_signed,
     kept_words,
+    missing_words,
     step_words,
     values_words,
 )
@@ -295,10 +296,4 @@ class AskDesk(QObject):
 
     def _missing(self, frame: Frame, design: Design) -> str:
         """Return what has to be done before anything can be asked, if there is something."""
-        worn = design.worn()
-        lines = [line.name for line in frame.stages.model.lines if line.constrains and line.name in worn]
-        if not lines:
-            return tr("Wear the lines that may change first: choose a preset, or shorten a line.")
-        if all(design.traits_of(name).locked for name in lines):
-            return tr("All worn lines are locked. Unlock one that may change.")
-        return ""
+        return missing_words(design, [line.name for line in frame.stages.model.lines if line.constrains])

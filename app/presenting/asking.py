@@ -129,6 +129,16 @@ def kept_words(design: Design, kept: Collection[str]) -> str:
     return tr("Locked, so kept: {lines}.").format(lines=lines) if lines else ""
 
 
+def missing_words(design: Design, moving: Collection[str]) -> str:
+    """Return what has to be done before anything can be asked, if there is something; see ``free_lines``."""
+    lines = design.worn() & set(moving)
+    if not lines:
+        return tr("Wear the lines that may change first: choose a preset, or shorten a line.")
+    if all(design.traits_of(name).locked for name in lines):
+        return tr("All worn lines are locked. Unlock one that may change.")
+    return ""
+
+
 def step_words(goals: Sequence[Goal]) -> str:
     """Return what the step of undo is called."""
     return tr("Asked for") + colon() + wishes_words(goals)
