@@ -1,0 +1,112 @@
+"""A worn scan in the real window: read, compared, shown on the body, learnt from, taken back."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from window_tools import Script, run_main, settled, undrawn
+
+from app.main_window import MainWindow
+from benchmarks.worn_pairs import scanned, worn_mesh, written
+from core.document import Document
+from core.pipeline import build
+from core.project import open_project, save_project
+
+
+@pytest.fixture(scope="module")
+def pair(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, str, str]:
+    """A project on a body of 2,100 corners, a scan with the garment on, and one of another body."""
+    folder = tmp_path_factory.mktemp("worn")
+    small = open_project(Path(__file__).parent / "releases" / "0.1.0" / "first.busk").design
+    design = replace(small, volume="exact", firm_chest=0.03).with_line("mid-bust", 0.88)
+    stages = build(design)
+    truth = replace(design, line_stiffness=6.0, firm_chest=0.1)
+    mesh, _ = scanned(
+        worn_mesh(stages, truth), stages, np.random.default_rng(4), noise=0.2, resampled=False, hole=15.0
+    )
+    project = folder / "plan.busk"
+    save_project(project, Document.of(design), stages.scan, None)
+    other = stages.body.mesh.moved(stages.body.mesh.vertices * (1.15, 1.0, 1.0))
+    return str(project), written(mesh, folder / "worn.ply"), written(other, folder / "other.ply")
+
+
+def said(window: MainWindow) -> str:
+    notice = window.notices.notice()
+    return notice.sentence if notice is not None else ""
+
+
+def test_a_worn_scan_is_compared_and_learnt_from(pair: tuple[str, str, str]) -> None:
+    project, scan, _ = pair
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        desk, page = window.worn_desk, window.worn_desk.page
+        window.map_desk.choose("worn")
+        assert "worn scan first" in window.map_desk.legend._note.text()
+        assert window.map_desk.name == "worn"
+        desk.door.click()
+        assert window.inspector.panel() is page
+        assert not page._compared.isVisible()
+        desk.read(scan)
+        yield lambda: bool(page.view.rows) and not page.view.faint
+        assert page.view.file == "worn.ply"
+        assert page.view.lies.startswith("100 % of the skin that no line moves")
+        frame = window.session.frame
+        assert frame is not None
+        values = window.worn_desk.values(frame)
+        assert 0.8 < np.isfinite(values[: frame.stages.moving.count]).mean() < 1.0, "there is a hole"
+        before = window.session.design
+        page.calibrate.click()
+        assert not page.calibrate.isEnabled(), "it is at work"
+        yield lambda: bool(page.view.numbers)
+        assert [row.title for row in page.view.numbers] == ["Stiffness of lines", "Firm chest"]
+        assert page.apply.isVisible()
+        page.apply.click()
+        yield lambda: settled(window)() and bool(page.view.rows) and not page.view.faint
+        after = window.session.design
+        assert after is not None
+        assert after.calibration is not None
+        assert after.line_stiffness == pytest.approx(6.0, rel=0.15)
+        assert page.view.record.startswith("Calibrated on worn.ply")
+        assert not page.view.numbers, "what was found was of the design before"
+        window.session.undo_stack.undo()
+        assert window.session.design == before
+        yield settled(window)
+        assert page.view.record == ""
+
+    assert run_main([project], script) == 0
+
+
+def test_another_person_is_refused_and_an_edit_makes_the_comparison_old(pair: tuple[str, str, str]) -> None:
+    project, scan, other = pair
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        desk, page = window.worn_desk, window.worn_desk.page
+        desk.show_page()
+        desk.read(other)
+        yield lambda: "does not fit the first" in said(window)
+        assert desk.worn is None
+        desk.read(scan)
+        yield lambda: bool(page.view.rows) and not page.view.faint
+        rms = page.view.rows[0].rms
+        window.session.preview_line("mid-bust", 0.95)
+        yield lambda: page.view.faint
+        assert not page.calibrate.isEnabled()
+        frame = window.session.frame
+        assert frame is not None
+        assert np.isnan(desk.values(frame)).all(), "nothing old lies on the body"
+        window.session.commit_line("mid-bust", "Mid-bust", 0.95)
+        yield lambda: settled(window)() and not page.view.faint
+        assert page.view.rows[0].rms != rms
+        page.thickness.entered.emit(2.0)
+        yield lambda: bool(page.view.rows) and not page.view.faint
+        assert page.view.rows[0].mean.startswith("+")
+        window.session.undo_stack.setClean()
+
+    assert run_main([project], script) == 0
