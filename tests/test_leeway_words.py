@@ -1,0 +1,145 @@
+"""What a slider tells of its zones, and that they are there before a run has settled."""
+
+from __future__ import annotations
+
+import pytest
+from PySide6.QtCore import QEvent, QPoint
+from PySide6.QtGui import QHelpEvent
+from PySide6.QtWidgets import QApplication, QToolTip
+from pytestqt.qtbot import QtBot
+from window_tools import Script, run_main, settled
+
+import app.lining.limits_desk
+from app.main_window import MainWindow
+from app.panels.leeway_words import hint, placed, refusal, sentence, tone_at
+from app.panels.length_groove import _zones, wall_of
+from app.panels.length_slider import LengthSlider
+from core.leeway import Leeway, Reason, Zone
+
+STRAINED = Reason("strained", 0.5, 0.939)
+FOLDED = Reason("folded", 0.5, 0.86)
+SLACK = Reason("slack", 0.981, 1.3, others=True)
+LEEWAY = Leeway(
+    "waist",
+    (
+        Zone("red", 0.5, 0.86, (FOLDED, STRAINED)),
+        Zone("amber", 0.86, 0.939, (STRAINED,)),
+        Zone("green", 0.939, 0.981),
+        Zone("slack", 0.981, 1.3, (SLACK,)),
+    ),
+)
+
+
+def plain(words: str) -> str:
+    return words.replace("\N{NO-BREAK SPACE}", " ")
+
+
+def test_the_hover_tells_zone_number_and_reason() -> None:
+    assert plain(hint(LEEWAY, 0.95)).splitlines() == [
+        "Green from 93.9 to 98.1 %",
+        "Strained below 93.9 %: skin is stretched or pressed together by more than 20 % somewhere.",
+        "Slack above 98.1 %: it would have to push, which no band can.",
+        "Pressure is not looked at: it is made of no elastic.",
+    ]
+    assert plain(hint(LEEWAY, 0.9)).startswith("Amber from 86.0 to 93.9 %\nStrained below 93.9 %: ")
+    assert plain(hint(LEEWAY, 0.7)).splitlines() == [
+        "Red below 86.0 %",
+        "Folds below 86.0 %: a triangle of the control mesh turns to its side.",
+    ]
+    assert plain(hint(LEEWAY, 1.1)) == "Slack above 98.1 %: it would have to push, which no band can."
+
+
+def test_where_pressure_is_known_nothing_is_said_of_it_but_where_it_is_too_much() -> None:
+    pressing = Zone("amber", 0.5, 0.78, (Reason("pressing", 0.5, 0.78),))
+    known = Leeway("waist", (pressing, Zone("green", 0.78, 1.3)), pressure_known=True)
+    assert plain(hint(known, 0.6)).endswith(
+        "Presses too much below 78.0 %: its band presses with more than 4 kPa somewhere."
+    )
+    assert "not looked at" not in hint(known, 0.9)
+
+
+def test_what_the_other_lines_do_is_told_as_theirs() -> None:
+    assert placed(Reason("strained", 0.5, 1.3, others=True)) == (
+        "strained by the other lines, whatever this one does"
+    )
+    assert placed(Reason("strained", 0.95, 1.3, others=True)) == "strained above 95.0 % (by the other lines)"
+    assert placed(Reason("vibrating", 0.88, 0.92)) == "would vibrate from 88.0 to 92.0 %"
+
+
+def test_an_opened_row_says_all_of_it_in_one_line() -> None:
+    assert plain(sentence(LEEWAY)) == "Slack above 98.1 % · strained below 93.9 % · folds below 86.0 %"
+    assert sentence(Leeway("waist", (Zone("green", 0.5, 1.3),))) == "No limit down to half its length."
+    assert [tone_at(LEEWAY, ratio) for ratio in (0.8, 0.9, 0.95, 1.1)] == ["bad", "warn", "", ""]
+    assert refusal(LEEWAY) == "Not this short: folds below 86.0 %."
+    assert (refusal(None), tone_at(None, 0.9)) == ("", "")
+
+
+def test_the_groove_shows_what_lies_between_its_ends() -> None:
+    assert _zones(LEEWAY, (0.8, 1.12)) == [
+        ("red", 0.8, 0.86),
+        ("amber", 0.86, 0.939),
+        ("green", 0.939, 0.981),
+        ("slack", 0.981, 1.12),
+    ]
+    assert [zone[0] for zone in _zones(LEEWAY, (0.9, 1.12))] == ["amber", "green", "slack"]
+    assert (wall_of(LEEWAY, 0.95), wall_of(LEEWAY, 0.85), wall_of(None, 0.9)) == (0.86, None, None)
+
+
+@pytest.fixture
+def slider(qtbot: QtBot) -> LengthSlider:
+    slider = LengthSlider()
+    slider.setToolTip("keys")
+    slider.resize(300, 28)
+    qtbot.addWidget(slider)
+    slider.show()
+    return slider
+
+
+def hovered(slider: LengthSlider, ratio: float) -> str:
+    QToolTip.hideText()
+    at = QPoint(round(slider._x_of(ratio)), 10)
+    QApplication.sendEvent(slider, QHelpEvent(QEvent.Type.ToolTip, at, slider.mapToGlobal(at)))
+    return plain(QToolTip.text())
+
+
+def test_a_slider_tells_the_zone_under_the_pointer_and_on_its_handle_the_set_one(
+    slider: LengthSlider,
+) -> None:
+    slider.set_leeway(LEEWAY)
+    slider.set_ratio(0.97)
+    assert hovered(slider, 0.9).startswith("Amber from")
+    assert hovered(slider, 0.978).startswith("Green from"), (
+        "the handle reaches a little further than its length"
+    )
+    assert hovered(slider, 0.9).endswith("\n\nkeys")
+    slider.set_leeway(LEEWAY, stale=True)
+    assert hovered(slider, 0.9) == "keys", "nothing is told of zones that are old"
+
+
+def test_zones_follow_an_edit_while_the_model_still_settles(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Turns are made so slowly that nothing settles; zones come all the same, the selected first."""
+    order: list[str] = []
+    work_out = app.lining.limits_desk.leeway_of
+
+    def noted(stages, name, progress):  # type: ignore[no-untyped-def]
+        order.append(name)
+        return work_out(stages, name, progress)
+
+    monkeypatch.setattr(app.lining.limits_desk, "leeway_of", noted)
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        window.desk.select_line("full-bust")
+        row = window.lines.rows["full-bust"]
+        yield lambda: row.view.leeway is not None and not row.view.stale
+        before = row.view.leeway
+        window.session.set_pace(5.0)
+        order.clear()
+        window.session.change({"line_stiffness": 40.0}, "stiffer")
+        yield lambda: row.view.leeway is not before and not row.view.stale
+        assert not settled(window)()
+        yield lambda: not window.lines.rows["mid-bust"].view.stale
+        assert order == ["full-bust", "mid-bust"]
+        window.session.set_pace(None)
+
+    run_main([], script)
