@@ -44,7 +44,8 @@ def draw(shot: guide_pictures.Shot) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     with settled_window(shot.design(), **options) as window:
         part = shot.scene(window)
-        scenes.wait_for(window.is_settled)
+        # What is asked for is seen, and not taken.
+        scenes.wait_for(lambda: window.is_settled() or window.ask_desk.is_open)
         save_window(window, path)
         if part is not None:
             part.grab().save(str(path))
