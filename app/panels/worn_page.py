@@ -192,7 +192,7 @@ class WornPage(QWidget):
             cell.deleteLater()
         self._cells = []
         self._fill(self._figures, ("", tr("Mean"), tr("rms"), "95 %"), [vars(row) for row in view.rows])
-        self._fill(self._numbers, ("", tr("Before"), tr("After"), "±"), [vars(row) for row in view.numbers])
+        self._fill(self._numbers, ("", tr("As it is"), tr("Found"), "±"), [vars(row) for row in view.numbers])
 
     def show_map(self, on: bool) -> None:
         """Tell by the button whether the map lies on the body."""
