@@ -145,8 +145,12 @@ def qapp_cls() -> type[QApplication]:
 
 
 @pytest.fixture
-def empty_house(qapp: QApplication) -> Iterator[None]:
-    """Nothing of a window lives on after a test: no thread of ours, no window; its settings are fresh."""
+def empty_house(qapp: QApplication, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Nothing of a window lives on after a test: no thread of ours, no window; its settings are fresh.
+
+    How sure figures are is not worked out where a test does not ask: it takes half a minute of a processor.
+    """
+    monkeypatch.setattr("app.keeping.spread_desk.PAUSE", 10**8)
     QSettings().clear()
     yield
     gc.collect()

@@ -7,20 +7,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import app.keeping.spread_desk
 import core.spread
 from app.main_window import MainWindow
 from app.presenting.spread import left_out_sentences
 from core.advice.assumed import assumed
 from tests.window_tools import Script, run_main, settled, undrawn
 
-pytestmark = pytest.mark.usefixtures("empty_house")
-
 
 @pytest.fixture(autouse=True)
-def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+def quick(empty_house: None, monkeypatch: pytest.MonkeyPatch) -> None:
     """Landmarks are taken as known: a fit for each takes too long for a test of the window."""
     known = replace(assumed(), landmark_mm=0.0, unsure_landmark_mm=0.0)
     monkeypatch.setattr(core.spread, "assumed", lambda: known)
+    monkeypatch.setattr(app.keeping.spread_desk, "PAUSE", 50)
 
 
 def whole(window: MainWindow) -> bool:
