@@ -13,6 +13,7 @@ from app.wording.samples import sample_design
 from core.advice.fight import fight_of
 from core.advice.outlook import outlook
 from core.advice.remedy import GAIN_STEP, LENGTH_STEP
+from core.advice.standing import gone_on, standing
 from core.comparison import Comparison
 from core.design import Design
 from core.design_lines import LineTraits
@@ -162,6 +163,14 @@ def test_a_late_force_is_let_act_in_step() -> None:
     assert found.complaint == "diverging"
     assert cured(found) == replace(found.stages.design, line_force="implicit")
     assert told_from_rest(cured(found)) == "settled"
+
+
+def test_another_control_goes_on_from_where_its_own_run_stands() -> None:
+    sick = made({"mid-bust": 0.6}, volume="conventional")
+    changed = made({"mid-bust": 0.85}, volume="adaptive")
+    warm = gone_on(standing(sick), changed)
+    assert warm is not None
+    assert warm.told == told_going_on(sick, changed.design) == "overstrained"
 
 
 def test_locked_lines_stay_and_are_named() -> None:

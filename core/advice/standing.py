@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from core.comparison import Run, carried, shape_of
+from core.comparison import TURN_CONTROLS, Run, carried, shape_of
 from core.exact import solve_exact
 from core.pipeline import Stages, targets_of
 from core.solution import Solution, run
@@ -67,14 +67,18 @@ def gone_on(before: Standing, stages: Stages) -> Verdict | None:
     """Return how turns end that go on under a changed design from where a run stands, as in the window.
 
     None where they do not: an exact answer starts from rest, and so does what follows a refusal or a run that
-    ran away.
+    ran away. Another control goes on from where its own run stands, made beside the one that is shown.
     """
-    control, old = stages.design.volume, before.stages.model
-    never = before.complaint in ("unreachable", "diverging")
-    if never or control == "exact" or before.stages.design.volume != control:
+    control, old, design = stages.design.volume, before.stages.model, before.stages.design
+    if before.complaint == "unreachable" or control not in {*TURN_CONTROLS, design.volume}:
+        return None
+    stood = before.solution
+    if control != design.volume:
+        stood = run(replace(before.stages, design=replace(design, volume=control)))
+    if stood.verdict.motion == "diverging":
         return None
     model, targets = stages.model, targets_of(stages.design, stages)
-    state = replace(carried(before.solution.state, old, model), turn=0)
+    state = replace(carried(stood.state, old, model), turn=0)
     again = Run(model, control, state, None)
     while not again.resting:
         again.take(*turn(model, targets, again.state))
