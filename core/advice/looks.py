@@ -99,9 +99,9 @@ class _Vibrating:
         if gain <= 0.0:
             return _CALM
         potential = Potential(found.model, found.ratios)
-        there = swing.balance(potential, found.balance, gain)
-        # Where its turns have nowhere to rest they do not come to rest.
-        return min(swing.limit(potential, there) / gain - 1.0, _CALM) if there is not None else -_CALM
+        # A way of balances may turn back within a hair of one: the exact one is near enough then.
+        there = swing.balance(potential, found.balance, gain) or found.balance
+        return min(swing.limit(potential, there) / gain - 1.0, _CALM)
 
 
 def _limit_at_rest(model: ConstrainedModel, swing: Swing) -> float:
