@@ -119,7 +119,7 @@ def offs(stages, truth, found):
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", nargs="?", type=Path)
-    parser.add_argument("--cases", type=int, default=55)
+    parser.add_argument("--cases", type=int, default=33)
     parser.add_argument("--put", action="store_true", help="put the table into docs/calibrate.md")
     options = parser.parse_args()
     rng = np.random.default_rng(606)
