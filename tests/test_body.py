@@ -203,7 +203,7 @@ BAD_FILES = [
     ("scan.ply", (ASCII_PLY + TRIANGLE + "3 0 1 7\n").encode(), "corners that do not exist"),
     ("scan.ply", (ASCII_PLY.replace("vertex 3", "vertex -3") + TRIANGLE).encode(), "makes no sense"),
     ("scan.ply", (ASCII_PLY.replace("float z", "number z") + TRIANGLE).encode(), "makes no sense"),
-    ("scan.ply", (PLY_HEADER.format(kind="ascii", n=3, m=0) + TRIANGLE).encode(), "too few points for a surface: 3"),
+    ("scan.ply", (PLY_HEADER.format(kind="ascii", n=3, m=0) + TRIANGLE).encode(), "too few points"),
     ("scan.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "no sound triangles"),
     ("scan.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "do not exist|damaged"),
     ("scan.obj", b"v 0 0 0\nv 1 0 0\nf 1 1 2\n", "no sound triangles"),
