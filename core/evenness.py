@@ -26,12 +26,15 @@ NO_VOLUME = "The root of a breast does not show on both sides, so their volumes 
 
 @dataclass(frozen=True)
 class Volumes:
-    """The volumes of both breasts [ml], each an estimate that may be off by its ``spread`` [ml]."""
+    """The volumes of both breasts [ml], each an estimate: where the top of its root is taken makes ± so much.
+
+    That is not all: where landmarks lie is told by ``core.spread``.
+    """
 
     left: float
     right: float
-    left_spread: float
-    right_spread: float
+    left_plus_minus: float
+    right_plus_minus: float
 
     @property
     def more(self) -> float:
@@ -39,9 +42,9 @@ class Volumes:
         return self.left - self.right
 
     @property
-    def spread(self) -> float:
-        """How far that may be off [ml]: nothing says that both roots are taken wrong alike."""
-        return hypot(self.left_spread, self.right_spread)
+    def plus_minus(self) -> float:
+        """How far the roots put that off [ml]: nothing says that both are taken wrong alike."""
+        return hypot(self.left_plus_minus, self.right_plus_minus)
 
 
 @dataclass(frozen=True)
@@ -65,6 +68,11 @@ class Evenness:
     def furthest(self) -> float:
         """The larger one of what the bust points differ by in height and to the front [mm]."""
         return max(abs(self.higher), abs(self.further_out))
+
+    @property
+    def apart(self) -> float:
+        """How far one bust point is from the other, mirrored, in height and to the front together [mm]."""
+        return hypot(self.higher, self.further_out)
 
 
 @dataclass(frozen=True)
@@ -131,7 +139,7 @@ class EvenRow:
     """One figure ``before`` and ``after`` in ``unit``, None where it is not known.
 
     A ``sided`` one is positive where it is the left that is higher, further or larger, negative where it is
-    the right; it may be off by ``spread``.
+    the right; the roots of the breasts may put it off by ``plus_minus``.
     """
 
     key: str
@@ -139,13 +147,13 @@ class EvenRow:
     before: float | None
     after: float | None
     sided: bool = True
-    spread: float = 0.0
+    plus_minus: float = 0.0
 
 
 def even_rows(before: Evenness, after: Evenness) -> list[EvenRow]:
     """Return how left and right differ as a table, two shapes side by side."""
     first, last = _values(before), _values(after)
-    spread = after.volumes.spread if after.volumes else 0.0
+    roots = after.volumes.plus_minus if after.volumes else 0.0
     units = {key: "ml" if key in ("larger", "left_more", "right_more") else "mm" for key in first}
     return [
         EvenRow(
@@ -154,7 +162,7 @@ def even_rows(before: Evenness, after: Evenness) -> list[EvenRow]:
             first[key],
             last[key],
             sided=key not in ("mean", "left_more", "right_more"),
-            spread=spread if key == "larger" else 0.0,
+            plus_minus=roots if key == "larger" else 0.0,
         )
         for key in first
     ]

@@ -139,7 +139,7 @@ def test_figures_are_those_of_marks_measures_and_what_can_be_asked_for(person: S
     assert told.after.volumes is not None
     assert told.before.volumes is not None
     assert told.after.volumes.more == pytest.approx(after["asymmetry_volume"].value)
-    assert told.after.volumes.spread == pytest.approx(after["asymmetry_volume"].plus_minus)
+    assert told.after.volumes.plus_minus == pytest.approx(after["asymmetry_volume"].plus_minus)
     gains = person.body_change(points) / 1000.0
     assert told.after.gained == pytest.approx(gains[0] - gains[1])
     assert told.after.volumes.more - told.before.volumes.more == pytest.approx(told.after.gained)

@@ -11,15 +11,16 @@ from app.commands.asked import reasons
 from app.commands.settings import dressed, made_of
 from app.commands.worn import run_to_body
 from core import __version__
-from core.advice.evening import Evened, make_even
+from core.advice.evening import EVEN, Evened, make_even
 from core.advice.parting import ENOUGH
 from core.design import Design
 from core.document import Document
 from core.errors import UserError
-from core.evenness import BeforeAfter, EvenRow, even_rows, evenness
+from core.evenness import BeforeAfter, Evenness, EvenRow, even_rows, evenness
 from core.pipeline import Stages, build
 from core.project import SUFFIX, is_project, open_project, save_project
 from core.report import shape_warnings
+from core.solution import Solution, run
 
 TITLES = {
     "higher": "bust point higher",
@@ -33,12 +34,21 @@ TITLES = {
 }
 """What each figure is called."""
 
+_CONTROLS = {
+    "adaptive": "by the adaptive control, which keeps both volumes together,",
+    "accumulating": "by the accumulating control, which keeps both volumes together,",
+    "conventional": "by the conventional control, which keeps no volume,",
+    "none": "without a volume force",
+}
+
 
 @dataclass(frozen=True, eq=False)
 class Even:
     """How left and right differ, and what makes them alike, if that was asked for.
 
-    ``settled`` tells whether what the worn lines do is a result; ``out`` is where a project was saved.
+    ``settled`` tells whether what the worn lines do is a result; ``out`` is where a project was saved. What
+    makes them alike is found among exact answers, and then ``told`` are those too; ``turned`` is how the
+    design that was found differs as it is solved, None where its turns do not come to rest.
     """
 
     stages: Stages
@@ -46,6 +56,7 @@ class Even:
     settled: bool
     warnings: list[str]
     made: Evened | None = None
+    turned: Evenness | None = None
     out: str = ""
 
     @property
@@ -53,6 +64,11 @@ class Even:
         """Whether nothing is left to be made even."""
         after = self.told.after if self.made is None else self.made.after
         return after.furthest < ENOUGH
+
+    @property
+    def found(self) -> Design:
+        """The design that was found; that which there was, if none is worth it."""
+        return self.made.reply.design if self.made and self.made.worth else self.stages.design
 
 
 def run_even(
@@ -75,17 +91,28 @@ def run_even(
     stages = build(design)
     stages = build(made_of(dressed(design, stages.model.lines, lengths), elastics), stages)
     solution = run_to_body(stages)
-    settled = solution.verdict.motion == "settled" and solution.verdict.state != "folded"
     told = evenness(stages, solution.control_points)
-    even = Even(stages, told, settled, shape_warnings(solution))
+    even = Even(stages, told, _settled(solution), shape_warnings(solution))
     if make and not even.enough:
-        even = replace(even, made=make_even(stages))
+        made = make_even(stages)
+        # The adaptive control keeps both volumes together and the exact answer each: they do not compare.
+        even = replace(even, told=replace(told, after=made.before), made=made)
+        even = replace(even, turned=_turned(build(even.found, stages)))
     if out:
-        found = even.made.reply.design if even.made else stages.design
-        document = open_project(source) if is_project(source) else Document.of(found)
-        save_project(out, document.with_design(found), stages.scan, None)
+        document = open_project(source) if is_project(source) else Document.of(even.found)
+        save_project(out, document.with_design(even.found), stages.scan, None)
         even = replace(even, out=out)
     return even
+
+
+def _turned(stages: Stages) -> Evenness | None:
+    """Return how left and right differ as the design is solved, None if that is no result."""
+    solution = run(stages)
+    return evenness(stages, solution.control_points).after if _settled(solution) else None
+
+
+def _settled(solution: Solution) -> bool:
+    return solution.verdict.motion == "settled" and solution.verdict.state != "folded"
 
 
 def even_text(even: Even, as_json: bool, *, made: bool) -> str:
@@ -96,21 +123,30 @@ def even_text(even: Even, as_json: bool, *, made: bool) -> str:
 def _plain(even: Even, made: bool) -> Iterator[str]:
     rows = even_rows(even.told.before, even.told.after)
     made_rows = {row.key: row.after for row in _made_rows(even)}
-    heading = ("before", "after", *(["made even"] if even.made else []))
+    heading = ("before", "after", *([_heading(even.made)] if even.made else []))
     yield f"{'':26}" + "".join(f"{each:>17}" for each in heading)
     for row in rows:
         values = [row.before, row.after, *([made_rows[row.key]] if made_rows else [])]
-        spread = f"  ± {row.spread:.0f}, an estimate" if row.spread else ""
-        yield f"{TITLES[row.key]:26}" + "".join(f"{_said(row, each):>17}" for each in values) + spread
+        off = f"  ± {row.plus_minus:.0f} by the roots" if row.plus_minus else ""
+        yield f"{TITLES[row.key]:26}" + "".join(f"{_said(row, each):>17}" for each in values) + off
     yield from even.told.notes
     if made:
         yield from _making(even)
     if even.out:
-        yield f"written to {even.out}"
+        unchanged = ", as it was" if even.found is even.stages.design else ""
+        yield f"written to {even.out}{unchanged}"
+
+
+def _heading(made: Evened) -> str:
+    return "made even" if made.even else "nearest"
 
 
 def _made_rows(even: Even) -> list[EvenRow]:
     return even_rows(even.made.rest, even.made.after) if even.made else []
+
+
+def _turned_rows(even: Even) -> list[EvenRow]:
+    return even_rows(even.turned, even.turned) if even.turned else []
 
 
 def _said(row: EvenRow, value: float | None) -> str:
@@ -125,29 +161,55 @@ def _making(even: Even) -> Iterator[str]:
     if even.made is None:
         yield f"Even already: both bust points lie within {ENOUGH:g} mm; nothing was changed."
         return
-    reply, before = even.made.reply, even.stages.design
-    if even.made.parted:
-        yield f"Left and right now change each by itself: {', '.join(even.made.parted)}."
-    for line in reply.design.lines:
-        whole = line.name.removesuffix(" left").removesuffix(" right")
-        former = before.ratio(line.name if line.name in before.worn() else whole)
-        yield f"{line.name}: {100.0 * line.ratio:.1f} %; before {100.0 * former:.1f} %"
-    kept = [goal.name for goal in even.made.goals if goal.name in ("lift", "out")]
-    if kept:
-        told = " and ".join(f"{name} {reply.reached[name]:+.1f} mm" for name in kept)
-        yield f"Asked to stay besides, both sides together: {told}."
-    yield remains(even.made)
+    made, before = even.made, even.stages.design
+    if made.worth:
+        if made.parted:
+            yield f"Left and right now change each by itself: {', '.join(made.parted)}."
+        for line in made.reply.design.lines:
+            whole = line.name.removesuffix(" left").removesuffix(" right")
+            former = before.ratio(line.name if line.name in before.worn() else whole)
+            yield f"{line.name}: {100.0 * line.ratio:.1f} %; before {100.0 * former:.1f} %"
+    ways = (f"{name} {was:+.1f} to {now:+.1f} mm" for name, (was, now) in made.kept.items())
+    yield f"Both sides together, from after to {_heading(made)}: {', '.join(ways)}."
+    yield remains(made)
+    if not made.worth:
+        gained, lost = max(made.gained, 0.0), made.lost
+        yield f"Left as it is: that would bring {gained:.1f} mm, and move both sides by {lost:.1f} mm."
+    elif before.volume != "exact":
+        yield as_solved(before.volume, even.turned)
+
+
+def as_solved(volume: str, turned: Evenness | None) -> str:
+    """Return in a sentence what remains as the design is solved, which is not by the exact answer."""
+    both = f"The last two columns are exact answers. Solved as the design is set, {_CONTROLS[volume]}"
+    if turned is None:
+        return f"{both} it does not come to rest."
+    row = next(row for row in even_rows(turned, turned) if row.key == "larger")
+    larger = "" if row.after is None else f"; breast larger: {_said(row, row.after)}"
+    return f"{both} {_left(turned)} remain{larger}."
+
+
+def _left(told: Evenness) -> str:
+    return f"{abs(told.higher):.1f} mm in height and {abs(told.further_out):.1f} mm to the front"
 
 
 def remains(made: Evened) -> str:
     """Return in a sentence how even it is made, and why it is no more so."""
-    up, out = abs(made.after.higher), abs(made.after.further_out)
-    left = f"{up:.1f} mm in height and {out:.1f} mm to the front"
+    left, reply = _left(made.after), made.reply
     if made.even:
         return f"Even: {left} remain."
-    if not made.reply.agreed:
+    if not reply.agreed:
         return f"{left} remain: lengths, elastics and pressures did not come to agree."
-    return f"{left} remain: {' and '.join(reasons(made.reply))}."
+    return f"{left} remain: {' and '.join(_why(made))}."
+
+
+def _why(made: Evened) -> list[str]:
+    """Return why it is no more even: nothing but lift and way out may stand in the way."""
+    reply = made.reply
+    hindered = reply.at_end or reply.strained or reply.pressing
+    if hindered or len(made.goals) == len(EVEN):
+        return reasons(reply)
+    return ["more of it would take lift or way out away"]
 
 
 def _figures(even: Even) -> dict[str, Any]:
@@ -157,6 +219,7 @@ def _figures(even: Even) -> dict[str, Any]:
             row.key: {**asdict(row), "title": TITLES[row.key]}
             for row in even_rows(even.told.before, even.told.after)
         },
+        "answer": "exact" if made else even.stages.design.volume,
         "settled": even.settled,
         "notes": list(even.told.notes),
         "made": None
@@ -164,11 +227,14 @@ def _figures(even: Even) -> dict[str, Any]:
         else {
             "rows": {row.key: row.after for row in _made_rows(even)},
             "even": made.even,
+            "worth": made.worth,
             "lines": {line.name: 100.0 * line.ratio for line in made.reply.design.lines},
             "parted": list(made.parted),
             "goals": {goal.name: goal.value for goal in made.goals},
             "remain_mm": {"height": made.after.higher, "out": made.after.further_out},
-            "because": [] if made.even else reasons(made.reply),
+            "kept_mm": {name: {"before": was, "after": now} for name, (was, now) in made.kept.items()},
+            "as_solved": None if even.turned is None else {row.key: row.after for row in _turned_rows(even)},
+            "because": [] if made.even else _why(made),
         },
         "definition": "sided rows: positive where the left is higher, further or larger [mm, ml]; skin: "
         "that of one breast less that of the other, mirrored; left and right stand out more by so many ml",

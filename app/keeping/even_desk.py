@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, Signal
 from app.asking.jobs import Job
 from app.panels.even_card import EvenCard
 from app.panels.result import ResultPanel
-from app.presenting.even import even_summary, map_note, parted_titles
+from app.presenting.even import even_summary, left_as_it_is, map_note, parted_titles
 from app.presenting.verdict import doubt_of
 from app.wording.words import listed, tr
 from core.advice.parting import parted
@@ -18,6 +18,7 @@ from core.aims.figure import Goal
 from core.design import Design
 from core.evenness import BeforeAfter, evenness
 from core.live import Frame
+from core.measuring.plus_minus import AFTER
 from core.pipeline import Stages
 from core.progress import Progress
 from core.template import read_template
@@ -50,6 +51,7 @@ class EvenDesk(QObject):
         self._wished: tuple[Design, tuple[Goal, ...]] | None = None
         self.found.connect(self.follow)
         panel.opened.connect(self.follow)
+        window.spread_desk.found.connect(self.follow)
         self.card.shown.connect(self._show_map)
         self.card.asked.connect(self._ask)
 
@@ -93,8 +95,14 @@ class EvenDesk(QObject):
             self.card.show_summary(None, faint=False)
             return
         of, told = self._shown
-        self.card.show_summary(even_summary(told, of.stages, doubt_of(of)), faint=of is not frame)
+        summary = even_summary(told, of.stages, doubt_of(of), self._off(of))
+        self.card.show_summary(summary, faint=of is not frame)
         self.follow_map()
+
+    def _off(self, frame: Frame) -> float | None:
+        """Return the ± that stands in the table at the difference of the volumes, once all of it is known."""
+        spread = self._window.spread_desk.of(frame)
+        return spread.plus_minus(f"{AFTER}:asymmetry_volume") if spread and spread.whole else None
 
     def follow_map(self) -> None:
         """Tell by the card whether the map lies on the body."""
@@ -126,6 +134,9 @@ class EvenDesk(QObject):
         self._making = None
         if design is not self._window.session.design:
             return  # the wishes would be those of another one
+        if not made.worth:
+            self._window.notices.show_notice("info", *left_as_it_is(made.gained, made.lost))
+            return
         if made.parted:
             template = read_template(design.template)
             titles = listed(parted_titles(design, made.parted))

@@ -15,14 +15,17 @@ _FULL = {"mm": 10.0, "ml": 60.0}
 """What fills half a bar."""
 
 
-def even_summary(told: BeforeAfter, stages: Stages, doubt: str = "") -> EvenSummary:
-    """Return what the card says of a body; with a ``doubt`` there is nothing to be told after."""
+def even_summary(told: BeforeAfter, stages: Stages, doubt: str = "", off: float | None = None) -> EvenSummary:
+    """Return what the card says of a body; with a ``doubt`` there is nothing to be told after.
+
+    ``off`` [ml] is how far the difference of the volumes may be off by all that is not sure, if it is known.
+    """
     now = told.before if doubt else told.after
     rows = {row.key: row for row in even_rows(told.before, told.after)}
     hint, possible = _hint(stages, now) if not doubt else (doubt, False)
     return EvenSummary(
         _sentence(now),
-        tuple(_view(rows[key], bool(doubt)) for key in _titles()),
+        tuple(_view(rows[key], bool(doubt), off) for key in _titles()),
         (*map(say, told.notes), *_rests_on()),
         hint,
         possible,
@@ -51,15 +54,19 @@ def _sentence(now: Evenness) -> str:
     return tr("Bust points: {how}.").format(how=listed(parts))
 
 
-def _view(row: EvenRow, doubtful: bool) -> EvenView:
+def _view(row: EvenRow, doubtful: bool, off: float | None) -> EvenView:
     title, tip = _titles()[row.key]
     after = None if doubtful else row.after
     shares = tuple(
         None if not row.sided or value is None else value / _FULL[row.unit] for value in (row.before, after)
     )
-    if row.spread:
-        spread = tr("An estimate, ± {off} ml.").format(off=number(row.spread, 0))
-        tip = joined((tip, spread))
+    if row.plus_minus:
+        sure = (
+            tr("An estimate, ± {off} ml by the roots alone.")
+            if off is None
+            else tr("An estimate, ± {off} ml.")
+        )
+        tip = joined((tip, sure.format(off=number(row.plus_minus if off is None else off, 0))))
     return EvenView(
         f"{title} [{row.unit}]", _written(row, row.before), _written(row, after), tip, (shares[0], shares[1])
     )
@@ -125,3 +132,10 @@ def parted_titles(design: Design, names: tuple[str, ...]) -> list[str]:
         for name in names
     ]
     return list(dict.fromkeys(titles))
+
+
+def left_as_it_is(gained: float, lost: float) -> tuple[str, str]:
+    """Return why a design is not made even, and what could be done; both in mm, see ``Evened``."""
+    said = tr("These lines cannot make it more even: {gained} mm nearer would move both sides by {lost} mm.")
+    hint = tr("Other lines may do more: a strap lifts one side alone.")
+    return said.format(gained=number(max(gained, 0.0)), lost=number(lost)), hint

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
+from math import hypot
 
 from core.advice.parting import ENOUGH, moves_one_side, partable, parted
-from core.aims.answers import free_lines
 from core.aims.bust import LIFT, OUT
 from core.aims.even import FURTHER_OUT, HIGHER
 from core.aims.figure import Goal
@@ -25,7 +25,10 @@ from core.template import read_template
 EVEN = (Goal(HIGHER, 0.0), Goal(FURTHER_OUT, 0.0))
 """Both bust points equally high and equally far out."""
 
-_ALIKE = 0.5  # of two replies that are so nearly as even, the one that keeps more [mm]
+_UNSEEN = 0.1  # [mm]
+
+KEPT = (LIFT, OUT)
+"""What is to stay of both sides together: else least tension would undo the garment."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +36,8 @@ class Evened:
     """What makes a design even, or nearest to it: the ``reply`` to ``goals``, those of evenness first.
 
     ``rest``, ``before`` and ``after`` are how left and right differ at rest, and in the exact answers of the
-    design as it was and as it was found. ``parted`` names the lines that were split or unlinked for it.
+    design as it was and as it was found. ``kept`` is how lift and way out went from there to here [mm].
+    ``parted`` names the lines that were split or unlinked for it.
     """
 
     reply: Reply
@@ -41,6 +45,7 @@ class Evened:
     rest: Evenness
     before: Evenness
     after: Evenness
+    kept: Mapping[str, tuple[float, float]]
     parted: tuple[str, ...]
 
     @property
@@ -48,16 +53,33 @@ class Evened:
         """Whether both bust points come to lie alike."""
         return self.after.furthest < ENOUGH
 
+    @property
+    def gained(self) -> float:
+        """By how much nearer to each other the bust points lie, mirrored [mm]."""
+        return self.before.apart - self.after.apart
+
+    @property
+    def lost(self) -> float:
+        """By how much both sides together lie elsewhere than they did, in height and way out [mm]."""
+        return hypot(*(after - before for before, after in self.kept.values()))
+
+    @property
+    def worth(self) -> bool:
+        """Whether it is even, or at least brings more than what it takes away."""
+        return self.even or self.gained > max(self.lost, ENOUGH)
+
 
 def even_goals(stages: Stages, control_points: Points) -> tuple[Goal, ...]:
     """Return what to ask for so that left and right come alike and the rest stays: the first the most.
 
-    Lift and way out of both together are to stay as they are at ``control_points`` (n, 3) [mm], as far as
-    there are lengths left for it: else least tension would undo the garment.
+    Lift and way out of both together are to stay as they are at ``control_points`` (n, 3) [mm]. With fewer
+    lengths than wishes the nearest to all of them then takes no more away than it brings.
     """
-    kept = [Goal(name, reading(stages, name)(control_points).value) for name in (LIFT, OUT)]
-    left = max(len(list(free_lines(stages))) - len(EVEN), 0)
-    return (*EVEN, *kept[:left])
+    return (*EVEN, *(Goal(name, value) for name, value in _kept(stages, control_points).items()))
+
+
+def _kept(stages: Stages, control_points: Points) -> dict[str, float]:
+    return {name: reading(stages, name)(control_points).value for name in KEPT}
 
 
 def make_even(
@@ -66,11 +88,12 @@ def make_even(
     kept: Collection[str] = (),
     progress: Progress = quiet,
 ) -> Evened:
-    """Return the lengths that bring both bust points of a design alike, or as near as they can.
+    """Return the lengths that bring both bust points of a design alike, or as near as is worth it.
 
     Pairs are set apart and lines across both sides split first, if nothing else moves one side alone. What
-    cannot be kept besides is let go of. ``shortest`` and ``kept`` see ``ask``. Raises UserError if a breast
-    is missing, no worn line can move one side alone, or nothing balances; Cancelled.
+    cannot be kept besides is let go of where that makes it even, or brings more than it takes away. Where
+    nothing does, what is returned is not ``worth`` it. ``shortest`` and ``kept`` see ``ask``. Raises
+    UserError if a breast is missing, no worn line can move one side alone, or nothing balances; Cancelled.
     """
     if not all(shows_breast(stages.landmarks, side) for side in SIDES):
         raise UserError(NO_BREAST, "Place its bust point, or change lines by hand.")
@@ -85,31 +108,24 @@ def make_even(
             "No worn line can move one side alone.",
             "Wear a line that is not locked: one across both sides is split, a pair set apart.",
         )
-    here = run(exact).control_points
-    reply, goals = _asked(exact, even_goals(exact, here), shortest, kept, progress)
-    there = build(reply.design, exact, progress)
-    told = evenness(exact, here)
-    after = evenness(there, run(there).control_points).after
-    design = replace(reply.design, volume=stages.design.volume)
-    return Evened(replace(reply, design=design), goals, told.before, told.after, after, names)
+    best = _best(exact, names, lambda goals: ask(exact, goals, shortest, kept, progress))
+    design = replace(best.reply.design, volume=stages.design.volume)
+    return replace(best, reply=replace(best.reply, design=design))
 
 
-def _asked(
-    stages: Stages,
-    goals: tuple[Goal, ...],
-    shortest: Mapping[str, float] | None,
-    kept: Collection[str],
-    progress: Progress,
-) -> tuple[Reply, tuple[Goal, ...]]:
-    """Return the reply that keeps most of what there is among those that make it about as even."""
-    best: tuple[float, Reply, tuple[Goal, ...]] | None = None
+def _best(stages: Stages, names: tuple[str, ...], asked: Callable[[tuple[Goal, ...]], Reply]) -> Evened:
+    """Return what brings the most among those that keep less and less; if any is even, among these."""
+    here = run(stages).control_points
+    told, found = evenness(stages, here), []
+    were, goals = _kept(stages, here), even_goals(stages, here)
     for count in range(len(goals), len(EVEN) - 1, -1):
-        wanted = goals[:count]
-        reply = ask(stages, wanted, shortest, kept, progress)
-        uneven = max(abs(reply.reached[goal.name]) for goal in EVEN)
-        if best is None or uneven < best[0] - _ALIKE:
-            best = uneven, reply, wanted
+        reply = asked(goals[:count])
+        there = build(reply.design, stages)
+        points = run(there).control_points
+        kept = {name: (were[name], value) for name, value in _kept(there, points).items()}
+        after = evenness(there, points).after
+        found.append(Evened(reply, goals[:count], told.before, told.after, after, kept, names))
         if reply.reachable:
             break
-    assert best is not None
-    return best[1:]
+    # Of several that bring as much, to what cannot be seen, the first keeps the most.
+    return max(found, key=lambda each: (each.even, round((each.gained - each.lost) / _UNSEEN)))
