@@ -1,6 +1,7 @@
 """Leeways of lines against a brute-force scan of their sliders.
 
-Run: python benchmarks/bench_limits.py [FOLDER] [--seed N] [--put]; scans of a folder come to the two samples.
+Run: python benchmarks/bench_limits.py [FOLDER] [--seed N] [--only SCAN...] [--put]; the two samples are always
+in it, and the scans of a folder.
 For each body, glued and sliding, the other lines stand in several ways: all off, by chance, a preset by
 chance, lines of elastic by chance. Then each length of a line is solved from rest by itself, half a percent
 apart, and what changes between two of them is halved to 0.05 %: strain, folds and lengths without balance
@@ -160,7 +161,8 @@ def told(limits: Limits, sign: str) -> list[float]:
     if sign != "slack" and limits.shows["slack"] and limits.shows["slack"][-1].short.ratio > first:
         last = limits.shows["slack"][-1].short.ratio
     ends = [(span.short.ratio, span.long.ratio) for span in limits.shows.get(sign, ())]
-    return [end for short, long in ends for end in (short, long) if first < end < last]
+    begins = [short for short, _ in ends if sign == "slack" and short == last]  # slack from rest on
+    return [end for short, long in ends for end in (short, long) if first < end < last] or begins
 
 
 def compared(case: str, stages: Stages, names: tuple[str, ...]) -> Iterator[Boundary]:
@@ -256,13 +258,17 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("folder", type=Path, nargs="?")
     parser.add_argument("--seed", type=int, default=8)
+    parser.add_argument("--only", nargs="+", help="scans to compare; of the others only the chance is drawn")
     parser.add_argument("--put", action="store_true", help="put the table into docs/limits.md")
     options = parser.parse_args()
     rng, boundaries, seconds = np.random.default_rng(options.seed), [], {}
     sliders = 0
     for body in bodies(options.folder):
+        left_out = options.only and body.scan.name not in options.only
         for contact in ("glued", "sliding"):
             for state, design in states(rng, body, contact):
+                if left_out:
+                    continue
                 try:
                     stages = build(design, body)
                 except UserError as refused:

@@ -27,6 +27,9 @@ from core.solving.potential import Potential
 Look = Callable[[Found], float]
 """How far an answer is from showing a sign; 0 or less where it does [1]."""
 
+OF_SHAPE = ("strained", "overstrained", "folded", "inverted")
+"""Signs of the shape alone, which are quick to look at."""
+
 _CALM = 1.0  # of the margin where nothing can vibrate
 
 

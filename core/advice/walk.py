@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import groupby, pairwise
@@ -9,7 +10,7 @@ from itertools import groupby, pairwise
 import numpy as np
 
 from core.advice.ground import Found, Ground
-from core.advice.looks import Look
+from core.advice.looks import OF_SHAPE, Look
 from core.lines import RATIO_LIMITS, Line
 
 PRECISION = 0.0005
@@ -18,8 +19,13 @@ PRECISION = 0.0005
 RED = ("overstrained", "folded", "inverted", "stretched")
 """Signs of a length beyond which no body, or no garment, is to be shown."""
 
-_STRIDE = 0.05
+_STRIDE = 0.025  # zones that come and go within less are only found where margins hint at it
 _NEARLY = 0.5  # of the least margin, from which on it is looked whether there is none in between [1]
+_LEAPS = 0.005, 0.05, 0.1, 0.2
+"""How far beyond the last balance lines that spring back may snap to another, as it is tried [1]."""
+
+_WIDE = 0.03  # more than a shape's margin changes by, there and back, within a stride [1]
+_BARELY = 0.001  # margin of a guessed shape from which on it is solved for [1]
 _HAIR = 1e-9  # what is not there and what round-off makes of it [1]
 
 
@@ -104,10 +110,16 @@ class Walk:
         return tuple(Span(run[0].length, run[-1].length) for run in runs)
 
     def _nearly(self, sign: str) -> Iterator[Stop]:
-        """Yield stops where ``sign`` may come and go, or go and come, between two that are alike.
+        """Yield stops where ``sign`` may come and go, or go and come, between two that are alike."""
+        for ratio in self._dips(sign) if sign in OF_SHAPE else self._turns_back(sign):
+            above = bisect([stop.length.ratio for stop in self.stops], ratio)
+            nearest = self.stops[max(above - 1, 0) : above + 1]
+            stop = self._near(ratio, _ahead(nearest, ratio))
+            if stop is not None:
+                yield stop
 
-        That is where a parabola through three margins, the middle one nearest to nothing, turns back.
-        """
+    def _turns_back(self, sign: str) -> Iterator[float]:
+        """Yield where a parabola through three margins, the middle one nearest to nothing, turns back."""
         for three in zip(self.stops, self.stops[1:], self.stops[2:], strict=False):
             before, middle, after = (stop.margin(sign) for stop in three)
             if not min(before * middle, middle * after) > 0.0 or abs(middle) > min(abs(before), abs(after)):
@@ -116,10 +128,33 @@ class Walk:
             bend, slope, _ = np.polyfit(at, (before, middle, after), 2).tolist()
             turn = -0.5 * slope / bend if bend else 0.0
             if (middle + 0.5 * slope * turn) / middle < _NEARLY and at[0] < turn < at[2]:
-                ratio = three[1].length.ratio + turn
-                found = self._near(ratio, _ahead([three[1], three[0 if turn < 0.0 else 2]], ratio))
-                if found is not None:
-                    yield found
+                yield three[1].length.ratio + turn
+
+    def _dips(self, sign: str) -> Iterator[float]:
+        """Yield where the shape between two stops, as three of them lead to it, all but shows ``sign``.
+
+        Nothing is solved for that, so it is looked at often: the least margin is closed in on.
+        """
+        for at in range(1, len(self.stops)):
+            ends = self.stops[at - 1 : at + 1]
+            one, other = (stop.margin(sign) for stop in ends)
+            three = self.stops[max(at - 2, 0) :][:3]
+            if not one * other > 0.0 or min(abs(one), abs(other)) > _WIDE or len(three) < 3:
+                continue
+            short, long = (stop.length.ratio for stop in ends)
+            for _ in range(3):
+                ratios = np.linspace(short, long, 5)
+                rooms = [np.sign(one) * self._margin_between(sign, three, ratio) for ratio in ratios[1:-1]]
+                least = 1 + int(np.argmin(rooms))
+                short, long = ratios[least - 1], ratios[least + 1]
+            if min(rooms) < min(_BARELY, abs(one), abs(other)):
+                yield float(ratios[least])
+
+    def _margin_between(self, sign: str, three: list[Stop], ratio: float) -> float:
+        """Return the margin of what three stops lead to at ``ratio``, without solving for it [1]."""
+        first = _ahead(three[:2], ratio)
+        share = (ratio - three[0].length.ratio) / (three[2].length.ratio - three[0].length.ratio)
+        return self._looks[sign](first.mixed(_ahead(three[1:], ratio), share))
 
     def _way(self, stops: list[Stop], end: float, through: bool) -> tuple[list[Stop], Length | None]:
         """Return the stops on the way to ``end``, and the last length if no balance lies beyond."""
@@ -157,7 +192,7 @@ class Walk:
         if self._snapped or self._ground.model.mechanics.line_hold == "held":
             return None
         self._snapped = True
-        ratios = (above - strides * _STRIDE for strides in (0.1, 1.0, 2.0, 4.0))
+        ratios = (above - leap for leap in _LEAPS)
         tries = (self.solved(ratio) for ratio in ratios if ratio >= RATIO_LIMITS[0])
         return next((there for there in tries if there is not None), None)
 
@@ -177,7 +212,7 @@ class Walk:
         """Return a stop where ``sign`` seems to begin, a little beyond on the side where more is unknown."""
         width = shown.length.ratio - calm.length.ratio
         share = calm.margin(sign) / (calm.margin(sign) - shown.margin(sign))
-        nudge = 0.4 * PRECISION / abs(width)
+        nudge = 0.3 * PRECISION / abs(width)
         share = 0.5 if halve else min(max(share + (nudge if share < 0.5 else -nudge), nudge), 1.0 - nudge)
         ratio = calm.length.ratio + share * width
         starts = self._starts(calm.found, shown.found, share)
