@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from types import SimpleNamespace
+
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
@@ -9,6 +12,7 @@ from shapes import SAMPLES
 from window_tools import Script, run_main, settled, undrawn
 
 import app.keeping.even_desk as desk_module
+from app.keeping.spread_desk import SpreadDesk
 from app.main_window import MainWindow
 from app.panels.even_card import EvenCard
 from core.design import Design
@@ -17,6 +21,12 @@ from core.evenness import BeforeAfter, evenness
 pytestmark = pytest.mark.usefixtures("empty_house")
 PERSON = [str(SAMPLES / "person.ply")]
 SIDES = ("left", "right")
+
+
+@pytest.fixture(autouse=True)
+def not_how_sure(monkeypatch: pytest.MonkeyPatch) -> None:
+    """How sure the figures are takes longest by far of what the tab works out, and is tested elsewhere."""
+    monkeypatch.setattr(SpreadDesk, "_begin", lambda desk: None)
 
 
 def opened(window: MainWindow, mid: float = 0.95, full: float = 0.97) -> Script:
@@ -49,6 +59,8 @@ def test_the_card_tells_what_differs_shows_where_and_makes_it_even(monkeypatch: 
         yield from opened(window)
         shows_the_map(window)
         yield from tells_and_fades(window)
+        takes_the_spread_of_the_table(window, monkeypatch)
+        yield from leaves_what_is_not_worth_it(window)
         yield from makes_even(window, monkeypatch)
 
     run_main(PERSON, script)
@@ -92,6 +104,38 @@ def shows_the_map(window: MainWindow) -> None:
     maps.choose("sides")
     card.look.click()
     assert maps.name == ""
+
+
+def takes_the_spread_of_the_table(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One figure has one ±: until all of it is known the card says of what it is."""
+    desk = window.even_desk
+
+    def tip() -> str:
+        assert desk.card.summary is not None
+        return next(view.tip for view in desk.card.summary.views if view.title == "Breast larger [ml]")
+
+    assert tip().endswith("ml by the roots alone.")
+    known = {"after:asymmetry_volume": 36.2}
+    with monkeypatch.context() as patch:
+        patch.setattr(window.spread_desk, "of", lambda _: SimpleNamespace(whole=True, plus_minus=known.get))
+        desk.follow()
+        assert tip().endswith("An estimate, ± 36 ml.")
+    desk.follow()
+    assert tip().endswith("ml by the roots alone.")
+
+
+def leaves_what_is_not_worth_it(window: MainWindow) -> Script:
+    """Glued lines across both sides do not level a breast: it is said, and nothing is changed."""
+    before, count = window.session.design, window.session.undo_stack.count()
+    window.even_desk.card.make.click()
+    yield window.notices.isVisible
+    shown = window.notices._shown
+    assert shown is not None
+    assert shown.sentence.startswith("These lines cannot make it more even")
+    assert window.session.design is before
+    assert window.session.undo_stack.count() == count
+    window.session.edit(lambda d: replace(d, line_contact="sliding"), "Sliding")
+    yield lambda: is_fresh(window)
 
 
 def makes_even(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> Script:
