@@ -26,9 +26,17 @@ from core.design import Design, ScanSource
 from core.elastics import find_elastic
 from core.errors import UserError
 from core.pipeline import Stages, build
-from core.worn_scan.numbers import FIRM_CHEST, PRESTRESS, STIFFNESS, TISSUE, Number, candidates
+from core.worn_scan.numbers import (
+    FIRM_CHEST,
+    LINE_STIFFNESS,
+    PRESTRESS,
+    STIFFNESS,
+    TISSUE,
+    Number,
+    candidates,
+)
 
-GARMENTS = ("glued", "sliding", "prestressed", "one line", "elastic")
+GARMENTS = ("glued", "sliding", "prestressed", "one line", "elastic", "one roll")
 GOOD = 0.05
 
 
@@ -70,10 +78,10 @@ def garment(rng: np.random.Generator, base: Design, kind: str) -> Design:
     return design
 
 
-def truth_of(rng: np.random.Generator, stages: Stages) -> Design:
-    """Return the design with true numbers by chance."""
+def truth_of(rng: np.random.Generator, stages: Stages, *, each: bool = True) -> Design:
+    """Return the design with true numbers by chance; ``each`` line has a stiffness of its own."""
     design = stages.design
-    for number in candidates(stages, lengths=False, each=True):
+    for number in candidates(stages, lengths=False, each=each):
         if number.kind == FIRM_CHEST:
             value = float(rng.uniform(0.03, 0.15))
         elif number.kind == PRESTRESS:
@@ -89,7 +97,7 @@ def truth_of(rng: np.random.Generator, stages: Stages) -> Design:
 def case(rng: np.random.Generator, base: Stages, kind: str, folder: Path) -> Case:
     """Make a pair and find its numbers."""
     stages = build(garment(rng, base.design, kind), base)
-    truth = truth_of(rng, stages)
+    truth = truth_of(rng, stages, each=kind != "one roll")
     mesh, matrix = scanned(worn_mesh(stages, truth), stages, rng)
     path = written(mesh, folder / "worn.ply")
     begun = time.process_time()
@@ -111,9 +119,12 @@ def offs(stages, truth, found):
     by_name: dict[str, Number] = {number.name: number for number in every}
     for one in found.calibration.numbers:
         number = by_name[one.name]
-        true = number.of(truth)
-        kind = "stiffness of lines" if number.kind in (STIFFNESS, "line_stiffness") else number.kind
-        yield Off(kind.replace("_", " "), one.after / true - 1.0, one.plus_minus / one.after, not one.kept)
+        stiffness = number.kind in (STIFFNESS, LINE_STIFFNESS)
+        kind = "stiffness of lines" if stiffness else number.kind.replace("_", " ")
+        # One that was found for all lines is held against that of each.
+        of = [Number(STIFFNESS, (line,)) for line in number.lines] if stiffness else [number]
+        for each in of:
+            yield Off(kind, one.after / each.of(truth) - 1.0, one.plus_minus / one.after, not one.kept)
 
 
 def main() -> None:

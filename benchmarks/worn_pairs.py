@@ -66,9 +66,17 @@ def only(mesh: Mesh, kept: np.ndarray) -> Mesh:
 
 
 def other_mesh(mesh: Mesh) -> Mesh:
-    """Return the same skin with other vertices: each triangle in four, then what lies together made one."""
+    """Return the same skin with other vertices: each triangle in four, then one kept of what lies together.
+
+    A scanner's places lie on the skin, not in its chords: the middle of an edge is lifted by what the
+    normals of its ends turn, as a parabola would be.
+    """
     edges = mesh.edges
-    middle = 0.5 * (mesh.vertices[edges[:, 0]] + mesh.vertices[edges[:, 1]])
+    first, last = mesh.vertices[edges[:, 0]], mesh.vertices[edges[:, 1]]
+    ends = mesh.vertex_normals[edges]
+    lift = np.einsum("ij,ij->i", last - first, ends[:, 1] - ends[:, 0]) / 8.0
+    way = ends.sum(axis=1)
+    middle = 0.5 * (first + last) + lift[:, None] * way / np.linalg.norm(way, axis=1)[:, None]
     count = len(mesh.vertices)
     keys = edges[:, 0] * count + edges[:, 1]  # in order, as edges are
     corners = mesh.faces
@@ -85,11 +93,16 @@ def other_mesh(mesh: Mesh) -> Mesh:
     )
     _, place = np.unique(np.floor(points / size).astype(int), axis=0, return_inverse=True)
     place = place.ravel()
-    met = [np.bincount(place, points[:, axis]) / np.bincount(place) for axis in range(3)]
+    many = np.bincount(place)
+    met = np.stack([np.bincount(place, points[:, axis]) / many for axis in range(3)], axis=1)
+    away = np.linalg.norm(points - met[place], axis=1)
+    old = np.arange(len(points)) < count
+    # The new one that is nearest to the middle of its cell, where there is any.
+    chosen = np.lexsort((away, old, place))[np.cumsum(many) - many]
     faces = place[faces]
     faces = faces[[len(set(face)) == 3 for face in faces.tolist()]]
-    _, first = np.unique(np.sort(faces, axis=1), axis=0, return_index=True)
-    return Mesh(np.stack(met, axis=1), faces[np.sort(first)])
+    _, once = np.unique(np.sort(faces, axis=1), axis=0, return_index=True)
+    return Mesh(points[chosen], faces[np.sort(once)])
 
 
 def written(mesh: Mesh, path: Path) -> str:

@@ -7,7 +7,7 @@ from core.mesh import Points
 from core.pipeline import Stages, read_body
 from core.progress import Progress, quiet
 from core.worn_scan.aligning import Alignment, align
-from core.worn_scan.calibrating import Found, calibrate, exact_answer
+from core.worn_scan.calibrating import Found, calibrate, exact_answer, refuse_bare
 from core.worn_scan.comparing import THICKEST, Difference, Figures, Worn, compare, laid_on
 
 __all__ = [
@@ -21,6 +21,7 @@ __all__ = [
     "compare",
     "predicted",
     "read_worn",
+    "refuse_bare",
 ]
 
 _READ = 0.7  # what part of the time reading takes, roughly

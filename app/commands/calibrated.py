@@ -11,7 +11,7 @@ import numpy as np
 
 from app.commands.settings import dressed, made_of
 from core import __version__
-from core.calibration import THICKEST, Difference, Figures, Found, Worn, calibrate, read_worn
+from core.calibration import THICKEST, Difference, Figures, Found, Worn, calibrate, read_worn, refuse_bare
 from core.design import Design, ScanSource
 from core.design_calibration import FoundNumber
 from core.document import Document
@@ -61,6 +61,7 @@ def run_calibrate(
         )
     stages = build(design)
     stages = build(made_of(dressed(design, stages.model.lines, lengths), elastics), stages)
+    refuse_bare(stages)  # before half a minute is spent on reading
     worn = read_worn(stages, told.source)
     found = calibrate(stages, worn, thickness=told.thickness, lengths=told.lengths)
     if told.out:
@@ -100,7 +101,8 @@ def _plain(done: Calibrated) -> Iterator[str]:
     for number in found.calibration.numbers:
         if number.kept:
             yield stays(number, found.confused.get(number.name, ""))
-    yield "± is 95 % of what the noise of the scans makes. The numbers hold for this person and this garment."
+    yield "± is 95 % of what noise of the scans makes; another posture or breath is not in it."
+    yield "The numbers hold for this person and this garment."
     if not found.helped:
         yield "It did not help: no number moved by more than its ±, or the prediction came no nearer."
     if done.out:

@@ -21,7 +21,7 @@ from core.mesh import Flags, Floats, Mesh, Points, strewn
 from core.pipeline import Stages
 from core.progress import Progress, quiet
 from core.worn_scan.gap import WornSkin, cells, known
-from core.worn_scan.least_squares import PATCH, normal, spread_of
+from core.worn_scan.least_squares import PATCHES, normal, spread_of
 
 MET = 5.0
 """Still skin that is this near to the second scan is met [mm]."""
@@ -188,7 +188,7 @@ def _fine(skin: WornSkin, places: Points, normals: Points, matrix: Floats) -> Fl
         if seen.sum() < 50:
             return matrix
         gaps, here, facing = gaps[seen], here[seen], facing[seen]
-        equations = normal(gaps, _slopes(here, facing), spread_of(gaps), cells(here, PATCH))
+        equations = normal(gaps, _slopes(here, facing), spread_of(gaps))
         step = equations.step()
         matrix = _stepped(step, here) @ matrix
         if np.abs(step[:3]).max() < _STILL_STEP and np.abs(step[3:]).max() < 100.0 * _STILL_STEP:
@@ -204,7 +204,8 @@ def _judged(skin: WornSkin, places: Points, normals: Points, matrix: Floats) -> 
     if len(gaps) < 50:
         return Alignment(_back(matrix), np.inf, np.inf, 0.0, len(gaps) / len(seen), *_UNSURE)
     near = np.abs(gaps) < MET
-    equations = normal(gaps, _slopes(here, facing), spread_of(gaps), cells(here, PATCH))
+    patches = [cells(here, size) for size in PATCHES]
+    equations = normal(gaps, _slopes(here, facing), spread_of(gaps), patches)
     unsure = np.sqrt(np.maximum(np.diag(equations.covariance), 0.0))
     return Alignment(
         _back(matrix),

@@ -24,9 +24,9 @@ from core.solving.potential import Potential
 from core.solving.sensitivity import Answer
 from core.worn_scan.comparing import Difference, Worn, compare, gaps_to
 from core.worn_scan.gap import cells, known
-from core.worn_scan.least_squares import PATCH, Normal, cost, normal, spread_of
+from core.worn_scan.least_squares import PATCHES, Normal, cost, normal, spread_of
 from core.worn_scan.numbers import STIFFNESS, Number, candidates, rates_by
-from core.worn_scan.telling import NOISE, confused_with, least_sure, tellable, unsure_of
+from core.worn_scan.telling import NOISE, confused_with, least_sure, one_will_do, tellable, unsure_of
 
 FEWEST = 200
 """Moving vertices that the worn scan must show for a fit."""
@@ -92,7 +92,8 @@ class _Fit:
     def __init__(self, stages: Stages, worn: Worn, thickness: float, progress: Progress) -> None:
         self.worn, self._thickness, self._progress = worn, thickness, progress
         self.start = stages
-        self.patches: Indices = cells(stages.moving.rest[: stages.moving.count], PATCH)
+        rest = stages.moving.rest[: stages.moving.count]
+        self.patches: list[Indices] = [cells(rest, size) for size in PATCHES]
         self.solves = 0
 
     def look(self, design: Design, numbers: tuple[Number, ...], near: _Look | None = None) -> _Look:
@@ -125,7 +126,7 @@ class _Fit:
     def normal(self, look: _Look, spread: float | None = None) -> Normal:
         """Return the normal equations of a look."""
         seen = known(look.gaps)
-        gaps, patches = look.gaps[seen], self.patches[seen]
+        gaps, patches = look.gaps[seen], [patch[seen] for patch in self.patches]
         return normal(gaps, look.slopes[seen], spread or spread_of(gaps), patches, offset=True)
 
     def least(self, design: Design, numbers: tuple[Number, ...]) -> _Look:
@@ -188,6 +189,12 @@ def exact_answer(stages: Stages, near: Balance | None = None) -> Answer:
     return Answer(Potential(stages.model, ratios, excess), balance)
 
 
+def refuse_bare(stages: Stages) -> None:
+    """Raise UserError if no line that moves the body is worn."""
+    if not len(stages.model.pulling):
+        raise UserError("No line that moves the body is worn.", "Wear the lines of the garment first.")
+
+
 def calibrate(
     stages: Stages,
     worn: Worn,
@@ -201,9 +208,8 @@ def calibrate(
     The cloth is taken to be ``thickness`` [mm] thick; ``lengths`` tells that lines may have been cut to other
     lengths than designed. Raises UserError if nothing is worn that moves the body, or too little is seen.
     """
+    refuse_bare(stages)
     fit = _Fit(stages, worn, thickness, progress)
-    if not len(stages.model.pulling):
-        raise UserError("No line that moves the body is worn.", "Wear the lines of the garment first.")
     first = fit.look(stages.design, ())
     if known(first.gaps).sum() < FEWEST:
         raise UserError(
@@ -213,10 +219,10 @@ def calibrate(
         )
     told, confused, singular = _tellable(fit, stages, lengths)
     here = fit.least(stages.design, told)
-    while told and (worst := least_sure(fit.normal(here), told)) is not None:
-        confused[told[worst].name] = confused_with(fit.normal(here), told, worst)
-        told = (*told[:worst], *told[worst + 1 :])
+    if one_will_do(fit.normal(here), told, here.stages.design):
+        told, confused = _judged(fit, stages.design, candidates(stages, lengths=lengths, each=False))
         here = fit.least(stages.design, told)
+    told, here = _left(fit, told, here, confused)
     # What stays is the answer from rest, as everywhere.
     last = fit.look(here.stages.design, told)
     before = compare(stages, first.points, worn, thickness)
@@ -225,6 +231,24 @@ def calibrate(
     record = Calibration(worn.name, before.all_of_it.rms, after.all_of_it.rms, numbers, thickness)
     design = replace(last.stages.design, calibration=record)
     return Found(design, last.points, before, after, confused, singular, fit.solves)
+
+
+def _left(
+    fit: _Fit, told: tuple[Number, ...], here: _Look, confused: dict[str, str]
+) -> tuple[tuple[Number, ...], _Look]:
+    """Return what is sure of the numbers that were found, and the look at which it alone was sought.
+
+    The others go into ``confused``, with what they cannot be told from.
+    """
+    while told:
+        equations = fit.normal(here)
+        worst = least_sure(equations, [number.doubt(here.stages.design) for number in told])
+        if worst is None:
+            break
+        confused[told[worst].name] = confused_with(equations, told, worst)
+        told = (*told[:worst], *told[worst + 1 :])
+        here = fit.least(fit.start.design, told)
+    return told, here
 
 
 def _tellable(
@@ -241,7 +265,7 @@ def _tellable(
         told, confused = _judged(fit, stages.design, numbers)
     slopes = fit.look(stages.design, numbers)
     seen = known(slopes.gaps)
-    scaled = slopes.slopes[seen] * np.array([number.doubt for number in numbers]) / NOISE
+    scaled = slopes.slopes[seen] * np.array([number.blind for number in numbers]) / NOISE
     return told, confused, tuple(np.linalg.svd(scaled, compute_uv=False).tolist())
 
 

@@ -14,7 +14,7 @@ from core.landmarks import find_landmarks
 from core.mesh import Floats, Points
 from core.pipeline import Stages
 from core.worn_scan.aligning import Alignment, moved
-from core.worn_scan.gap import WornSkin, known
+from core.worn_scan.gap import WornSkin, curvature, known
 
 THICKEST = 20.0
 """Cloth is not thicker than this [mm]."""
@@ -84,7 +84,8 @@ def gaps_to(stages: Stages, points: Points, skin: WornSkin, thickness: float) ->
     """
     count = stages.moving.count
     places, normals = stages.shape(points)
-    return np.asarray(skin.gaps(places[:count], normals[:count]) + thickness)
+    curved = curvature(places, normals, stages.moving.corners)[:count]
+    return np.asarray(skin.gaps(places[:count], normals[:count], curved) + thickness)
 
 
 def compare(stages: Stages, points: Points, worn: Worn, thickness: float = 0.0) -> Difference:

@@ -1,6 +1,8 @@
 """How far places lie before a skin, along their own normals: unbiased where the skin is noisy (ours).
 
 The nearest place of a rough skin is its nearest bump; where the normal meets it, bumps and hollows even out.
+A triangle cuts the corner of a round skin: by how much, the curvature of the predicted skin tells, which has
+no noise of this scan.
 """
 
 from __future__ import annotations
@@ -10,8 +12,8 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial import cKDTree
 
-from core.mesh import Flags, Floats, Indices, Mesh, Points
-from core.proximity import centroids, nearest_on
+from core.mesh import Faces, Flags, Floats, Indices, Mesh, Points
+from core.proximity import centroids, nearest_on, shares
 
 REACH = 40.0
 """Skin that is further away than this is none that a place could be compared with [mm]."""
@@ -32,10 +34,11 @@ class WornSkin:
     def _middles(self) -> cKDTree:
         return cKDTree(centroids(self.mesh), compact_nodes=False, balanced_tree=False)
 
-    def gaps(self, places: Points, normals: Points) -> Floats:
+    def gaps(self, places: Points, normals: Points, curved: Floats | None = None) -> Floats:
         """Return how far ``places`` lie before the skin along unit ``normals``, both (k, 3), shape (k,) [mm].
 
         Negative behind it; not a number where there is no skin within reach, or none that faces that way.
+        Where the skin is ``curved`` (k,) [1/mm] it stands before its triangles, and is taken to.
         """
         gap = np.zeros(len(places))
         for _ in range(_ROUNDS):
@@ -47,8 +50,20 @@ class WornSkin:
             gap = np.where(np.abs(gap) < REACH, gap, np.nan)
             unknown = np.isnan(gap)
             gap[unknown] = 0.0
-        _, away = self._nearest(places - gap[:, None] * normals)
+        hit = places - gap[:, None] * normals
+        _, away = self._nearest(hit)
+        if curved is not None:
+            gap = gap - curved * self._room(face, hit)
         return np.where(unknown | (away > _MET) | (facing < _SLANT), np.nan, gap)
+
+    def _room(self, face: Indices, hit: Points) -> Floats:
+        """Return by how much a skin of curvature 1 stands before its triangles at ``hit``, (k,) [mm^2].
+
+        Exact for a paraboloid: half the mean square of how far the corners are away, each by its share.
+        """
+        corners = self.mesh.vertices[self.mesh.faces[face]]
+        away = ((corners - hit[:, None]) ** 2).sum(axis=2)
+        return np.asarray(0.5 * (shares(corners, hit) * away).sum(axis=1))
 
     def _nearest(self, places: Points) -> tuple[Indices, Floats]:
         """Return the nearest face to each place and how far away it is, shapes (k,) and (k,) [mm]."""
@@ -59,6 +74,20 @@ class WornSkin:
         away = np.linalg.norm(nearest_on(corners, asked) - asked, axis=1).reshape(-1, count)
         best = away.argmin(axis=1), np.arange(len(places))
         return near[best[1], best[0]], away[best[1], best[0]]
+
+
+def curvature(places: Points, normals: Points, corners: Faces) -> Floats:
+    """Return the mean curvature of a skin at ``places`` (r, 3) [mm], shape (r,) [1/mm]; positive if round.
+
+    From how ``normals`` (r, 3) turn along the edges of its triangles, ``corners`` (3, a).
+    """
+    turned, squares = np.zeros(len(places)), np.zeros(len(places))
+    for start, end in zip(corners, np.roll(corners, 1, axis=0), strict=True):
+        way, turn = places[end] - places[start], normals[end] - normals[start]
+        for at in (start, end):
+            turned += np.bincount(at, np.einsum("ij,ij->i", way, turn), len(places))
+            squares += np.bincount(at, np.einsum("ij,ij->i", way, way), len(places))
+    return turned / np.maximum(squares, 1e-12)
 
 
 def cells(places: Points, size: float) -> Indices:

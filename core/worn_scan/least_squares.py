@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from core.mesh import Floats, Indices
 
-PATCH = 25.0
-"""Places in the same cube of this size may be off together [mm]."""
+PATCHES = (25.0, 50.0)
+"""Places in the same cube of one of these sizes may be off together [mm]."""
 
 _HUBER = 2.0  # in standard deviations: what is further off counts by its distance, not by its square
+_BLIND = 1e-9
 _LEAST = 0.1  # as if no scanner were better than this [mm]
 
 
@@ -39,29 +41,27 @@ def cost(gaps: Floats, spread: float) -> float:
 class Normal:
     """The normal equations of gaps that go with p unknowns: ``matrix`` (p, p), ``slope`` (p,).
 
-    ``meat`` (p, p) sums the squares of what each patch pulls with: so the spread is honest where neighbours
-    are off together, be it by smoothed noise or since the model is no body.
+    ``covariance`` (p, p) is that of the unknowns.
     """
 
     matrix: Floats
     slope: Floats
-    meat: Floats
+    covariance: Floats
 
     def step(self, damping: float = 0.0) -> Floats:
         """Return the step of Gauss and Newton, damped after Levenberg and Marquardt, shape (p,)."""
         damped = self.matrix + damping * np.diag(np.diag(self.matrix))
         return -np.asarray(np.linalg.lstsq(damped, self.slope, rcond=1e-14)[0])
 
-    @property
-    def covariance(self) -> Floats:
-        """The covariance of the unknowns, shape (p, p)."""
-        inverse = np.linalg.pinv(self.matrix, rcond=1e-14, hermitian=True)
-        return np.asarray(inverse @ self.meat @ inverse)
 
+def normal(
+    gaps: Floats, slopes: Floats, spread: float, patches: Sequence[Indices] = (), *, offset: bool = False
+) -> Normal:
+    """Return the normal equations of ``gaps`` (k,) with ``slopes`` (k, p).
 
-def normal(gaps: Floats, slopes: Floats, spread: float, patches: Indices, *, offset: bool = False) -> Normal:
-    """Return the normal equations of ``gaps`` (k,) with ``slopes`` (k, p); ``patches`` (k,) by number.
-
+    Each of ``patches`` (k,) numbers places that may be off together: so the covariance is honest where
+    neighbours are, be it by smoothed noise or since the model is no body. Of several divisions that which
+    makes an unknown least sure counts: it tells how far errors reach. Without any all are off by themselves.
     With an ``offset`` all gaps may have one more in common, which is nobody's to tell: it is taken out.
     """
     weight = weights(gaps, spread)
@@ -70,7 +70,28 @@ def normal(gaps: Floats, slopes: Floats, spread: float, patches: Indices, *, off
         gaps = gaps - float(weight @ gaps / weight.sum())
     weighted = weight[:, None] * slopes
     pulls = weighted * gaps[:, None]
-    by_patch = np.stack(
-        [np.bincount(patches, column, int(patches.max(initial=-1)) + 1) for column in pulls.T], axis=1
-    )
-    return Normal(weighted.T @ slopes, pulls.sum(axis=0), np.asarray(by_patch.T @ by_patch, dtype=np.float64))
+    matrix = np.asarray(weighted.T @ slopes)
+    inverse = np.asarray(np.linalg.pinv(matrix, rcond=1e-14, hermitian=True), dtype=np.float64)
+    every = [_left_out(weighted, slopes, pulls, inverse, patch) for patch in patches]
+    return Normal(matrix, pulls.sum(axis=0), _widest(every) if every else np.asarray(spread**2 * inverse))
+
+
+def _left_out(weighted: Floats, slopes: Floats, pulls: Floats, inverse: Floats, patch: Indices) -> Floats:
+    """Return the covariance (p, p) that leaving out one patch after the other shows (jackknife)."""
+    count, size = int(patch.max(initial=-1)) + 1, slopes.shape[1]
+    if not count or not size:
+        return np.zeros((size, size))
+    own = np.zeros((count, size, size))
+    np.add.at(own, patch, weighted[:, :, None] * slopes[:, None, :])
+    pulled = np.zeros((count, size))
+    np.add.at(pulled, patch, pulls)
+    rest = np.eye(size) - own @ inverse  # what of the matrix is left without the patch
+    steps = np.einsum("gpq,gq->gp", np.linalg.pinv(rest, rcond=_BLIND), pulled) @ inverse
+    return np.asarray(steps.T @ steps * max(count - 1, 1) / count)
+
+
+def _widest(every: Sequence[Floats]) -> Floats:
+    """Return the first of some covariances (p, p), widened to the largest variance of each unknown."""
+    sizes = np.sqrt(np.maximum([np.diag(each) for each in every], 1e-300))
+    wider = sizes.max(axis=0) / sizes[0]
+    return np.asarray(every[0] * np.outer(wider, wider))

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Sequence
 
+import numpy as np
+from scipy.special import chdtri
+
+from core.design import Design
 from core.mesh import Floats
 from core.worn_scan.least_squares import Normal
-from core.worn_scan.numbers import Number
+from core.worn_scan.numbers import OWN_DOUBT, STIFFNESS, Number
 
 NOISE = 1.0
 """Of a good scan, to judge beforehand what can be told [mm]."""
 
 _ALIKE = 0.7  # correlation from which on two numbers count as not told apart
+_CHANCE = 0.05  # that lines of one stiffness are taken for unlike
 
 
 def tellable(slopes: Floats, numbers: tuple[Number, ...]) -> tuple[tuple[Number, ...], dict[str, str]]:
@@ -24,9 +29,10 @@ def tellable(slopes: Floats, numbers: tuple[Number, ...]) -> tuple[tuple[Number,
     while columns:
         chosen = slopes[:, columns] - slopes[:, columns].mean(axis=0)
         matrix = chosen.T @ chosen
-        good = Normal(matrix, np.zeros(len(columns)), NOISE**2 * matrix)
+        white = NOISE**2 * np.linalg.pinv(matrix, rcond=1e-14, hermitian=True)
+        good = Normal(matrix, np.zeros(len(columns)), white)
         now = tuple(numbers[column] for column in columns)
-        worst = least_sure(good, now)
+        worst = least_sure(good, [number.blind for number in now])
         if worst is None:
             break
         confused[now[worst].name] = confused_with(good, now, worst)
@@ -40,10 +46,26 @@ def unsure_of(equations: Normal) -> Floats:
     return np.where(blind, np.inf, np.sqrt(np.maximum(np.diag(equations.covariance), 0.0)))
 
 
-def least_sure(equations: Normal, numbers: tuple[Number, ...]) -> int | None:
-    """Return which number is least sure, if it is less sure than what counts as told."""
-    share = unsure_of(equations) / np.array([number.doubt for number in numbers])
+def least_sure(equations: Normal, doubts: Sequence[float]) -> int | None:
+    """Return which number is least sure, if it is less sure than ``doubts`` (p,) say, as it is sought."""
+    share = unsure_of(equations) / np.array(doubts)
     return int(share.argmax()) if share.max(initial=0.0) > 1.0 else None
+
+
+def one_will_do(equations: Normal, numbers: tuple[Number, ...], design: Design) -> bool:
+    """Tell whether one stiffness for all lines says as much as those of its own that each was given.
+
+    So it is where one of them is unsure by itself, and nothing tells it from the others (95 %, after Wald).
+    """
+    own = [at for at, number in enumerate(numbers) if number.kind == STIFFNESS]
+    unsure = unsure_of(equations)[own]
+    if len(own) < 2 or unsure.max() <= OWN_DOUBT or not np.isfinite(unsure).all():
+        return False
+    logs = np.array([numbers[at].sought(design) for at in own])
+    apart = np.eye(len(own))[1:] - np.eye(len(own))[0]
+    between = apart @ equations.covariance[np.ix_(own, own)] @ apart.T
+    far = float(apart @ logs @ np.linalg.pinv(between, hermitian=True) @ (apart @ logs))
+    return bool(chdtri(len(own) - 1, _CHANCE) > far)
 
 
 def confused_with(equations: Normal, numbers: tuple[Number, ...], at: int) -> str:
@@ -52,4 +74,4 @@ def confused_with(equations: Normal, numbers: tuple[Number, ...], at: int) -> st
     alike = np.abs(equations.covariance[at]) / (size * size[at])
     alike[at] = 0.0
     other = int(alike.argmax())
-    return numbers[other].name if alike[other] > 0.7 else ""
+    return numbers[other].name if alike[other] > _ALIKE else ""
