@@ -180,8 +180,8 @@ def _making(even: Even) -> Iterator[str]:
 
 
 def as_solved(volume: str, turned: Evenness | None) -> str:
-    """Return in a sentence what remains as the design is solved, which is not by the exact answer."""
-    both = f"The last two columns are exact answers. Solved as the design is set, {_CONTROLS[volume]}"
+    """Return in two sentences what remains as the design is solved, which is not by the exact answer."""
+    both = f"The last two columns are exact answers.\nSolved as the design is set, {_CONTROLS[volume]}"
     if turned is None:
         return f"{both} it does not come to rest."
     row = next(row for row in even_rows(turned, turned) if row.key == "larger")
