@@ -123,6 +123,8 @@ class Sheet:
     ``pressures`` follow the cut list row by row, ``limits`` are those of their lights; ``doubts`` say what
     should be looked at before landmarks are trusted. ``off`` is how far figures may be off, by the keys of
     ``core.measuring.plus_minus``, in their units: nothing where that was not worked out; see ``with_spread``.
+    ``off_factor`` tells of others how many times smaller or larger they may be [1], ``off_notes`` where all
+    of this says less than it seems to.
     """
 
     heading: Heading
@@ -148,6 +150,8 @@ class Sheet:
         default_factory=lambda: tuple(asdict(each) for each in DEFINITIONS.values())
     )
     off: Mapping[str, float] = field(default_factory=dict)
+    off_factor: Mapping[str, float] = field(default_factory=dict)
+    off_notes: tuple[str, ...] = ()
 
     @property
     def sound(self) -> bool:
@@ -156,7 +160,7 @@ class Sheet:
 
     def as_data(self) -> dict[str, Any]:
         """Return the sheet ready for JSON."""
-        told = {name: dict(getattr(self, name)) for name in ("limits", "model", "off")}
+        told = {name: dict(getattr(self, name)) for name in ("limits", "model", "off", "off_factor")}
         return {**asdict(self), **told}
 
 
@@ -205,8 +209,9 @@ def with_spread(sheet: Sheet, stages: Stages, control_points: Points, spread: Sp
         offs = slicer.along(places, spread.sds * spread.skin)
         told = tuple(tuple(np.round(each, 3).tolist()) for each in offs)
         sections.append(replace(cut, off_mm=told, off_before_mm=spread.sds * spread.rest))
-    off = {key: spread.sds * doubt.sd for key, doubt in spread.doubts.items()}
-    return replace(sheet, off=off, sections=tuple(sections))
+    off = {key: off for key in spread.doubts if (off := spread.plus_minus(key)) is not None}
+    factors = {key: factor for key in spread.doubts if (factor := spread.factor(key)) is not None}
+    return replace(sheet, off=off, off_factor=factors, off_notes=spread.cautions, sections=tuple(sections))
 
 
 def _sizes(before: Measures, heading: Heading) -> tuple[tuple[dict[str, Any], ...], str]:

@@ -6,7 +6,7 @@ derivatives (``core.advice.propagated``), or sampled by solving designs anew (``
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from types import MappingProxyType
@@ -18,11 +18,21 @@ from core.advice.assumed import Assumed, assumed
 from core.advice.knobs import Knob, Turned, knobs
 from core.advice.propagated import Effect, Propagation, effects
 from core.advice.trials import Trials
+from core.design import Design
 from core.errors import UserError
 from core.measuring.plus_minus import AFTER, BEFORE, LANDMARKS, ROOT, SCAN, SOURCES, Doubt, Spread
 from core.mechanics import CONTACTS
 from core.pipeline import Stages
 from core.progress import Progress, quiet
+
+SLIDING = (
+    "Lines that slide answer less evenly than the ± says: sampled, lift, tension and largest pressure were "
+    "off by up to two and a half times as much."
+)
+BESIDE = (
+    "The ± and the other skin contact are those of the exact answer, which holds the volume; with this "
+    "volume control the body comes to rest beside it."
+)
 
 
 class Spreading:
@@ -46,6 +56,8 @@ class Spreading:
         if self._propagation is None:
             self.quick(progress)
         whole = self._by([knob for knob in self._knobs if knob.source == LANDMARKS], progress)
+        if self.trials.bare:  # the contact of no line makes no difference
+            return replace(whole, sources=SOURCES)
         progress("the other contact", 1.0)
         with threadpool_limits(1):
             contact, figures = _other_contact(self.trials)
@@ -72,6 +84,14 @@ def spread_of(stages: Stages, sizes: Assumed | None = None, progress: Progress =
     return Spreading(Trials(stages), sizes).whole(progress)
 
 
+def cautions(design: Design) -> Iterator[str]:
+    """Yield where the ± of a design says less than it seems to."""
+    if design.worn() and design.line_contact == "sliding":
+        yield SLIDING
+    if design.worn() and design.volume in ("none", "conventional"):
+        yield BESIDE
+
+
 def _other_contact(trials: Trials) -> tuple[str, Mapping[str, float]]:
     """Return the skin contact that a design has not, and its figures with that; none without an answer."""
     design = trials.base.design
@@ -96,7 +116,17 @@ def _spread(propagation: Propagation, found: list[Effect], sizes: Assumed, faile
     told = {key: Doubt({name: float(sd) for name, sd in parts.items()}) for key, parts in doubts.items()}
     rest = next((effect.knob.sd for effect in found if effect.knob.source == SCAN), 0.0)
     return Spread(
-        MappingProxyType(told), np.sqrt(skin), rest, sizes.sds, sources, MappingProxyType({}), "", failed
+        doubts=MappingProxyType(told),
+        skin=np.sqrt(skin),
+        rest=rest,
+        sds=sizes.sds,
+        sources=sources,
+        other=MappingProxyType({}),
+        contact="",
+        failed=failed,
+        figures=MappingProxyType(propagation.trials.figures),
+        bare=propagation.trials.bare,
+        cautions=tuple(cautions(propagation.stages.design)),
     )
 
 

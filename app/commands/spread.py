@@ -14,13 +14,24 @@ from core.advice.assumed import assumed, assuming, origins
 from core.advice.told_figures import figures_of
 from core.design import Design
 from core.measures import before_after, measure_rows
-from core.measuring.plus_minus import AFTER, BEFORE, CHANGE, SOURCES, Spread, told_off
+from core.measuring.plus_minus import (
+    AFTER,
+    BEFORE,
+    CHANGE,
+    LANDMARKS,
+    ROOT,
+    SCAN,
+    SOURCES,
+    Spread,
+    told_between,
+    told_off,
+)
 from core.pressure import LEFT_OUT
 from core.sheet import NOT_MODELLED
 from core.spread import spread_of
 from core.writing_out.cells import csv_text
 
-COLUMNS = ("key", "title", "unit", "value", "plus_minus", *SOURCES, "other_contact")
+COLUMNS = ("key", "title", "unit", "value", "plus_minus", "low", "high", *SOURCES, "other_contact")
 KINDS = {BEFORE: "before", AFTER: "after", CHANGE: "difference"}
 OF_LINES = {
     "cut": ("length to cut", "mm"),
@@ -62,8 +73,9 @@ def run_spread(
     wanted = assuming(sizes, assumed())
     worn = run_worn(design, lines, elastics, bare=True)
     stages, points = worn.solution.stages, worn.solution.control_points
-    rows = measure_rows(*before_after(stages, points))
-    figures = [*_of_measures(rows), *_of_lines(figures_of(stages, points))]
+    figures = [*_of_measures(measure_rows(*before_after(stages, points)))]
+    if stages.design.worn():
+        figures += _of_lines(figures_of(stages, points))
     return Spreading(spread_of(stages, wanted), figures, worn.settled, worn.warnings)
 
 
@@ -91,6 +103,19 @@ def _of_lines(figures: Mapping[str, float]) -> Iterator[Figure]:
 
 
 def _plain(found: Spreading) -> str:
+    tables = [_of_body(found)] if found.spread.bare else [_of_both(found), ["", *_of_worn(found)]]
+    return "\n".join([*(line for table in tables for line in table), "", *_meaning(found)])
+
+
+def _of_body(found: Spreading) -> list[str]:
+    lines = ["No line is worn: the body at rest."]
+    for figure in found.figures:
+        if figure.key.startswith(f"{BEFORE}:") and figure.value is not None:
+            lines.append(f"{figure.title:36}{_cell(found.spread, figure):>17} {figure.unit}")
+    return lines
+
+
+def _of_both(found: Spreading) -> list[str]:
     lines = [f"{'':36}{'before':>17}{'after':>17}{'change':>16}"]
     measures = [figure for figure in found.figures if figure.key.partition(":")[0] in KINDS]
     for first in range(0, len(measures), len(KINDS)):
@@ -98,37 +123,56 @@ def _plain(found: Spreading) -> str:
         if any(figure.value is not None for figure in group):
             cells = [_cell(found.spread, figure) for figure in group]
             lines.append(f"{group[0].title:36}{cells[0]:>17}{cells[1]:>17}{cells[2]:>16} {group[0].unit}")
-    lines += ["", f"{'':36}{'as set':>17}{_contact(found.spread):>33}"]
+    return lines
+
+
+def _of_worn(found: Spreading) -> list[str]:
+    lines = [f"{'':36}{'as set':>20}{_contact(found.spread):>30}"]
     for figure in found.figures:
         if figure.key.partition(":")[0] not in KINDS:
             other = found.spread.other.get(figure.key)
             beside = "-" if other is None else f"{other:.1f}"
-            lines.append(f"{figure.title:36}{_cell(found.spread, figure):>17}{beside:>33} {figure.unit}")
-    return "\n".join([*lines, "", *_meaning(found.spread)])
+            lines.append(f"{figure.title:36}{_cell(found.spread, figure):>20}{beside:>30} {figure.unit}")
+    return lines
 
 
 def _cell(spread: Spread, figure: Figure) -> str:
-    off = spread.plus_minus(figure.key)
     if figure.value is None:
         return "-"
     sign = "+" if figure.key.startswith((CHANGE, "lift", "out")) else ""
     value = format(figure.value, f"{sign}z.1f")
-    return value if off is None else f"{value} ± {told_off(off):>4}"
+    off, between = spread.plus_minus(figure.key), spread.between(figure.key, figure.value)
+    if off is not None:
+        return f"{value} ± {told_off(off):>4}"
+    return f"{value} ({told_between(*between)})" if between else value
 
 
 def _contact(spread: Spread) -> str:
     return f"if the line {WORDS[spread.contact]}" if spread.contact else ""
 
 
-def _meaning(spread: Spread) -> Iterator[str]:
+def _meaning(found: Spreading) -> Iterator[str]:
+    spread = found.spread
     yield f"± is {spread.sds:g} standard deviations, 2 being 95 % of all cases if errors are normal, from:"
-    for words in origins().values():
-        yield f"  {words.en}"
-    yield "The skin contact is a choice of the model and no part of the ±: the truth lies between the two."
+    yield from (f"  {words.en}" for name, words in origins().items() if name in _sources(spread))
+    if not spread.bare:
+        yield from _of_lines_worn(found)
     if spread.failed:
         yield f"Without an answer, and left out: {spread.failed} of what was tried."
     yield "Left out:"
-    yield from (f"  {each}" for each in (*NOT_MODELLED, *LEFT_OUT))
+    yield from (f"  {each}" for each in (*NOT_MODELLED, *(() if spread.bare else LEFT_OUT)))
+
+
+def _sources(spread: Spread) -> Sequence[str]:
+    return (LANDMARKS, SCAN, ROOT) if spread.bare else SOURCES
+
+
+def _of_lines_worn(found: Spreading) -> Iterator[str]:
+    """Yield what holds where lines are worn."""
+    if any(found.spread.factor(figure.key) for figure in found.figures):
+        yield "(a to b): so many times smaller or larger, where stiffness alone makes most of it."
+    yield "The skin contact is a choice of the model and no part of the ±: the truth lies between the two."
+    yield from found.spread.cautions
 
 
 def _as_json(found: Spreading) -> str:
@@ -137,7 +181,8 @@ def _as_json(found: Spreading) -> str:
     for figure in found.figures:
         doubt = spread.doubts.get(figure.key)
         told: dict[str, Any] = {"title": figure.title, "unit": figure.unit, "value": figure.value}
-        told |= {"plus_minus": spread.plus_minus(figure.key)}
+        low, high = _ends(spread, figure)
+        told |= {"plus_minus": spread.plus_minus(figure.key), "low": low, "high": high}
         told |= {"shares": doubt.shares if doubt else None, "other_contact": spread.other.get(figure.key)}
         table[figure.key] = told
     whole = {
@@ -148,10 +193,16 @@ def _as_json(found: Spreading) -> str:
         "failed": spread.failed,
         "sources": {name: words.en for name, words in origins().items()},
         "left_out": [*NOT_MODELLED, *LEFT_OUT],
+        "cautions": list(spread.cautions),
         "warnings": found.warnings,
         "versions": {"busk": __version__},
     }
     return json.dumps(whole, indent=1, ensure_ascii=False)
+
+
+def _ends(spread: Spread, figure: Figure) -> tuple[float | None, float | None]:
+    """Return between what a figure may lie, or nothing of one that is not known."""
+    return (None if figure.value is None else spread.between(figure.key, figure.value)) or (None, None)
 
 
 def _as_csv(found: Spreading) -> str:
@@ -159,10 +210,10 @@ def _as_csv(found: Spreading) -> str:
     for figure in found.figures:
         doubt = found.spread.doubts.get(figure.key)
         by = doubt.by_source if doubt else {}
-        off = found.spread.plus_minus(figure.key)
+        off, ends = found.spread.plus_minus(figure.key), _ends(found.spread, figure)
         sources = [by.get(name) for name in SOURCES]
         other = found.spread.other.get(figure.key)
-        rows.append([figure.key, figure.title, figure.unit, figure.value, off, *sources, other])
+        rows.append([figure.key, figure.title, figure.unit, figure.value, off, *ends, *sources, other])
     return csv_text(COLUMNS, rows).rstrip("\n")
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from app.panels.measure_view import MeasureView, plus_minus
 from app.panels.spread_card import SpreadView
-from app.wording.words import language, listed, number, say, tr
+from app.wording.words import joined, language, listed, number, say, tr
 from core.advice.assumed import origins
 from core.measuring.plus_minus import AFTER, BEFORE, CHANGE, LIFT, OUT, Spread
 from core.pressure import LEFT_OUT
@@ -92,7 +92,7 @@ def spread_view(spread: Spread | None, waiting: str, faint: bool) -> SpreadView:
     if not spread.whole:
         more = tr("Landmarks are still being added: these are too small.")
         return SpreadView(f"{meaning} {more}" if language() == "en" else f"{meaning}{more}", faint=faint)
-    return SpreadView(meaning, _contact(spread), faint)
+    return SpreadView(joined([meaning, *map(say, spread.cautions)]), _contact(spread), faint)
 
 
 def _contact(spread: Spread) -> str:

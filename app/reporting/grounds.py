@@ -82,6 +82,7 @@ def _meaning(sheet: Sheet) -> list[str]:
     return [
         tr("± is twice the standard deviation: 95 % of all cases, if errors are normal."),
         tr("It holds: {sources}. Whether lines stick or slide is no part of it.").format(sources=sources),
+        *map(say, sheet.off_notes),
     ]
 
 

@@ -13,7 +13,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.advice.knobs import Knob, turned
-from core.advice.told_figures import Figures, apart, line_figures, measured_figures, rested, skin_normals
+from core.advice.told_figures import (
+    Figures,
+    apart,
+    line_figures,
+    measured_figures,
+    rested,
+    rested_figures,
+    skin_normals,
+)
 from core.advice.trials import Trials
 from core.errors import UserError
 from core.measuring.plus_minus import ELASTIC, LANDMARKS, LINE, SCAN, TAPE, TISSUE
@@ -64,6 +72,9 @@ class Propagation:
 
     def _of_scan(self, knob: Knob) -> Effect:
         rest, steps = self.trials.rest.subject, self.trials.steps
+        if self.trials.bare:
+            sides = [rested(self.stages, steps, rest, skin) for skin in (-knob.sd, knob.sd)]
+            return Effect(knob, _half(*map(rested_figures, sides)), np.full(len(self.places), knob.sd))
         found = [
             measured_figures(self.stages, steps, rested(self.stages, steps, rest, skin), self.points, skin)
             for skin in (-knob.sd, knob.sd)

@@ -58,6 +58,11 @@ def rested(stages: Stages, steps: Steps, subject: Subject | None = None, skin: f
     return Rested(subject, of_subject(shown, stages.design.own_measures))
 
 
+def rested_figures(rest: Rested) -> Figures:
+    """Return the measures of a body that wears nothing: before and after are the same, and no change is."""
+    return {**_values(BEFORE, rest.before), **_values(AFTER, rest.before)}
+
+
 def measured_figures(
     stages: Stages, steps: Steps, rest: Rested, points: Points, skin: float = 0.0
 ) -> Figures:

@@ -6,12 +6,23 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from core.advice.knobs import Turned
-from core.advice.told_figures import Figures, Rested, Steps, line_figures, measured_figures, rested, steps_of
+from core.advice.told_figures import (
+    Figures,
+    Rested,
+    Steps,
+    figures_of,
+    line_figures,
+    measured_figures,
+    rested,
+    rested_figures,
+    steps_of,
+)
 from core.errors import UserError
 from core.exact import solve_exact
 from core.measures import reshaped, subject_at_rest
+from core.measuring.subject import subject_of
 from core.mesh import Points
-from core.pipeline import Stages, build, targets_of
+from core.pipeline import Stages, build, find, targets_of
 from core.placing import PlacedMark
 from core.sewing.tensions import line_tensions
 from core.solving.body_volume import solve_body_exact
@@ -68,6 +79,8 @@ class Trials:
 
         Raises the UserError of a stage that fails.
         """
+        if self.bare:
+            return self._unworn(turned)
         placed = turned.design.placed
         near, rest = self._known.get(placed, (self.base, None))
         stages = build(turned.design, near)
@@ -84,6 +97,23 @@ class Trials:
             **line_figures(stages, points, line_tensions(stages, points), ratios),
         }
         return Tried(stages, points, deform(stages.binding, points), figures)
+
+    def _unworn(self, turned: Turned) -> Tried:
+        """Read a body that wears nothing: the skin stays, so nothing is fitted and nothing solved."""
+        marks = find(self.base.body, turned.design.placed)
+        subject = replace(subject_of(self.base.body.calm, marks), down=self.steps.before)
+        rest = rested(self.base, self.steps, subject, turned.skin)
+        return Tried(self.base, self.points, self.base.body.mesh.vertices, rested_figures(rest))
+
+    @property
+    def bare(self) -> bool:
+        """Whether no line is worn, so that the body stays as it is."""
+        return not self.base.design.worn()
+
+    @cached_property
+    def figures(self) -> Figures:
+        """The figures of lines and bust points in the exact answer. Raises NoAnswerError."""
+        return {} if self.bare else figures_of(self.base, self.points)
 
     @cached_property
     def rest(self) -> Rested:

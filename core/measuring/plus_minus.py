@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from math import hypot
+from dataclasses import dataclass, field
+from math import exp, hypot
 
 from core.mesh import Floats
 
@@ -17,6 +17,16 @@ LANDMARKS, SCAN, TISSUE, LINE, TAPE, ELASTIC, ROOT = SOURCES = (
     *("landmarks", "scan", "tissue", "line", "tape", "elastic", "root"),
 )
 """What figures may be off by, in the order in which it is told."""
+
+
+FACTORS = (TISSUE, LINE, ELASTIC)
+"""Sources that are known to a factor: what goes with them is off by more upwards than downwards."""
+
+FORCES = (TENSION, MEAN_KPA, MAX_KPA)
+"""Kinds of figures that go with such sources, and are never below nothing."""
+
+MOST = 3.0
+"""Standard deviations of the logarithm, times those that are told, up to which a factor makes sense [1]."""
 
 
 @dataclass(frozen=True)
@@ -37,6 +47,11 @@ class Doubt:
         parts = {name: sd**2 / whole for name, sd in self.by_source.items()} if whole else {}
         return dict(sorted(parts.items(), key=lambda part: -part[1]))
 
+    @property
+    def by_factor(self) -> bool:
+        """Whether sources that are known to a factor make most of it."""
+        return sum(self.shares.get(name, 0.0) for name in FACTORS) > 0.5
+
 
 @dataclass(frozen=True, eq=False)
 class Spread:
@@ -46,7 +61,9 @@ class Spread:
     deviation of each vertex of the reshaped body along its normal, ``rest`` [mm] that of the body at rest.
     What is told after the ± is ``sds`` standard deviations. ``sources`` are those that are in; the landmarks
     come last. ``other`` tells the figures if lines had the ``contact`` that the design has not: a choice of
-    the model, and no part of the ±. ``failed`` counts what was tried and had no answer.
+    the model, and no part of the ±. ``failed`` counts what was tried and had no answer. ``figures`` are
+    those of the exact answer, which all of this is told of; ``bare`` is a body that wears no line.
+    ``cautions`` are sentences on where this ± says less than it seems to.
     """
 
     doubts: Mapping[str, Doubt]
@@ -57,16 +74,52 @@ class Spread:
     other: Mapping[str, float]
     contact: str
     failed: int = 0
+    figures: Mapping[str, float] = field(default_factory=dict)
+    bare: bool = False
+    cautions: tuple[str, ...] = ()
 
     @property
     def whole(self) -> bool:
         """Whether all sources are in."""
-        return LANDMARKS in self.sources and bool(self.contact)
+        return LANDMARKS in self.sources and (self.bare or bool(self.contact))
 
     def plus_minus(self, key: str) -> float | None:
-        """Return what stands after the ± of a figure, in its unit; None for one that is not known."""
+        """Return what stands after the ± of a figure, in its unit.
+
+        None for one that is not known, and where a ± would be wrong: see ``between``.
+        """
+        off = self._off(key)
+        uneven = off is not None and _kind(key) in FORCES and (self.factor(key) or off > self.figures[key])
+        return None if uneven else off
+
+    def factor(self, key: str) -> float | None:
+        """Return by what a figure may be too small or too large, where mostly factors make it so."""
+        off, value = self._off(key), self.figures.get(key, 0.0)
+        if off is None or _kind(key) not in FORCES or not self.doubts[key].by_factor or off > MOST * value:
+            return None
+        return exp(off / value)
+
+    def between(self, key: str, value: float) -> tuple[float, float] | None:
+        """Return from where to where a figure that comes to ``value`` may lie; None if that is not known."""
+        off, factor = self._off(key), self.factor(key)
+        if factor is not None:
+            return value / factor, value * factor
+        if off is None:
+            return None
+        return (max(value - off, 0.0) if _kind(key) in FORCES else value - off), value + off
+
+    def _off(self, key: str) -> float | None:
         doubt = self.doubts.get(key)
         return None if doubt is None else self.sds * doubt.sd
+
+
+def _kind(key: str) -> str:
+    return key.partition(":")[0]
+
+
+def told_between(low: float, high: float) -> str:
+    """Return a range as it is written where there are no other words for numbers."""
+    return f"{low:.{digits(low)}f} to {high:.{digits(high)}f}"
 
 
 def digits(off: float) -> int:
