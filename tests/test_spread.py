@@ -9,6 +9,7 @@ from math import hypot, tau
 
 import numpy as np
 import pytest
+from coarse_bodies import coarse_mannequin
 
 from app.wording.samples import sample_design
 from core.advice.assumed import NUMBERS, Assumed, assumed, assuming, origins
@@ -18,20 +19,21 @@ from core.advice.sampled import sampled
 from core.advice.trials import Trials
 from core.elastics import find_elastic
 from core.errors import UserError
-from core.measuring.plus_minus import LANDMARKS, SCAN, SOURCES, TISSUE, Doubt, Spread, digits, rounded
+from core.measuring.plus_minus import LANDMARKS, LINE, SCAN, SOURCES, TISSUE, Doubt, Spread, digits, rounded
 from core.pipeline import Stages, build
 from core.profile import Plane, Slicer
 from core.progress import Cancelled
 from core.sewing.tensions import line_tensions
-from core.spread import Spreading
+from core.spread import Spreading, cautions
 
 SURE = replace(assumed(), unsure_landmark_mm=0.0)
 """Of the mannequin only the folds are sure: fewer landmarks are quicker."""
 
 
 @pytest.fixture(scope="module")
-def plain() -> Stages:
-    return build(sample_design().with_line("mid-bust", 0.95))
+def plain(tmp_path_factory: pytest.TempPathFactory) -> Stages:
+    file, design = coarse_mannequin(tmp_path_factory.mktemp("coarse")), sample_design()
+    return build(replace(design, scan=replace(design.scan, path=str(file))).with_line("mid-bust", 0.95))
 
 
 @pytest.fixture(scope="module")
@@ -68,7 +70,8 @@ def test_both_ways_agree_on_small_spreads(plain: Stages, contact: str) -> None:
         assert np.abs(by_slopes - drawn).max() < 0.08 * np.abs(drawn).max() + 5e-4, key
 
 
-def test_a_bust_point_moves_the_distance_by_what_it_goes_aside(trials: Trials) -> None:
+def test_a_bust_point_moves_the_distance_by_what_it_goes_aside() -> None:
+    trials = Trials(build(sample_design().with_line("mid-bust", None)))  # a finer skin, on which points glide
     aside = next(
         each
         for each in knobs(trials.base, assumed())
@@ -76,7 +79,7 @@ def test_a_bust_point_moves_the_distance_by_what_it_goes_aside(trials: Trials) -
     )
     assert aside.sd == assumed().unsure_landmark_mm  # no nipple stands out on the mannequin
     effect = Propagation(trials).effect(aside)
-    assert effect.figures["before:bust_point_distance"] == pytest.approx(4.0 * aside.way[0], abs=0.1)
+    assert effect.figures["before:bust_point_distance"] == pytest.approx(aside.sd * aside.way[0], abs=0.1)
     assert effect.figures["before:waist_girth"] == pytest.approx(0.0, abs=1e-9)
 
 
@@ -173,3 +176,51 @@ def test_all_that_is_assumed_is_data_with_its_origin() -> None:
 def test_a_source_that_is_none_turns_nothing(plain: Stages) -> None:
     assert knobs(plain, Assumed()) == ()
     assert {knob.source for knob in knobs(plain, replace(Assumed(), skin_mm=1.0))} == {SCAN}
+
+
+def test_what_goes_with_stiffness_is_off_by_a_factor_and_never_below_nothing(
+    plain: Stages, trials: Trials, told: list[Spread]
+) -> None:
+    tissue = next(each for each in knobs(trials.base, SURE) if each.source == TISSUE)
+    alone = Doubt({TISSUE: told[-1].doubts["tension:mid-bust"].by_source[TISSUE]})
+    spread = replace(told[-1], doubts={"tension:mid-bust": alone, "lift": Doubt({SCAN: 9.0})})
+    key, value = "tension:mid-bust", trials.figures["tension:mid-bust"]
+    ends = [trials(turned(trials.base, {tissue: turn})).figures[key] for turn in (-2.0, 2.0)]
+    assert spread.between(key, value) == pytest.approx(ends, rel=1e-6)
+    assert spread.plus_minus(key) is None
+    assert spread.between("lift", 1.0) == (-17.0, 19.0)
+
+
+def test_a_force_that_is_off_by_more_than_itself_is_told_from_nothing_on(told: list[Spread]) -> None:
+    key = "tension:mid-bust"
+    slack = replace(told[-1], doubts={key: Doubt({"tape": 1.0, LINE: 0.1})}, figures={key: 0.5})
+    assert slack.factor(key) is None
+    assert slack.plus_minus(key) is None
+    assert slack.between(key, 0.5) == pytest.approx((0.0, 0.5 + 2.0 * hypot(1.0, 0.1)))
+    nearly = replace(slack, doubts={key: Doubt({LINE: 1.0})}, figures={key: 0.01})
+    assert nearly.factor(key) is None  # a hundred standard deviations of a logarithm say nothing
+    sure = replace(slack, figures={key: 4.0})
+    assert sure.plus_minus(key) == pytest.approx(2.0 * hypot(1.0, 0.1))
+
+
+def test_a_bare_body_is_neither_fitted_nor_solved(plain: Stages, monkeypatch: pytest.MonkeyPatch) -> None:
+    bare = build(plain.design.with_line("mid-bust", None), plain)
+    known = Trials(bare)
+    assert known.bare
+    assert known.points is not None
+    monkeypatch.setattr("core.advice.trials.build", None)
+    monkeypatch.setattr("core.advice.trials.balance_of", None)
+    spread = Spreading(known, SURE).whole()
+    assert spread.whole
+    assert spread.contact == ""
+    assert not any(key.startswith(("change", "lift", "tension")) for key in spread.doubts)
+    under, same = spread.doubts["before:underbust_girth"], spread.doubts["after:underbust_girth"]
+    assert LANDMARKS in under.by_source
+    assert under == same
+
+
+def test_where_the_spread_says_too_little_it_says_so(plain: Stages, told: list[Spread]) -> None:
+    assert told[-1].cautions == ()
+    sliding = replace(plain.design, line_contact="sliding", volume="conventional")
+    assert len(list(cautions(sliding))) == 2
+    assert list(cautions(replace(sliding, lines=()))) == []

@@ -5,9 +5,12 @@ from __future__ import annotations
 import csv
 import io
 import json
+import math
+import re
 from pathlib import Path
 
 import pytest
+from coarse_bodies import coarse_mannequin
 
 from app.cli import main
 
@@ -15,14 +18,20 @@ QUICK = ("--assume", "landmark_mm=0", "--assume", "unsure_landmark_mm=0")
 WORN = ("--line", "mid-bust=70%", "--elastic", "mid-bust=picot 10")
 
 
+@pytest.fixture(scope="module")
+def mannequin(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return coarse_mannequin(tmp_path_factory.mktemp("coarse"))
+
+
 def test_it_prints_figures_with_what_they_may_be_off_by(
     mannequin: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["spread", str(mannequin), *WORN, *QUICK]) == 0
     said = capsys.readouterr().out
-    assert "Waist girth                              692.9 ±  2.5" in said
+    assert re.search(r"Waist girth {30}69\d\.\d ±  2\.5 ", said)
     assert "mid-bust: length to cut" in said
     assert "if the line slides over it" in said
+    assert re.search(r"mid-bust: tension +\d+\.\d \(\d+\.\d to \d+(\.\d)?\)", said)
     assert "Hip girth" not in said  # the scan shows none
     assert "Left out:" in said
 
@@ -41,10 +50,19 @@ def test_it_writes_shares_as_json_and_standard_deviations_as_a_table(
     assert main(["spread", str(mannequin), *WORN, *QUICK, "--csv"]) == 0
     rows = {row["key"]: row for row in csv.DictReader(io.StringIO(capsys.readouterr().out))}
     pull = rows["tension:mid-bust"]
-    assert float(pull["plus_minus"]) == pytest.approx(
-        2.0 * sum(float(pull[name]) ** 2 for name in ("tissue", "tape", "elastic") if pull[name]) ** 0.5,
-        rel=1e-3,
-    )
+    parts = [float(pull[name]) for name in ("tissue", "tape", "elastic") if pull[name]]
+    off = 2.0 * math.hypot(*parts) / float(pull["value"])
+    assert pull["plus_minus"] == ""
+    assert float(pull["low"]) == pytest.approx(float(pull["value"]) * math.exp(-off), rel=1e-3)
+    assert float(pull["high"]) == pytest.approx(float(pull["value"]) * math.exp(off), rel=1e-3)
+
+
+def test_a_bare_body_is_told_at_rest_alone(mannequin: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["spread", str(mannequin), *QUICK]) == 0
+    said = capsys.readouterr().out
+    assert said.startswith("No line is worn: the body at rest.")
+    assert re.search(r"Waist girth {30}69\d\.\d ±  2\.5 mm", said)
+    assert not any(word in said for word in ("change", "slides", "Bust point up", "Elastics:"))
 
 
 @pytest.mark.parametrize("wrong", ["tape=3", "skin_mm=thick", "skin_mm=-1"])
