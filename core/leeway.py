@@ -1,8 +1,9 @@
 """Leeway: how far a line can go, as zones of its length that a slider can show (ours).
 
-Green settles without trouble. Amber strains, would vibrate with the conventional force, or presses beyond
-the comfort limit. Red overstrains, folds, goes beyond the curve of an elastic or has no balance. Where a line
-is longer than what it lies on it would have to push, which no band can: it is slack there.
+Green settles without trouble. Amber strains, would vibrate with the conventional force, or with any where
+lines act one turn late, or presses beyond the comfort limit. Red overstrains, folds, goes beyond the curve
+of an elastic or has no balance. Where a line is longer than what it lies on it would have to push, which no
+band can: it is slack there.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ TONE_OF = {
     "slack": SLACK,
     "strained": AMBER,
     "vibrating": AMBER,
+    "restless": AMBER,
     "pressing": AMBER,
     **dict.fromkeys((*RED_SIGNS, "unreachable"), RED),
 }
@@ -136,6 +138,8 @@ def _reasons(limits: Limits) -> Iterator[Reason]:
 
 def _zone(short: float, long: float, reasons: tuple[Reason, ...]) -> Zone:
     here = tuple(reason for reason in reasons if reason.holds(0.5 * (short + long)))
+    if "restless" in (reason.why for reason in here):
+        here = tuple(reason for reason in here if reason.why != "vibrating")  # with any control
     if SLACK in (reason.tone for reason in here):
         # What a line does that pushes is no garment's doing; what the others do is.
         here = tuple(reason for reason in here if reason.others or reason.tone == SLACK)

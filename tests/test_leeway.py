@@ -75,6 +75,13 @@ def test_a_reason_that_comes_and_goes_is_told_where_it_is(built):
     assert found.red_below is None
 
 
+def test_what_swings_under_any_control_is_not_told_of_the_conventional_one_too(built):
+    shows = {"vibrating": (span(0.88, 0.92),), "restless": (span(0.86, 0.94),)}
+    found = leeway(limits_that(built, shows))
+    assert tones(found) == [("green", 0.5, 0.86), ("amber", 0.86, 0.94), ("green", 0.94, 1.3)]
+    assert found.at(0.9).reasons == (Reason("restless", 0.86, 0.94),)
+
+
 def test_after_the_first_red_all_is_red(built):
     shows = {"overstrained": (span(0.8, 0.82), span(0.86, 0.9)), "strained": (span(0.8, 0.95),)}
     found = leeway(limits_that(built, shows))
@@ -143,6 +150,32 @@ def test_turns_swing_where_it_is_told_and_not_a_percent_away(built, sample, word
     for ratio, calm in ends:
         assert swings(stages, "mid-bust", ratio - 0.012 * calm) > 0.99
         assert swings(stages, "mid-bust", ratio + 0.012 * calm) < 0.9
+
+
+def rests(stages: Stages, ratio: float) -> bool:
+    """Whether turns of the adaptive control, with the mid-bust line at this length, come to rest."""
+    stages = build(stages.design.with_line("mid-bust", ratio), stages)
+    targets = Targets(targets_of(stages.design, stages).ratios)
+    return any(made.step < 1e-6 for _, made in iterate(stages.model, lambda: targets, turns=1000))
+
+
+def test_lines_that_act_one_turn_late_are_amber_where_turns_never_rest(built):
+    words = {"mid_bust": 0.95, "full_bust": 0.93, "line_force": "explicit", "line_contact": "sliding"}
+    stages = dressed(built, "person", **words, line_stiffness=1.0)
+    found = leeway_of(stages, "mid-bust")
+    end = reason(found, "restless").long
+    assert found.at(end - 0.01).tone != "green"
+    assert not rests(stages, end - 0.01)
+    assert rests(stages, end + 0.012)
+
+
+def test_lines_far_too_stiff_to_act_one_turn_late_are_green_nowhere(built):
+    words = {"mid_bust": 0.95, "full_bust": 0.93, "line_force": "explicit"}
+    found = leeway_of(dressed(built, "person", **words), "mid-bust")
+    assert "green" not in [zone.tone for zone in found.zones]
+    assert reason(found, "restless").always
+    soft = leeway_of(dressed(built, "person", **words, line_stiffness=0.2), "mid-bust")
+    assert "green" in [zone.tone for zone in soft.zones]
 
 
 def test_a_band_of_elastic_is_amber_where_it_presses_beyond_the_red_light(built):

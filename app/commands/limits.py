@@ -23,6 +23,7 @@ MEANING = {
 
 OTHERS = {
     "vibrating": "turns with the conventional force",
+    "restless": "turns with any volume control: lines act one turn late",
     "pressing": "more than {kpa:g} kPa somewhere along the band",
     "slack": "the line would have to push, which no band can",
 }
@@ -46,6 +47,8 @@ def _table(limits: Limits, stages: Stages) -> Iterator[str]:
     for sign, meaning in MEANING.items():
         yield f"  {sign:12}  {_beginning(limits, sign):39}  {meaning}"
     for sign, meaning in OTHERS.items():
+        if sign == "restless" and sign not in limits.shows:
+            continue  # lines act in step
         yield f"  {sign:12}  {_stretches(limits, sign):39}  {meaning.format(kpa=comfort().red_kpa)}"
     yield f"  green         {_green(leeway(limits))}"
     if limits.last is not None:

@@ -50,6 +50,7 @@ def placed(reason: Reason) -> str:
     words = {
         "strained": tr("strained"),
         "vibrating": tr("would vibrate"),
+        "restless": tr("turns never rest"),
         "pressing": tr("presses too much"),
         "slack": tr("slack"),
         "overstrained": tr("overstrained"),
@@ -69,6 +70,7 @@ def meaning(reason: Reason) -> str:
     return {
         "strained": tr("skin is stretched or pressed together by more than 20 % somewhere"),
         "vibrating": tr("turns with the conventional force do not come to rest"),
+        "restless": tr("lines act one turn late and are too stiff for that; choose in step, or softer lines"),
         "pressing": tr("its band presses with more than {kpa} kPa somewhere").format(
             kpa=number(comfort().red_kpa, 0)
         ),

@@ -33,7 +33,8 @@ class Limits:
 
     ``present`` is the line as it is set, None if it is off; ``beyond`` names those of SIGNS that this setting
     already shows. ``shows`` tells for each sign the lengths that show it, ascending, as far as was
-    ``looked``: beside SIGNS there are "vibrating" (turns of the conventional control would), "slack" (the
+    ``looked``: beside SIGNS there are "vibrating" (turns of the conventional control would), "restless"
+    (those of any control would, where lines act one turn late), "slack" (the
     line pushes, which no band can), "pressing" (more than the red light begins with, if what it is made of
     tells the newtons) and "stretched" (an elastic would be stretched beyond its curve). ``rest`` is its
     length at rest, with the others as they are. ``last`` is the shortest and ``longest`` the longest length

@@ -48,6 +48,8 @@ def looks_at(model: ConstrainedModel, together: Collection[int], gain: float | N
         "vibrating": _Vibrating(gain).margin,
         "slack": partial(_pull, together=tuple(together)),
     }
+    if model.mechanics.line_force == "explicit":
+        looks["restless"] = _rest
     return looks
 
 
@@ -105,6 +107,11 @@ class _Vibrating:
         # A way of balances may turn back within a hair of one: the exact one is near enough then.
         there = swing.balance(potential, found.balance, gain) or found.balance
         return min(swing.limit(potential, there) / gain - 1.0, _CALM)
+
+
+def _rest(found: Found) -> float:
+    """Return how far turns are from a swing that no volume control ends; see ``Swing.overshoot`` [1]."""
+    return 1.0 - 0.5 * Swing(found.model).overshoot(Potential(found.model, found.ratios), found.balance)
 
 
 def _limit_at_rest(model: ConstrainedModel, swing: Swing) -> float:

@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 from scipy import sparse
-from scipy.linalg import lapack
+from scipy.linalg import blas, lapack
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from core.mesh import Flags, Floats, Indices, frozen
@@ -136,6 +136,16 @@ class Band:
             return np.asarray(found[self.place])
 
         return solve
+
+    def product(self, general: Floats) -> Solve:
+        """Return what multiplies by the matrix with this general band."""
+        matrix = general.reshape(self.size, self._tall)[:, self.reach :].T
+
+        def multiply(right: Floats) -> Floats:
+            found = blas.dgbmv(self.size, self.size, self.reach, self.reach, 1.0, matrix, right[self._order])
+            return np.asarray(found[self.place])
+
+        return multiply
 
     @cached_property
     def _whole(self) -> tuple[Indices, Indices, Indices, Indices]:

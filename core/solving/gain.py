@@ -103,8 +103,8 @@ class Swing:
     def limit(self, potential: Potential, balance: Balance) -> float:
         """Return the gain above which small errors flip and grow where ``balance`` is (probe units [1]).
 
-        It is 0 where turns swing there without any volume force. Lines whose length is held also change their
-        tension from turn to turn; that is in it.
+        Lines whose length is held also change their tension from turn to turn; that is in it. Whether turns
+        swing without any volume force is told by ``overshoot``.
         """
         place = potential.at(balance.state.moved)
         matrix = 2.0 * self._turn(place) - self._derivative(potential, place, balance.multipliers)
@@ -115,6 +115,30 @@ class Swing:
             return 0.0
         flipped = self._with_held(potential, place, solve, a)
         return max(self._model.probe / float(a @ flipped), 0.0)
+
+    def overshoot(self, potential: Potential, balance: Balance) -> float:
+        """Return how far one turn goes where it goes furthest, over the way to ``balance`` [1].
+
+        Beyond 2 that move flips and grows from turn to turn, whatever holds the volume. It can only where
+        turns leave out the stiffness of the lines: it is the largest real part of an eigenvalue of M^-1 K.
+        """
+        place = potential.at(balance.state.moved)
+        band = self._model.layout.band
+        solve = band.lu(self._turn(place))
+        assert solve is not None, "a triangle with a diagonal of stiffnesses has an answer"
+        pull = band.product(self._derivative(potential, place, balance.multipliers))
+        held = place.slopes[len(potential.sides) :]
+        push = self._forces(place, len(potential.sides))[1][1:]
+        weight = (1.0 - 0.5 * HELD_GROWTH) * self._model.tapes[potential.held_lines]
+
+        def turned(moved: Floats) -> Floats:
+            return solve(pull(moved) + push.T @ (weight * (held @ moved)))
+
+        size = band.size
+        loop = sparse_linalg.LinearOperator((size, size), matvec=turned, dtype=np.float64)
+        begin = np.cos(np.arange(size))  # any start does that is not even on both sides
+        found = sparse_linalg.eigs(loop, 1, which="LR", v0=begin, tol=1e-4, return_eigenvectors=False)
+        return float(found[0].real)
 
     def _forces(self, place: Place, sides: int) -> tuple[Floats, Floats]:
         """Return the forces to balance, (3 f,), and the directions of one pressure and the tensions."""
