@@ -28,6 +28,7 @@ from core.aims.curve_file import profile_goals
 from core.aims.figure import Goal
 from core.aims.girth import GIRTH
 from core.aims.outline import profile_name
+from core.aims.reaching import INSIDE
 from core.aims.readings import NAMES, reading
 from core.design import Design, ScanSource
 from core.elastics import find_elastic
@@ -39,6 +40,7 @@ from core.reading.scan_file import FORMATS
 from core.request import ask
 from core.sewing.comfort import comfort
 from core.solution import run
+from core.solving.condition import CALM_RANGE, Condition
 
 MET = 0.5  # mm
 SHORTEST, SHORTEST_ELASTIC, LOOSE = 0.85, 0.75, 0.97
@@ -114,7 +116,7 @@ def known(rng: np.random.Generator, start: Stages) -> tuple[Stages, np.ndarray]:
         stages = build(design, start)
         solution = run(stages)
         condition = solution.verdict.condition
-        if solution.verdict.motion != "settled" or condition is None or condition.strained:
+        if solution.verdict.motion != "settled" or condition is None or not _calm(condition):
             continue
         points = solution.control_points
         if (
@@ -122,6 +124,12 @@ def known(rng: np.random.Generator, start: Stages) -> tuple[Stages, np.ndarray]:
             or max(each.largest for each in pressures(stages, points).values()) < comfort().red_kpa
         ):
             return stages, points
+
+
+def _calm(condition: Condition) -> bool:
+    """Tell whether a body looks natural, and does not only just do so: that is as far as is asked for."""
+    low, high = CALM_RANGE
+    return condition.shortest > low + INSIDE and condition.longest < high - INSIDE and not condition.strained
 
 
 def figures(rng: np.random.Generator, start: Stages) -> list[str]:

@@ -30,6 +30,9 @@ from core.progress import Progress, quiet
 NEAR = 0.05
 """A figure this near to what was asked for is what was asked for [mm]."""
 
+INSIDE = 5e-3
+"""So far inside the limit of strain lengths stay: a run ends a hair beside its exact answer [1]."""
+
 LOOSEST = 1.0
 """A line is not asked to be longer than at rest: it would push [1]."""
 
@@ -41,7 +44,6 @@ _EXACT = 1e-8  # [mm^2]
 _LITTLE = 1e-6  # a step that brings no more than this is the last one [mm^2]
 _LAZY = 1e-3  # of several ways that do the same, the shortest [mm / %]
 _STRICT = 10_000.0  # a limit that is broken by a ten-thousandth counts as a figure 1 mm off
-_INSIDE = 2e-4  # so far inside the limit of strain lengths stay [1]
 _BROKEN, _AT_LIMIT = -1e-4, 1e-3  # room to a limit [1]
 _AT_END = 0.01  # [%]
 _SLACK = 0.03  # of the tension at the start: about as much counts as none
@@ -228,7 +230,7 @@ class Search:
         most = [(names.index(name), pull) for name, pull in self.hardest.items()]
         rows = [1.0 - look.pulls[line] / pull for line, pull in most]
         slopes = [-look.by_pulls[line] / pull for line, pull in most]
-        return np.array([look.margin - _INSIDE, *rows]), np.stack([look.by_margin, *slopes])
+        return np.array([look.margin - INSIDE, *rows]), np.stack([look.by_margin, *slopes])
 
     def _reached(self, look: Look) -> bool:
         near = np.abs(look.values - self._wanted).max() < NEAR
