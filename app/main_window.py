@@ -153,6 +153,10 @@ class MainWindow(QMainWindow):
             return False
         return session.is_answered and not frame.at_work
 
+    def is_at_rest(self) -> bool:
+        """Tell whether what is shown is solved to the end: the session's design, or what is asked for."""
+        return self.is_settled() or self.ask_desk.is_tried_on
+
     def tell_graphics(self, why: str) -> None:
         """Say once why the view is drawn safely, if it is, and notice when it has been drawn."""
         self.safe_mode = SafeMode(self, why)

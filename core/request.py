@@ -8,7 +8,7 @@ there with what was learnt, until figures and pressures agree.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -43,7 +43,7 @@ class Reply:
     to agree: there may be better. ``pressure`` [kPa] is the largest of each line that was looked at, and
     ``limit`` what it may be; ``unseen`` are the worn lines that were not looked at. ``tension`` [N] is the
     sum over the lines, an estimate where they are made of no elastic; ``answers`` how many were worked out.
-    ``longest`` is the ratio that no line goes beyond [1].
+    ``longest`` is the ratio that no line goes beyond [1], ``points`` (n, 3) [mm] are the exact answer.
     """
 
     design: Design
@@ -60,6 +60,7 @@ class Reply:
     tension: float
     answers: int
     longest: float = LOOSEST
+    points: Points = field(default_factory=lambda: np.zeros((0, 3)))
 
     def may_not_be_longer(self, name: str) -> bool:
         """Tell of a line that is at its end which end that is."""
@@ -132,8 +133,11 @@ class Asking:
                 points = exact_points(self._stages)
             except NoBalanceError:
                 raise no_balance() from None
-            figures = {name: self._read(name)(points).value for name in names}
-            return figures, self._pressures(self._stages, points, straps=True)
+            return self.figures(names, points), self._pressures(self._stages, points, straps=True)
+
+    def figures(self, names: Collection[str], points: Points) -> dict[str, float]:
+        """Return what the figures ``names`` are where the control points are at ``points`` (n, 3) [mm]."""
+        return {name: self._read(name)(points).value for name in names}
 
     def _told(self, answered: Callable[[], Reply], goals: Sequence[Goal], progress: Progress) -> Reply:
         same = [goal.name for goal in goals] == [goal.name for goal in self._goals]
@@ -256,6 +260,7 @@ class Asking:
             self._newtons * float(np.maximum(found.look.pulls, 0.0).sum()),
             sum(len(search) - before for search, before in self._used),
             self._bounds.longest,
+            found.look.points,
         )
 
     def _miss(self, found: Found) -> float:

@@ -81,7 +81,7 @@ def test_a_wish_is_typed_seen_taken_and_undone_or_left_without_a_trace() -> None
         yield answered(window)
         assert card.answer.text() == "Reached."
         assert "Mid-bust 97.0 → " in card.changes.text() or "Full bust 98.0 → " in card.changes.text()
-        assert card.wishes["out"].now.text().startswith("now \N{MINUS SIGN}")
+        assert card.wishes["out"].now.text().startswith("was \N{MINUS SIGN}")
         assert window.session.design is before, "seen, not taken"
         assert np.abs(points(window) - at).max() > 0.5
         steps = window.session.undo_stack.count()

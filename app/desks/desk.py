@@ -161,6 +161,8 @@ class Desk(QObject):
         self._window.actions_.steps[step].setChecked(True)
         self._window.inspector.open(step)
         view, worn = self._window.view, step in ("lines", "result")
+        if not worn:
+            self._window.ask_desk.leave()  # its handles and its answer are of the reshaped body
         view.set_after(worn)
         view.set_layer("bands", worn)
         view.set_layer("landmarks", step == "landmarks")

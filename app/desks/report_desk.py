@@ -195,7 +195,7 @@ class ReportDesk(QObject):
 
     def _show(self) -> None:
         """Show the sheet as far as it is known, and what is under way."""
-        design, frame = self._window.session.design, self._window.session.frame
+        window, design, frame = self._window, self._window.session.design, self._window.session.frame
         stale = frame is None or not self._is_of(frame)
         if self._laid != (self.handout, self._language):
             # Not with every frame of a run: it takes as long as some of them.
@@ -203,8 +203,8 @@ class ReportDesk(QObject):
             self.pages = pages_of(self.handout, self._language) if self.handout is not None else None
         words = ""
         if stale:
-            made, waits = tr("The sheet is being made."), tr("The sheet is made as soon as the run rests.")
-            words = self._refused or (made if self._window.is_settled() else waits)
+            made, rests = tr("The sheet is being made."), tr("The sheet is made as soon as the run rests.")
+            words = self._refused or (made if window.is_settled() else window.ask_desk.first(rests))
         self.page.show_choices(design.customer if design else "", self._language)
         self.page.show_pages(self.pages, words, stale=stale)
 

@@ -14,7 +14,6 @@ from app.presenting.even import even_summary, left_as_it_is, map_note, parted_ti
 from app.presenting.verdict import doubt_of
 from app.wording.words import listed, tr
 from core.advice.parting import parted
-from core.aims.figure import Goal
 from core.design import Design
 from core.evenness import BeforeAfter, evenness
 from core.live import Frame
@@ -48,7 +47,6 @@ class EvenDesk(QObject):
         self._known: WeakKeyDictionary[Frame, BeforeAfter] = WeakKeyDictionary()
         self._asked: WeakSet[Frame] = WeakSet()
         self._making: tuple[Job, Design] | None = None
-        self._wished: tuple[Design, tuple[Goal, ...]] | None = None
         self.found.connect(self.follow)
         panel.opened.connect(self.follow)
         window.spread_desk.found.connect(self.follow)
@@ -60,7 +58,7 @@ class EvenDesk(QObject):
 
         While the body moves it is not: the next frame would be another one.
         """
-        moves = frame is self._window.session.frame and not self._window.is_settled()
+        moves = frame is self._window.session.frame and not self._window.is_at_rest()
         if frame not in self._asked and not frame.at_work and not moves:
             self._asked.add(frame)
             self._window.jobs.run(
@@ -83,7 +81,6 @@ class EvenDesk(QObject):
         if self._making is not None and self._making[1] is not design:
             self._window.jobs.cancel(self._making[0])  # it would make another design even
             self._making = None
-        self._begin_wished()
         if frame is None or not self._panel.isVisible():
             return
         known = self.of(frame)
@@ -130,32 +127,20 @@ class EvenDesk(QObject):
         self._making = job, frame.stages.design
 
     def _begin(self, design: Design, made: Evened) -> None:
-        """Part what has to be parted, as one undo step, and fill the wishes in."""
+        """Fill the wishes in; what has to be parted for them is parted when they are taken, not before."""
         self._making = None
         if design is not self._window.session.design:
             return  # the wishes would be those of another one
         if not made.worth:
             self._window.notices.show_notice("info", *left_as_it_is(made.gained, made.lost))
             return
-        if made.parted:
-            template = read_template(design.template)
-            titles = listed(parted_titles(design, made.parted))
-            said = tr("Left and right apart: {lines}").format(lines=titles)
-            self._window.session.edit(lambda before: parted(before, template), said)
-        after = self._window.session.design
-        self._wished = None if after is None else (after, made.goals)
-        self._begin_wished()
-
-    def _begin_wished(self) -> None:
-        """Fill the wishes in as soon as the body of their design is there; those of a former one are gone."""
-        if self._wished is None:
+        if not made.parted:
+            self._window.ask_desk.begin(made.goals)
             return
-        (design, goals), frame = self._wished, self._window.session.frame
-        if design is not self._window.session.design:
-            self._wished = None
-        elif frame is not None and frame.stages.design is design and not frame.at_work:
-            self._wished = None
-            self._window.ask_desk.begin(goals)
+        template = read_template(design.template)
+        titles = listed(parted_titles(design, made.parted))
+        said = tr("Left and right apart: {lines}").format(lines=titles)
+        self._window.ask_desk.begin(made.goals, lambda before: parted(before, template), said)
 
 
 def _made_even(stages: Stages, progress: Progress) -> Evened:

@@ -90,7 +90,7 @@ class MeasuresDesk(QObject):
             self._panel.set_measured([], tr("The body is measured as soon as the run rests."))
         self._panel.set_stale(True)
         self._show_mark()
-        if window.is_settled():
+        if window.is_at_rest():
             self._asked = frame
             self._job = window.jobs.run(
                 tr("Measuring the body"),

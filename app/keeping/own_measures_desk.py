@@ -156,7 +156,7 @@ class OwnMeasuresDesk(QObject):
             return
         if wished is None:
             self._show(None)
-        elif not self._window.is_settled():
+        elif not self._window.is_at_rest():
             self._show(None, tr("The body is measured as soon as the run rests."))
         elif (frame, replace(wished, name="?")) != self._asked:
             self._begin_measuring(frame, replace(wished, name="?"))

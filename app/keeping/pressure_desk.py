@@ -50,7 +50,7 @@ class PressureDesk(QObject):
 
         While the body moves it is not: the next frame would be another one.
         """
-        moves = frame is self._window.session.frame and not self._window.is_settled()
+        moves = frame is self._window.session.frame and not self._window.is_at_rest()
         if frame not in self._asked and not frame.at_work and not moves:
             self._asked.add(frame)
             self._window.jobs.run(

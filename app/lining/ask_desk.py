@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QTimer
@@ -10,21 +10,13 @@ from PySide6.QtCore import QObject, QTimer
 from app.dress.spoken import announce
 from app.lining.ask_handles import AskHandles
 from app.lining.ask_menu import AskMenu
+from app.lining.ask_views import show_answer, wish_views
+from app.lining.ask_wishes import Wishes
 from app.lining.ask_work import Answer, AskWork, Question
-from app.panels.ask_card import AskCard, WishView
-from app.presenting.asking import (
-    answer_words,
-    change_words,
-    figure_title,
-    is_signed,
-    kept_words,
-    missing_words,
-    step_words,
-    values_words,
-)
-from app.wording.words import joined, listed, number, say, tr
+from app.panels.ask_card import AskCard
+from app.presenting.asking import missing_words, step_words
+from app.wording.words import joined, say, tr
 from core.aims.figure import Goal
-from core.aims.outline import section_of
 from core.design import Design
 from core.errors import UserError
 from core.frame import Frame
@@ -32,12 +24,8 @@ from core.frame import Frame
 if TYPE_CHECKING:
     from app.main_window import MainWindow
 
-PRESSURE = "pressure"
-"""The key of the wish that is a limit [kPa]."""
-
 _RESTS = 150  # stillness of a hand after which the best lengths are looked for [ms]
 _SLOW = 400  # an answer that takes longer is worth a word [ms]
-_SOFTEST, _HARDEST = 0.2, 50.0  # limits that can be set [kPa]
 
 
 class AskDesk(QObject):
@@ -49,11 +37,11 @@ class AskDesk(QObject):
     def __init__(self, window: MainWindow) -> None:
         super().__init__(window)
         self._window, self._session = window, window.session
-        self.wishes: dict[str, float | None] = {}
-        self.curves: dict[str, tuple[Goal, ...]] = {}
-        self.limit: float | None = None  # where the red light begins, but for straps
+        self._wishes = Wishes()
         self.answer: Answer | None = None
         self._apply_due = False
+        self._prepared: tuple[Callable[[Design], Design], str] | None = None
+        self._design: Design | None = None  # of which it is asked
         self.work = AskWork(window.jobs, self)
         self.work.answered.connect(self._take)
         self.work.refused.connect(self._refuse)
@@ -95,38 +83,33 @@ class AskDesk(QObject):
     @property
     def asks(self) -> bool:
         """Whether there are lines that can be asked for anything."""
-        frame, design = self._session.frame, self._session.design
+        frame, design = self._session.frame, self._design
         return frame is not None and design is not None and not self._missing(frame, design)
 
-    def begin(self, goals: Sequence[Goal] = ()) -> None:
-        """Open the card, with ``goals`` wished for already."""
+    def begin(
+        self, goals: Sequence[Goal] = (), prepare: Callable[[Design], Design] | None = None, said: str = ""
+    ) -> None:
+        """Open the card, with ``goals`` wished for already.
+
+        They are asked of what ``prepare`` makes of the design, which ``said`` tells; that is taken with them.
+        """
         if self._session.frame is None or self._session.design is None:
             return
+        if self.is_open:
+            self.leave()
         self._window.line_drawing.leave()
         self._window.line_routing.leave()
         self._window.desk.go_to("lines")
-        self.limit, self.answer, self._apply_due = None, None, False
-        self.wishes, self.curves = {}, {}
-        for goal in goals:
-            section = section_of(goal.name)
-            if section:
-                self.curves[section] = (*self.curves.get(section, ()), goal)
-            else:
-                self.wishes[goal.name] = goal.value
-        if not goals:
-            self.wishes = {"lift": None, "out": None}
+        self._wishes, self.answer, self._apply_due = Wishes.of(goals), None, False
+        self._prepared = None if prepare is None else (prepare, said)
+        self._prepare()
         self.card.show()
         self._ask()
         self.card.take_focus(next(iter(self.wishes), ""))
 
     def wish(self, key: str, value: float) -> None:
         """Wish for a figure [mm], or set the limit of pressure [kPa]."""
-        if key == PRESSURE:
-            self.limit = min(max(value, _SOFTEST), _HARDEST)
-            if not self.goals():  # the same with less pressure
-                self._hold_first()
-        else:
-            self.wishes[key] = value
+        self._wishes.set(key, value)
         self._ask()
 
     def add(self, name: str) -> None:
@@ -137,36 +120,45 @@ class AskDesk(QObject):
 
     def wish_curve(self, section: str, goals: tuple[Goal, ...]) -> None:
         """Wish for the profile of a section."""
-        self.curves[section] = goals
+        self._wishes.curves[section] = goals
         self._ask()
 
     def drop(self, key: str) -> None:
         """Wish for a figure, or a profile, no longer."""
-        self.wishes.pop(key, None)
-        self.curves.pop(key, None)
-        self.limit = None if key == PRESSURE else self.limit
+        self._wishes.drop(key)
         self._ask()
 
     def wish_by_hand(self, wishes: dict[str, float | None], *, at_rest: bool) -> None:
         """Take wishes that a hand has dragged to; while it is on its way the answers are quick ones."""
-        self.wishes = wishes
+        self._wishes.figures = wishes
         self._rest.start()
         if at_rest:
             self._ask()
         else:
             self._ask(hurried=True)
 
+    @property
+    def wishes(self) -> dict[str, float | None]:
+        """The figures on the card; those without a value are not asked for."""
+        return self._wishes.figures
+
     def goals(self) -> tuple[Goal, ...]:
         """Return what is asked for."""
-        single = [Goal(name, value) for name, value in self.wishes.items() if value is not None]
-        return (*single, *(goal for curve in self.curves.values() for goal in curve))
+        return self._wishes.goals(self.answer.now if self.answer is not None else {})
 
-    def _hold_first(self) -> None:
-        now = self.answer.now if self.answer is not None else {}
-        for name in self.wishes:
-            if name in now:
-                self.wishes[name] = now[name]
-                return
+    @property
+    def is_tried_on(self) -> bool:
+        """Whether what is seen is the answer, solved to the end, and not taken."""
+        frame, answer = self._session.frame, self.answer
+        if frame is None or answer is None or answer.reply is None or not self.is_open:
+            return False
+        return frame.stages.design is answer.reply.design and not frame.at_work
+
+    def first(self, waits: str) -> str:
+        """Return what has to be done before a sheet can be made; ``waits`` if nothing is asked for."""
+        if not self.is_tried_on:
+            return waits
+        return tr("The sheet is of what is applied: apply what is asked for, or cancel it, first.")
 
     # -- how it ends
 
@@ -176,7 +168,9 @@ class AskDesk(QObject):
         self._apply_due = self.work.at_work or self._rest.isActive()
         if self._apply_due or answer is None or answer.reply is None:
             return
-        design, words = answer.reply.design, step_words(answer.question.goals)
+        design, words = answer.reply.design, step_words(self._wishes.asked, self._wishes.limit)
+        if self._prepared is not None:
+            words = " · ".join((self._prepared[1], words))
         self.end()
         self._session.edit(lambda _: design, words)
 
@@ -192,13 +186,21 @@ class AskDesk(QObject):
         self._slow.stop()
         self.work.stop()
         self.answer, self._apply_due = None, False
+        self._prepared = self._design = None
         self.card.hide()
         self.handles.put_away()
 
     # -- questions and answers
 
+    def _prepare(self) -> None:
+        """Settle of which design it is asked: the session's, or what is made of it."""
+        design = self._session.design
+        if design is not None and self._prepared is not None:
+            design = self._prepared[0](design)
+        self._design = design
+
     def _ask(self, *, hurried: bool = False) -> None:
-        frame, design = self._session.frame, self._session.design
+        frame, design = self._session.frame, self._design
         if not self.is_open or frame is None or design is None:
             return
         if not hurried:
@@ -208,21 +210,25 @@ class AskDesk(QObject):
             self.answer = None
             self._session.cancel_preview()
         else:
-            goals, figures = self.goals(), tuple(self.wishes)
-            self.work.ask(Question(design, frame.stages, goals, figures, self.limit, hurried and bool(goals)))
+            goals, told, limit = self.goals(), self._wishes.told, self._wishes.limit
+            self.work.ask(Question(design, frame.stages, goals, told, limit, hurried and bool(goals)))
             self._slow.start()
         self._show()
 
     def _take(self, answer: Answer) -> None:
-        if not self.is_open or answer.question.design is not self._session.design:
+        if not self.is_open or answer.question.design is not self._design:
             return
         self.answer = answer
+        if not answer.question.goals and self.goals():  # only now it is known what is to stay
+            self._ask()
+            return
         if answer.reply is not None and answer.reply.design != self._session.design:
             self._session.preview(answer.reply.design)
         else:
             self._session.cancel_preview()
         self._show()
         if not self.work.at_work and not answer.question.hurried:
+            QTimer.singleShot(0, self, self.handles.clear)  # once the card has its size
             announce(self.card, self.card.answer.text())
             if self._apply_due:
                 self.apply()
@@ -244,12 +250,13 @@ class AskDesk(QObject):
     def _follow_design(self, _: Design) -> None:
         if self.is_open:
             self.answer = None
+            self._prepare()
             self._ask()
 
     # -- what is shown
 
     def _show(self) -> None:
-        frame, design = self._session.frame, self._session.design
+        frame, design = self._session.frame, self._design
         if not self.is_open or frame is None or design is None:
             return
         missing = self._missing(frame, design)
@@ -259,41 +266,20 @@ class AskDesk(QObject):
             self.card.show_answer()
         else:
             hint = tr("Type what it is to be, or drag the handle at the bust point.")
-            self.card.show_wishes(list(self._views(design)), "" if self.goals() else hint)
-            self._show_answer(design)
+            views = wish_views(design, self._wishes, self.answer)
+            self.card.show_wishes(list(views), "" if self.goals() else hint)
+            apart = self._prepared[1] if self._prepared is not None else ""
+            show_answer(self.card, design, self._wishes, self.answer, apart=apart, busy=self._busy())
         self.handles.follow()
 
-    def _show_answer(self, design: Design) -> None:
-        answer, busy = self.answer, self.work.at_work or self._rest.isActive()
-        locked = {traits.name for traits in design.traits if traits.locked}
-        note = kept_words(design, locked)
-        if busy and not self._slow.isActive() and not self._rest.isActive():
-            self.card.show_answer(tr("Working it out…"), note=note, can_apply=True)
-        elif answer is None or answer.reply is None or not self.goals():
-            self.card.show_answer(note=note, can_apply=busy and bool(self.goals()))
-        else:
-            reply, goals = answer.reply, answer.question.goals
-            tone = "ok" if reply.reachable else "warn"
-            changes = listed(change_words(design, reply))
-            self.card.show_answer(answer_words(reply, goals), tone, changes, note, can_apply=True)
-
-    def _views(self, design: Design) -> Iterator[WishView]:
-        now = self.answer.now if self.answer is not None else {}
-        for name, value in self.wishes.items():
-            shown = now.get(name, 0.0) if value is None else value
-            words, set_ = values_words(now, name), value is not None
-            yield WishView(name, figure_title(name), shown, words, signed=is_signed(name), set_=set_)
-        for section, goals in self.curves.items():
-            words = tr("heights: {count}").format(count=len(goals))
-            yield WishView(section, figure_title(goals[0].name), None, words)
-        if design.worn_elastics() and design.line_hold == "spring":
-            presses = self.answer.presses if self.answer is not None else {}
-            most, set_ = max(presses.values(), default=0.0), self.limit is not None
-            words = tr("now {value}").format(value=number(most)) if presses else ""
-            shown = most if self.limit is None else self.limit
-            title = tr("Pressure at most")
-            yield WishView(PRESSURE, title, shown, words, "kPa", signed=False, set_=set_, kept=not set_)
+    def _busy(self) -> str:
+        """Return how long an answer is being waited for: nothing, "soon" or "slow"."""
+        if not (self.work.at_work or self._rest.isActive()):
+            return ""
+        return "soon" if self._slow.isActive() or self._rest.isActive() else "slow"
 
     def _missing(self, frame: Frame, design: Design) -> str:
         """Return what has to be done before anything can be asked, if there is something."""
+        if self._prepared is not None:
+            return ""  # its lines are not in the frame yet; that they can move something is known
         return missing_words(design, [line.name for line in frame.stages.model.lines if line.constrains])

@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from app.main_window import MainWindow
 
 SIDES = ("left", "right")
+_CLEAR = 12  # between the card and a handle [px]
+_ASIDE = 0.25  # of the way of a hand: less to the side of it is not meant [1]
+_STILL = 0.05  # no way at all; Shift drags in small steps [mm]
 _FARTHEST = 80.0  # a bust point is not dragged further from where it is at rest [mm]
 
 
@@ -29,6 +32,8 @@ class AskHandles(QObject):
         self._window, self._desk = window, desk
         self.by_side: dict[str, BustHandle] = {}
         self._before: dict[str, float | None] | None = None
+        self._height = 0  # of the card, when the picture was moved for it
+        self._pulled: dict[str, float] = {}  # how far the hand has gone each way since it closed [mm]
 
     @property
     def carries(self) -> bool:
@@ -48,7 +53,7 @@ class AskHandles(QObject):
 
     def put_away(self) -> None:
         """Show them no longer."""
-        self._before = None
+        self._before, self._height = None, 0
         for handle in self.by_side.values():
             handle.put_away()
 
@@ -64,6 +69,18 @@ class AskHandles(QObject):
         for row, side in enumerate(SIDES):
             foot = frame.stages.watch.bust_points(frame.control_points)[row]
             self.by_side[side].show_at(foot + self._missing(frame, side), foot)
+
+    def clear(self) -> None:
+        """Move the picture up if the card has grown over handles: they could not be taken."""
+        viewport, card = self._window.view.viewport, self._desk.card
+        seen = [handle for handle in self.by_side.values() if handle.isVisible()]
+        if not seen or self.carries or card.height() <= self._height:
+            return
+        self._height = card.height()
+        top = self._window.view.floating.seen(card).top()
+        low = max(handle.mapTo(self._window.view, handle.rect().bottomLeft()).y() for handle in seen)
+        if low > top - _CLEAR:
+            viewport.glide_to(viewport.view.pan(0.0, float(top - _CLEAR - low), viewport.height()))
 
     def _make(self) -> None:
         for side in SIDES:
@@ -91,7 +108,7 @@ class AskHandles(QObject):
 
     def _take(self) -> None:
         if self._before is None:
-            self._before = dict(self._desk.wishes)
+            self._before, self._pulled = dict(self._desk.wishes), {"lift": 0.0, "out": 0.0}
             self._window.job_desk.show()
 
     def _pull(self, side: str, up: float, out: float) -> None:
@@ -102,14 +119,20 @@ class AskHandles(QObject):
         wishes, linked = dict(self._desk.wishes), self._desk.card.link.isChecked()
         for what, step in (("lift", up), ("out", out)):
             name = what if linked else f"{what} {side}"
-            if step:
+            self._pulled[what] += step
+            if wishes.get(name) is not None or self._is_meant(what):
                 value = wishes.get(name)
-                value = (_now(frame, name) if value is None else value) + step
+                value = _now(frame, name) + self._pulled[what] if value is None else value + step
                 for other in (what, *(f"{what} {each}" for each in SIDES)):
                     if other != name and (linked or other == what):
                         wishes.pop(other, None)
                 wishes[name] = float(np.clip(value, -_FARTHEST, _FARTHEST))
         self._desk.wish_by_hand(wishes, at_rest=False)
+
+    def _is_meant(self, what: str) -> bool:
+        """Tell whether the hand goes that way on purpose: a way that was free stays so if it does not."""
+        way = abs(self._pulled[what])
+        return way > _ASIDE * max(map(abs, self._pulled.values())) and way > _STILL
 
     def _drop(self) -> None:
         if self._before is not None:

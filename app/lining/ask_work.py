@@ -41,12 +41,16 @@ class Question:
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """What is ``now`` [mm], what ``presses`` [kPa], by name, and the ``reply``, if anything was wished."""
+    """What is ``now`` [mm], what ``presses`` [kPa], by name, and the ``reply``, if anything was wished.
+
+    ``then`` [mm] is what figures are in the reply.
+    """
 
     question: Question
     now: Mapping[str, float]
     presses: Mapping[str, float]
     reply: Reply | None
+    then: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(eq=False)
@@ -125,7 +129,8 @@ class AskWork(QObject):
                 known.now |= now
             answer = known.asking.hurried if question.hurried else known.asking.reply
             reply = answer(question.goals, progress) if question.goals else None
-            return Answer(question, dict(known.now), dict(known.presses), reply)
+            then = known.asking.figures(question.figures, reply.points) if reply is not None else {}
+            return Answer(question, dict(known.now), dict(known.presses), reply, then)
 
     def _open(self, question: Question, progress: Progress) -> _Known:
         from core.aims.reaching import Bounds  # noqa: PLC0415 (brings a search along that no start needs)

@@ -9,16 +9,17 @@ from functools import partial
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
-from app.dress.parts import FloatingPanel, IconLabel, ToolButton, button, sentence
+from app.dress.parts import IconLabel, OverCard, ToolButton, button, sentence
 from app.dress.theme import label, set_tag
 from app.panels.figure_field import FigureField
 from app.wording.words import tr
 
-WIDTH = 600
+WIDTH = 640
 """Width of what the card holds [px]."""
 
 _COLUMNS = 2
-_ANSWER = 350  # of the sentence beside the changes [px]
+_BETWEEN = 28  # columns [px]
+_WAS = 50  # of what it was [px]
 
 
 @dataclass(frozen=True)
@@ -67,7 +68,7 @@ class _Wish(QWidget):
             self.field.show_value(view.value)
 
 
-class AskCard(FloatingPanel):
+class AskCard(OverCard):
     """Takes wishes and shows what comes of them.
 
     ``entered`` carries a wish's key and its value, ``removed`` its key; ``add_asked`` wants the menu under
@@ -93,7 +94,7 @@ class AskCard(FloatingPanel):
         self._hint = sentence("")
         column.addWidget(self._hint)
         self._grid = QGridLayout()
-        self._grid.setHorizontalSpacing(28)
+        self._grid.setHorizontalSpacing(_BETWEEN)
         self._grid.setVerticalSpacing(4)
         for at in range(_COLUMNS):
             self._grid.setColumnStretch(at, 1)
@@ -187,12 +188,16 @@ class AskCard(FloatingPanel):
             old.hide()
             old.deleteLater()
         self.wishes = {}
-        for at, wish in enumerate(wishes):
+        at = 0
+        for wish in wishes:
             row = _Wish(wish)
             row.field.entered.connect(partial(self.entered.emit, wish.key))
             row.remove.clicked.connect(partial(self._remove, wish.key))
             self.wishes[wish.key] = row
-            self._grid.addWidget(row, at // _COLUMNS, at % _COLUMNS)
+            wide = row.sizeHint().width() + _WAS > (WIDTH - _BETWEEN) // _COLUMNS
+            at += at % _COLUMNS if wide else 0  # a long title is not cut: it takes a line of its own
+            self._grid.addWidget(row, at // _COLUMNS, at % _COLUMNS, 1, _COLUMNS if wide else 1)
+            at += _COLUMNS if wide else 1
 
     def _remove(self, key: str, _: bool = False) -> None:
         self.removed.emit(key)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from core.request import Reply
 
 _MET = 0.05  # [mm]
+_ABOUT = 1.015  # of a limit that counts as kept
 _SAME = 5e-4  # ratios that read the same [1]
 
 
@@ -66,8 +67,15 @@ def wishes_words(goals: Sequence[Goal]) -> str:
     return listed((*single, *dict.fromkeys(figure_title(g.name) for g in goals if section_of(g.name))))
 
 
-def answer_words(reply: Reply, goals: Sequence[Goal]) -> str:
-    """Return in a sentence whether it can be reached, else what is nearest and why."""
+def answer_words(reply: Reply, goals: Sequence[Goal], limit: float | None = None) -> str:
+    """Return in a sentence whether it can be reached, else what is nearest and why.
+
+    With a ``limit`` [kPa] it was asked for that alone; ``goals`` are then what is to stay.
+    """
+    most = max(reply.pressure.values(), default=0.0)
+    if limit is not None and reply.agreed and most < _ABOUT * limit:
+        said = tr("Presses with {kpa} kPa at most; then {figures}.")
+        return said.format(kpa=number(most), figures=listed(_come(reply, goals)))
     if reply.reachable:
         return tr("Reached.")
     nearest = listed(_nearest(reply, goals))
@@ -76,6 +84,15 @@ def answer_words(reply: Reply, goals: Sequence[Goal]) -> str:
         return said.format(nearest=nearest)
     said = tr("Not reachable: nearest is {nearest}, because {reasons}.")
     return said.format(nearest=nearest, reasons=tr(", and ").join(_reasons(reply)))
+
+
+def _come(reply: Reply, goals: Sequence[Goal]) -> Iterable[str]:
+    """Yield what figures come to that were to stay."""
+    for goal in goals:
+        words = figure_words(goal.name, reply.reached[goal.name])
+        was = number(goal.value, 1, signed=is_signed(goal.name))
+        moved = abs(reply.reached[goal.name] - goal.value) > _MET
+        yield tr("{figure} (was {value})").format(figure=words, value=was) if moved else words
 
 
 def _nearest(reply: Reply, goals: Sequence[Goal]) -> Iterable[str]:
@@ -139,9 +156,12 @@ def missing_words(design: Design, moving: Collection[str]) -> str:
     return ""
 
 
-def step_words(goals: Sequence[Goal]) -> str:
-    """Return what the step of undo is called."""
-    return tr("Asked for") + colon() + wishes_words(goals)
+def step_words(goals: Sequence[Goal], limit: float | None = None) -> str:
+    """Return what the step of undo is called; a ``limit`` [kPa] was asked for besides, or alone."""
+    wishes = [wishes_words(goals)] if goals else []
+    if limit is not None:
+        wishes.append(tr("{kpa} kPa at most").format(kpa=number(limit)))
+    return tr("Asked for") + colon() + listed(wishes)
 
 
 def _titles(names: Iterable[str], design: Design) -> str:
@@ -157,7 +177,7 @@ def _rows(names: Iterable[str], design: Design) -> list[tuple[str, str]]:
 
 
 def values_words(values: Mapping[str, float], name: str) -> str:
-    """Return what a figure is now, in a few words; nothing before it is known."""
+    """Return what a figure was before, in a few words; nothing before it is known."""
     if name not in values:
         return ""
-    return tr("now {value}").format(value=number(values[name], 1, signed=is_signed(name)))
+    return tr("was {value}").format(value=number(values[name], 1, signed=is_signed(name)))

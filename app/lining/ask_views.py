@@ -1,0 +1,63 @@
+"""What the card of wishes shows of them: values that are asked for, and what the others come to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from app.lining.ask_wishes import PRESSURE, Wishes
+from app.lining.ask_work import Answer
+from app.panels.ask_card import AskCard, WishView
+from app.presenting.asking import (
+    answer_words,
+    change_words,
+    figure_title,
+    is_signed,
+    kept_words,
+    values_words,
+)
+from app.wording.words import joined, listed, number, tr
+from core.design import Design
+
+
+def show_answer(
+    card: AskCard, design: Design, wishes: Wishes, answer: Answer | None, *, apart: str, busy: str
+) -> None:
+    """Show what came of wishes: ``busy`` is nothing, "soon" or "slow"; ``apart`` tells what is parted."""
+    locked = {traits.name for traits in design.traits if traits.locked}
+    note = joined([words for words in (apart, kept_words(design, locked)) if words])
+    goals = wishes.goals(answer.now if answer is not None else {})
+    if busy == "slow":
+        card.show_answer(tr("Working it out…"), note=note, can_apply=True)
+    elif answer is None or answer.reply is None or not goals:
+        card.show_answer(note=note, can_apply=bool(busy and goals))
+    else:
+        reply, asked = answer.reply, answer.question.goals
+        met = reply.reachable or (wishes.only_limit is not None and reply.agreed)
+        said = answer_words(reply, asked, wishes.only_limit)
+        card.show_answer(
+            said, "ok" if met else "warn", listed(change_words(design, reply)), note, can_apply=True
+        )
+
+
+def wish_views(design: Design, wishes: Wishes, answer: Answer | None) -> Iterator[WishView]:
+    """Yield the rows of the card; a free figure shows what it comes to in the answer that is shown."""
+    now = answer.now if answer is not None else {}
+    come = {**now, **answer.then} if answer is not None else {}
+    for name, value in wishes.figures.items():
+        shown, words = come.get(name, 0.0) if value is None else value, values_words(now, name)
+        yield WishView(name, figure_title(name), shown, words, signed=is_signed(name), set_=value is not None)
+    for section, goals in wishes.curves.items():
+        words = tr("heights: {count}").format(count=len(goals))
+        yield WishView(section, figure_title(goals[0].name), None, words)
+    if design.worn_elastics() and design.line_hold == "spring":
+        yield _pressure(wishes.limit, answer)
+
+
+def _pressure(limit: float | None, answer: Answer | None) -> WishView:
+    presses = answer.presses if answer is not None else {}
+    seen = answer.reply.pressure if answer is not None and answer.reply is not None else {}
+    most = max((seen if set(seen) >= set(presses) else presses).values(), default=0.0)
+    words = tr("was {value}").format(value=number(max(presses.values()))) if presses else ""
+    shown, set_ = most if limit is None else limit, limit is not None
+    title = tr("Pressure at most")
+    return WishView(PRESSURE, title, shown, words, "kPa", signed=False, set_=set_, kept=not set_)

@@ -1,0 +1,81 @@
+"""What is wished of the result: figures, profiles, and a limit of pressure."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from core.aims.figure import Goal
+from core.aims.outline import section_of
+
+SEEN = ("lift", "out")
+"""Figures that are always told: what is not asked for may move as well."""
+
+PRESSURE = "pressure"
+"""The key of the wish that is a limit [kPa]."""
+
+_SOFTEST, _HARDEST = 0.2, 50.0  # limits that can be set [kPa]
+
+
+@dataclass
+class Wishes:
+    """Figures by name [mm], profiles by section, and a ``limit`` [kPa].
+
+    A figure without a value is shown as it is, and not asked for. Without a limit none is broken but where
+    the red light begins, straps aside.
+    """
+
+    figures: dict[str, float | None] = field(default_factory=dict)
+    curves: dict[str, tuple[Goal, ...]] = field(default_factory=dict)
+    limit: float | None = None
+
+    @classmethod
+    def of(cls, goals: Sequence[Goal]) -> Wishes:
+        """Return the wishes for ``goals``, with the figures beside that are always told."""
+        wishes = cls()
+        for goal in goals:
+            section = section_of(goal.name)
+            if section:
+                wishes.curves[section] = (*wishes.curves.get(section, ()), goal)
+            else:
+                wishes.figures[goal.name] = goal.value
+        if not wishes.curves:
+            for name in SEEN:
+                wishes.figures.setdefault(name, None)
+        return wishes
+
+    def set(self, key: str, value: float) -> None:
+        """Wish for a figure [mm], or set the limit [kPa]."""
+        if key == PRESSURE:
+            self.limit = min(max(value, _SOFTEST), _HARDEST)
+        else:
+            self.figures[key] = value
+
+    def drop(self, key: str) -> None:
+        """Wish for a figure, a profile or a limit no longer."""
+        self.figures.pop(key, None)
+        self.curves.pop(key, None)
+        self.limit = None if key == PRESSURE else self.limit
+
+    @property
+    def asked(self) -> tuple[Goal, ...]:
+        """What was wished for by name."""
+        single = [Goal(name, value) for name, value in self.figures.items() if value is not None]
+        return (*single, *(goal for curve in self.curves.values() for goal in curve))
+
+    @property
+    def told(self) -> tuple[str, ...]:
+        """The figures that are told of an answer."""
+        return tuple(dict.fromkeys((*self.figures, *SEEN)))
+
+    @property
+    def only_limit(self) -> float | None:
+        """The limit, if nothing else is wished."""
+        return None if self.asked else self.limit
+
+    def goals(self, now: Mapping[str, float]) -> tuple[Goal, ...]:
+        """Return what is asked for; with a limit alone that the first figure stays as ``now`` [mm]."""
+        if self.only_limit is None:
+            return self.asked
+        name = next(iter(self.figures), SEEN[0])
+        return (Goal(name, now[name]),) if name in now else ()
