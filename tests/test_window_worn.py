@@ -7,10 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PySide6.QtWidgets import QScrollArea
 from window_tools import Script, run_main, settled, undrawn
 
 from app.main_window import MainWindow
+from app.presenting.worn import bust_words
 from benchmarks.worn_pairs import scanned, worn_mesh, written
+from core.calibration import Difference, Figures
 from core.document import Document
 from core.pipeline import build
 from core.project import open_project, save_project
@@ -53,6 +56,9 @@ def test_a_worn_scan_is_compared_and_learnt_from(pair: tuple[str, str, str]) -> 
         assert not page._compared.isVisible()
         desk.read(scan)
         yield lambda: bool(page.view.rows) and not page.view.faint
+        area = page.findChild(QScrollArea)
+        assert area is not None
+        assert area.widget().width() <= area.viewport().width(), "nothing is cut off at the right"
         assert page.view.file == "worn.ply"
         assert page.view.lies.startswith("100 % of the skin that no line moves")
         frame = window.session.frame
@@ -93,6 +99,7 @@ def test_another_person_is_refused_and_an_edit_makes_the_comparison_old(pair: tu
         yield lambda: "does not fit the first" in said(window)
         assert desk.worn is None
         desk.read(scan)
+        assert "does not fit" not in said(window), "the refusal was of the scan before"
         yield lambda: bool(page.view.rows) and not page.view.faint
         rms = page.view.rows[0].rms
         window.session.preview_line("mid-bust", 0.95)
@@ -110,3 +117,13 @@ def test_another_person_is_refused_and_an_edit_makes_the_comparison_old(pair: tu
         window.session.undo_stack.setClean()
 
     assert run_main([project], script) == 0
+
+
+def test_where_the_bust_points_are_is_said_without_a_sign() -> None:
+    figures = Figures(0.0, 1.0, 2.0, 1.0)
+    way = {"left": np.array([0.0, 0.7, -0.3]), "right": np.array([0.0, -0.2, 0.04])}
+    words = bust_words(Difference(np.zeros(3), figures, {}, way))
+    assert words.startswith(
+        "Left bust point: predicted 0.3 mm lower, 0.7 mm less far out. Right bust point: "
+    )
+    assert "predicted 0.0 mm higher, 0.2 mm further out." in words

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 MAP = "worn"
 """The map Predicted less real."""
 
+_REFUSED = "the worn scan"  # what a refusal is about, which the next scan takes away
+
 
 class WornDesk(QObject):
     """Keeps one worn scan of the body shown; ``compared`` says that there is another comparison, or none.
@@ -93,12 +95,13 @@ class WornDesk(QObject):
             return
         self._window.jobs.cancel(self._reading)
         self._path = path
+        self._window.notices.withdraw(_REFUSED)
         source = ScanSource(path, unit=self._unit or None)
         self._reading = self._window.jobs.run(
             tr("Reading the worn scan"),
             lambda progress: read_worn(frame.stages, source, progress),
             lambda worn: self._take(cast(Worn, worn), frame.stages.body),
-            self._window.desk.show_failure,
+            lambda error: self._window.desk.show_failure(error, _REFUSED),
             waited=True,
         )
 
@@ -207,6 +210,8 @@ class WornDesk(QObject):
         if self._of is not None and frame.stages.body is not self._of:
             self.worn = self._of = self._difference = None
             self._path = ""
+            if self._window.map_desk.name == MAP:
+                self._window.map_desk.choose("")  # of a body that is gone
             self.compared.emit()
         if self._found is not None and self._found[0] is not design:
             self._found = None

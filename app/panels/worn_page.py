@@ -72,11 +72,17 @@ class WornPage(QWidget):
         self._mapped = False
         self.file, self.lies = ElidedLabel(), sentence("", "secondary")
         self.file.setFont(font("name"))
+        self.unsure = sentence(
+            tr("± is 95 % of what noise of the scans makes; another posture or breath is not in it."),
+            "caption",
+        )
         self.bust, self.kept, self.better = (sentence("", role) for role in ("secondary", "caption", "name"))
         self.record = sentence("", "secondary")
         self.choose = button(tr("Choose a worn scan…"))
         self.unit = Segment(
-            (("", tr("Guessed")), ("mm", "mm"), ("cm", "cm"), ("m", "m"), ("inch", tr("inch"))), True
+            (("", tr("Guessed")), ("mm", "mm"), ("cm", "cm"), ("m", "m"), ("inch", tr("inch"))),
+            True,
+            wide=True,
         )
         self.unit.set_choice("")
         self.thickness = FigureField("mm", tr("Thickness of the cloth"), widest="20.0")
@@ -113,7 +119,8 @@ class WornPage(QWidget):
         for each in (self.file, self.lies):
             column.addWidget(each)
         column.addWidget(self.choose, 0, Qt.AlignmentFlag.AlignLeft)
-        column.addLayout(_row(tr("Unit of the scan"), self.unit))
+        column.addWidget(label(tr("Unit of the scan"), "secondary"))
+        column.addWidget(self.unit)  # under its title: beside it the page is wider than the inspector
         column.addLayout(_row(tr("Thickness of the cloth"), self.thickness))
         self._compared, self._found = QWidget(), QWidget()
         self._lay_compared(QVBoxLayout(self._compared))
@@ -168,6 +175,7 @@ class WornPage(QWidget):
         column.addWidget(self.better)
         column.addLayout(self._numbers)
         column.addWidget(self.kept)
+        column.addWidget(self.unsure)
         column.addWidget(sentence(tr("These numbers hold for this person and this garment."), "caption"))
         column.addWidget(self.apply, 0, Qt.AlignmentFlag.AlignLeft)
         for grid in (self._figures, self._numbers):
@@ -188,6 +196,7 @@ class WornPage(QWidget):
         self._found.setVisible(bool(view.better))
         self.calibrate.setEnabled(view.ready)
         self.apply.setVisible(view.helped)
+        self.unsure.setVisible(bool(view.numbers))
         for cell in self._cells:
             cell.deleteLater()
         self._cells = []

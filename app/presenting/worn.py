@@ -19,9 +19,9 @@ from core.worn_scan.numbers import FIRM_CHEST, LENGTH, LINE_STIFFNESS, PRESTRESS
 def aligned_words(worn: Worn) -> str:
     """Return how well a worn scan lies on the first, in a sentence or two."""
     laid = worn.alignment
-    met = tr("{share} % of the skin that no line moves lies within 5 mm of it, {mm} mm off as a rule.").format(
-        share=number(100.0 * laid.met, 0), mm=number(laid.rms, 1)
-    )
+    met = tr(
+        "{share} % of the skin that no line moves lies within 5 mm of it, {mm} mm off as a rule."
+    ).format(share=number(100.0 * laid.met, 0), mm=number(laid.rms, 1))
     sure = tr("Sure to ±{turn}° and ±{mm} mm.").format(
         turn=number(2.0 * float(laid.turns.max()), 2), mm=number(2.0 * float(laid.shifts.max()), 1)
     )
@@ -55,15 +55,21 @@ def bust_words(difference: Difference) -> str:
     if not difference.bust_points:
         return tr("The bust points do not show surely on the worn scan.")
     named = {
-        "left": tr("Left bust point: predicted {up} mm higher, {out} mm further out."),
-        "right": tr("Right bust point: predicted {up} mm higher, {out} mm further out."),
+        "left": tr("Left bust point: predicted {way}, {out}."),
+        "right": tr("Right bust point: predicted {way}, {out}."),
     }
-    return joined(
-        [
-            named[side].format(up=number(float(way[2]), 1, True), out=number(-float(way[1]), 1, True))
-            for side, way in difference.bust_points.items()
-        ]
-    )
+    said = [
+        named[side].format(
+            way=_way(float(way[2]), tr("{mm} mm higher"), tr("{mm} mm lower")),
+            out=_way(-float(way[1]), tr("{mm} mm further out"), tr("{mm} mm less far out")),
+        )
+        for side, way in difference.bust_points.items()
+    ]
+    return joined([*said, tr("Where a bust point is read from a scan it is 3 mm off as a rule.")])
+
+
+def _way(mm: float, more: str, less: str) -> str:
+    return (less if round(mm, 1) < 0.0 else more).format(mm=number(abs(mm), 1))
 
 
 def told_words(difference: Difference) -> str:
