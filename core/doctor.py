@@ -13,6 +13,7 @@ from threadpoolctl import threadpool_limits
 from core.advice.fight import Fight, fight_of
 from core.advice.outlook import Outlook, outlook
 from core.advice.remedy import (
+    MOST_LOOKS,
     Change,
     Cure,
     Search,
@@ -24,7 +25,7 @@ from core.advice.remedy import (
     together_ways,
     with_setting,
 )
-from core.advice.standing import Standing, standing
+from core.advice.standing import Standing, rank_of, standing
 from core.lines import Line
 from core.pipeline import Stages
 from core.progress import Progress, quiet
@@ -92,7 +93,7 @@ def diagnose(stages: Stages, progress: Progress = quiet) -> Diagnosis:
     # Two BLAS threads make these small products many times slower.
     with threadpool_limits(1):
         progress("diagnosing", 0.0)
-        found = Diagnosis(standing(stages), fight_of(stages, progress))
+        found = Diagnosis(standing(stages, progress), fight_of(stages, progress))
         if not found.complaint:
             return found
         if found.complaint in ("vibrating", "diverging"):
@@ -105,10 +106,14 @@ def diagnose(stages: Stages, progress: Progress = quiet) -> Diagnosis:
 def _treated(found: Diagnosis, search: Search) -> Diagnosis:
     stages = found.stages
     cure, others = search.smallest(single_ways(stages))
-    choices = list(settings(stages.design, found.complaint))
+    choices = list(settings(stages.design, found.complaint, found.bears))
+    for choice in choices[:1] if found.bears is not None else ():
+        chosen = replace(stages, design=choice.design)
+        cure = cure or search.smallest(with_setting(choice, line_ways(chosen)))[0]
     cure = cure or search.first_of(iter(choices))
     for ways in (line_ways, together_ways):
         if cure is None and ways is together_ways:
+            search.looks = MOST_LOOKS // 2
             cure, _ = search.smallest(together_ways(stages))
         for choice in choices:
             chosen = replace(stages, design=choice.design)
@@ -118,12 +123,13 @@ def _treated(found: Diagnosis, search: Search) -> Diagnosis:
         for change in choices:
             search.tried_out(change)  # to know the nearest
     if cure is not None:
+        cure = search.plainer(cure)
         return replace(found, cure=cure, others=tuple(others))
     worn = (line.name for line in stages.model.lines if line.constrains)
     free = set(chain.from_iterable(free_groups(stages)))
     locked = tuple(name for name in worn if name in stages.design.worn() and name not in free)
-    milder = [each for each in search.tried if each.standing.rank < found.standing.rank]
-    nearest = min(milder, key=lambda each: (each.standing.rank, each.change.size), default=None)
+    milder = [each for each in search.tried if rank_of(each.left) < found.standing.rank]
+    nearest = min(milder, key=lambda each: (rank_of(each.left), each.change.size), default=None)
     return replace(found, nearest=nearest, locked=locked)
 
 

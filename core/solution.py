@@ -12,6 +12,7 @@ from core.comparison import judge_balance, shape_of
 from core.exact import NEWTON_LIMIT, newton
 from core.mesh import Mesh, Points
 from core.pipeline import Stages, targets_of
+from core.progress import Progress, quiet
 from core.solver import Record, State, at_rest, iterate, record
 from core.solving.body_volume import solve_body_exact
 from core.tffd import deform
@@ -56,24 +57,26 @@ class Solution:
         return float(self.stages.body_change(self.control_points).sum()) / 1000.0
 
 
-def run(stages: Stages, turns: int | None = None) -> Solution:
+def run(stages: Stages, turns: int | None = None, progress: Progress = quiet) -> Solution:
     """Solve the design of ``stages`` from rest.
 
     Makes exactly ``turns`` turns, or as many as it takes to settle (at most MOST_TURNS) if None; the exact
-    control makes Newton steps in their place.
+    control makes Newton steps in their place. ``progress`` hears each step; raises Cancelled.
     """
     start = time.perf_counter()
     rest = record(stages.model, at_rest(stages.model), 0.0, stages.watch)
     solve = _run_exact if stages.design.volume == "exact" else _run_turns
     # Two BLAS threads make these small products many times slower.
     with threadpool_limits(1):
-        records, state, verdict = solve(stages, rest, turns)
+        records, state, verdict = solve(stages, rest, turns, progress)
     condition = shape_of(stages.model).condition(stages.model.tensegric.expand(state.moved))
     verdict = replace(verdict, condition=condition)
     return Solution(stages, rest, tuple(records), state, verdict, time.perf_counter() - start)
 
 
-def _run_turns(stages: Stages, rest: Record, turns: int | None) -> tuple[list[Record], State, Verdict]:
+def _run_turns(
+    stages: Stages, rest: Record, turns: int | None, progress: Progress
+) -> tuple[list[Record], State, Verdict]:
     targets = targets_of(stages.design, stages)
     records: list[Record] = []
     state = at_rest(stages.model)
@@ -81,12 +84,15 @@ def _run_turns(stages: Stages, rest: Record, turns: int | None) -> tuple[list[Re
     for now, measured in iterate(stages.model, lambda: targets, turns=most, watch=stages.watch):
         state = now
         records.append(measured)
+        progress("solving", len(records) / most)
         if turns is None and judge(records).motion in ("settled", "diverging"):
             break
     return records, state, judge(records)
 
 
-def _run_exact(stages: Stages, rest: Record, turns: int | None) -> tuple[list[Record], State, Verdict]:
+def _run_exact(
+    stages: Stages, rest: Record, turns: int | None, progress: Progress
+) -> tuple[list[Record], State, Verdict]:
     ratios = targets_of(stages.design, stages).ratios
     records: list[Record] = []
     before = at_rest(stages.model)
@@ -96,6 +102,7 @@ def _run_exact(stages: Stages, rest: Record, turns: int | None) -> tuple[list[Re
     else:
         balances = newton(stages.model, ratios, limit)
     for balance in balances:
+        progress("solving", balance.steps / limit)
         if balance.steps:
             step = float(((balance.state.moved - before.moved) ** 2).sum(axis=1).max() ** 0.5)
             records.append(record(stages.model, balance.state, step, stages.watch))

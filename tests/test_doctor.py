@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ import pytest
 from app.wording.samples import sample_design
 from core.advice.fight import fight_of
 from core.advice.outlook import outlook
-from core.advice.remedy import GAIN_STEP, LENGTH_STEP
+from core.advice.remedy import GAIN_STEP, LENGTH_STEP, Change, Search, settings
 from core.advice.standing import gone_on, standing
 from core.comparison import Comparison
 from core.design import Design
@@ -20,7 +20,7 @@ from core.design_lines import LineTraits
 from core.doctor import Diagnosis, diagnose
 from core.own_lines import ready_made
 from core.pipeline import Stages, build, targets_of
-from core.progress import Cancelled
+from core.progress import Cancelled, quiet
 from core.settled import settled_frame
 from core.solution import run
 from core.template import read_template
@@ -63,16 +63,25 @@ def cured(found: Diagnosis) -> Design:
     return found.cure.change.design
 
 
+@pytest.mark.parametrize("volume", ["exact", "adaptive", "conventional", "none"])
 @pytest.mark.parametrize("hold", ["spring", "held"])
-def test_in_a_balance_all_forces_add_up_to_nothing(hold: str) -> None:
-    stages = made({"mid-bust": 0.93, "full-bust": 0.95}, line_hold=hold)
+def test_where_a_run_rests_all_forces_add_up_to_nothing(hold: str, volume: str) -> None:
+    stages = made({"mid-bust": 0.93, "full-bust": 0.95}, line_hold=hold, volume=volume)
     fight = fight_of(stages)
-    solved = run(replace(stages, design=replace(stages.design, volume="exact")))
+    solved = run(stages, None if volume == "exact" else 1500)
     newtons = fight.skin / np.linalg.norm(stages.model.tensegric.gradient(solved.state.moved), axis=1).sum()
     skin = -newtons * stages.model.tensegric.gradient(solved.state.moved)
     total = skin + sum(pull.force for pull in fight.pulls)
     assert np.abs(total).max() < 1e-7 * np.abs(skin).max()
-    assert [pull.lines for pull in fight.pulls] == [("mid-bust",), ("full-bust",), ()]
+    volumes = [()] if volume != "none" else []
+    assert [pull.lines for pull in fight.pulls] == [("mid-bust",), ("full-bust",), *volumes]
+
+
+def test_the_volume_is_told_by_sides_that_add_up_and_not_where_it_does_nothing() -> None:
+    volume = fight_of(made({"mid-bust": 0.93})).pulls[-1]
+    assert volume.sides is not None
+    assert sum(volume.sides) == pytest.approx(volume.newtons)
+    assert fight_of(made({})).pulls == ()
 
 
 def test_newtons_are_those_of_the_tissue_and_angles_do_not_hang_on_it() -> None:
@@ -192,6 +201,52 @@ def test_linked_lines_go_together() -> None:
     after = cured(found)
     assert after.ratio("strap left") == after.ratio("strap right") > 0.7
     assert [pull.lines for pull in found.fight.pulls] == [("strap left", "strap right"), ()]
+
+
+def test_who_comes_back_from_a_fold_slowly_is_watched_once_more() -> None:
+    found = treated({"mid-bust": 0.6, "full-bust": 0.6})
+    assert found.complaint == "folded"
+    assert found.cure is not None
+    assert (found.cure.left, found.cure.change.kind) == ("strained", "together")
+
+
+def test_the_nearest_is_told_with_what_is_left_of_it() -> None:
+    search = Search(standing(made({"mid-bust": 0.6}, volume="conventional")), quiet)
+    tried = search.tried_out(Change("length", made({"mid-bust": 0.85}, volume="adaptive").design))
+    assert (tried.ends, tried.left) == (False, "overstrained")
+
+
+def test_a_gain_that_the_shape_bears_is_tried_before_the_control_is_taken_away() -> None:
+    design = made({"mid-bust": 0.9}, volume="conventional", gain=2.5).design
+    changes = [change.setting for change in settings(design, "vibrating", 1.59)]
+    assert changes == [("gain", 1.52), ("volume", "adaptive"), ("volume", "exact")]
+    assert [change.setting[0] for change in settings(design, "vibrating")] == ["volume", "volume"]
+    assert next(settings(replace(design, gain=1.4), "vibrating", 1.59)).setting[0] == "volume"
+
+
+def test_a_choice_that_its_lengths_do_not_need_is_left_out() -> None:
+    sick = made({"mid-bust": 0.7}, volume="conventional", gain=1.2)
+    search = Search(standing(sick), quiet)
+    both = replace(sick.design, volume="adaptive").with_line("mid-bust", 0.95)
+    cure = search.plainer(
+        search.tried_out(Change("length", both, 25.0, ("mid-bust",), ("volume", "adaptive")))
+    )
+    assert (cure.ends, cure.change.setting, cure.change.design.volume) == (True, ("", None), "conventional")
+
+
+@pytest.mark.parametrize("going_on", [False, True])
+def test_a_run_that_nobody_waits_for_stops_in_the_middle(going_on: bool) -> None:
+    sick, turns = made({"mid-bust": 0.6}), []
+
+    def hear(what: str, share: float) -> None:
+        turns.append(share)
+        if len(turns) == 3:
+            raise Cancelled
+
+    work = partial(gone_on, standing(sick)) if going_on else standing
+    with pytest.raises(Cancelled):
+        work(made({"mid-bust": 0.9}), hear)
+    assert len(turns) == 3
 
 
 def test_work_is_let_go_of_at_once() -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 from app.commands.settings import dressed, made_of
 from core import __version__
-from core.advice.fight import Clash, Pull
+from core.advice.fight import Clash, Fight, Pull
 from core.advice.remedy import Change
 from core.design import Design
 from core.doctor import Diagnosis, diagnose
@@ -145,8 +145,7 @@ def _remedy(examined: Examined) -> Iterator[str]:
         return
     yield "No change of one line, of the gain or of the model was found that ends it."
     if found.nearest is not None:
-        told = found.nearest.standing.complaint
-        yield f"The nearest: {change_words(found, found.nearest.change)}; it is then {told}."
+        yield f"The nearest: {change_words(found, found.nearest.change)}; it is then {found.nearest.left}."
     if found.locked:
         yield f"Locked, and so left as they are: {', '.join(found.locked)}."
 
@@ -156,7 +155,7 @@ def change_words(found: Diagnosis, change: Change) -> str:
     parts = []
     if change.setting in CHOICES:
         parts.append(CHOICES[change.setting])
-    if change.kind == "gain":
+    if "gain" in (change.kind, change.setting[0]):
         parts.append(f"lower the gain from {found.stages.gain:.2f} to {change.design.gain:.2f}")
     if change.kind == "length":
         longer = found.longer_mm(change)
@@ -174,7 +173,6 @@ def change_words(found: Diagnosis, change: Change) -> str:
 
 def _figures(examined: Examined) -> dict[str, Any]:
     found, verdict = examined.diagnosis, examined.diagnosis.verdict
-    worst = found.fight.worst
     return {
         "complaint": found.complaint or None,
         "state": verdict.told,
@@ -185,34 +183,44 @@ def _figures(examined: Examined) -> dict[str, Any]:
         "growth_at_first": found.onset if found.onset and found.onset < float("inf") else None,
         "gain": found.stages.gain,
         "gain_borne": found.bears,
-        "fight": None
-        if worst is None
-        else {
-            "between": [list(worst.one.lines) or "volume", list(worst.other.lines) or "volume"],
-            "angle_degrees": worst.angle,
-            "newtons": [worst.one.newtons, worst.other.newtons],
-        },
-        "balance_share": found.fight.share,
-        "forces": [
-            {
-                "of": list(pull.lines) or "volume",
-                "newtons": pull.newtons,
-                "to_volume_degrees": pull.to_volume,
-                "left_right_newtons": list(pull.sides) if pull.sides else None,
-            }
-            for pull in found.fight.pulls
-        ],
-        "skin_newtons": found.fight.skin,
-        "cure": None if found.cure is None else _change(found, found.cure.change),
-        "state_with_cure": None if found.cure is None else found.cure.standing.verdict.told,
-        "others_not_run": [_change(found, other) for other in found.others],
-        "nearest": None if found.nearest is None else _change(found, found.nearest.change),
+        **_forces(found.fight),
+        **_treatment(found),
         "locked": list(found.locked),
         "written_to": examined.out or None,
-        "definition": "forces on the free points in the exact balance, or the last on the way to these "
-        "lengths; angles between what they do to the skin; newtons rest on the assumed stiffness of tissue; "
+        "definition": "forces on the free points where the run rests, or at the last balance on the way "
+        "there; angles between what they do to the skin; newtons rest on the assumed stiffness of tissue; "
         "size_percent: of the length at rest, or of the gain",
         "versions": {"busk": __version__},
+    }
+
+
+def _forces(fight: Fight) -> dict[str, Any]:
+    worst = fight.worst
+    named = worst and {
+        "between": [list(worst.one.lines) or "volume", list(worst.other.lines) or "volume"],
+        "angle_degrees": worst.angle,
+        "newtons": [worst.one.newtons, worst.other.newtons],
+    }
+    forces = [
+        {
+            "of": list(pull.lines) or "volume",
+            "newtons": pull.newtons,
+            "to_volume_degrees": pull.to_volume,
+            "left_right_newtons": list(pull.sides) if pull.sides else None,
+        }
+        for pull in fight.pulls
+    ]
+    return {"fight": named, "balance_share": fight.share, "forces": forces, "skin_newtons": fight.skin}
+
+
+def _treatment(found: Diagnosis) -> dict[str, Any]:
+    cure, nearest = found.cure, found.nearest
+    return {
+        "cure": None if cure is None else _change(found, cure.change),
+        "state_with_cure": None if cure is None else cure.standing.verdict.told,
+        "others_not_run": [_change(found, other) for other in found.others],
+        "nearest": None if nearest is None else _change(found, nearest.change),
+        "state_with_nearest": None if nearest is None else nearest.left,
     }
 
 

@@ -175,7 +175,8 @@ def _changes(found: Diagnosis) -> Iterator[str]:
         yield words.format(change=change_words(found, other))
     if found.nearest is not None:
         words = tr("Nearest: {change}; it ends as “{state}”")
-        yield words.format(change=change_words(found, found.nearest.change), state=_state(found.nearest))
+        said = change_words(found, found.nearest.change)
+        yield words.format(change=said, state=state_title(found.nearest.left))
 
 
 def _state(cure: Cure) -> str:

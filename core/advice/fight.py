@@ -1,9 +1,9 @@
 """What fights: which force each constraint puts on the body in a balance, and which two oppose each other.
 
-Read off the balance itself (ours): tensions and directions of lines, the multiplier of the volume and its
-gradient. At the free points these forces and what the skin answers with add up to nothing. Two lines seldom
-share a point, so angles are those between what the forces do to the skin, which passes them on: they are
-taken with its compliance, the inverse of its stiffness at rest.
+Read off the balance that the run itself comes to rest at (ours): tensions and directions of lines, the
+multiplier of the volume and its gradient. At the free points these forces and what the skin answers with add
+up to nothing. Two lines seldom share a point, so angles are those between what the forces do to the skin,
+which passes them on: they are taken with its compliance, the inverse of its stiffness at rest.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse import linalg as sparse_linalg
 
+from core.advice.outlook import resting
 from core.design import Design
-from core.exact import solve_exact
 from core.mesh import Floats, Points
 from core.model import ConstrainedModel
 from core.pipeline import Stages, targets_of
 from core.progress import Progress, quiet
-from core.solver import at_rest
-from core.solving.newton import Balance, balance_at
+from core.solver import Targets
+from core.solving.newton import Balance
 from core.solving.newtons import newtons_per_unit
 from core.solving.potential import Place, Potential
 from core.solving.sliding import Skin
@@ -34,7 +34,8 @@ OPPOSED = 100.0
 OUTSTANDING = 1.25
 """How many times as much as any other two they take from each other where a pair stands out [1]; ours."""
 
-_STRIDE, _STEPS, _PRECISION = 0.25, 20, 0.01
+_STRIDE, _PRECISION = 0.25, 0.01
+_NOTHING = 1e-6  # N
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +43,7 @@ class Pull:
     """What one constraint does to the free points: that of ``lines``, linked ones together, or the volume.
 
     ``lines`` is empty for the volume. ``force`` (f, 3) [N]; ``newtons`` its sizes at all points, added up;
-    ``sides`` the same on the left and the right where the volume is held on each. ``to_volume`` [degrees] is
+    ``sides`` its parts on the left and the right where the volume is held on each. ``to_volume`` [degrees] is
     its angle to the volume gradient: above 90 it takes volume away.
     """
 
@@ -91,10 +92,10 @@ class Fight:
 
 
 def fight_of(stages: Stages, progress: Progress = quiet) -> Fight:
-    """Return what fights in a design, at its exact balance or the last one on the way there."""
-    ratios = targets_of(stages.design, stages).ratios
-    balance, share = _last_balance(stages.model, ratios, progress)
-    potential = Potential(stages.model, _between(ratios, share))
+    """Return what fights in a design, where its run comes to rest or at the last balance on the way there."""
+    targets = targets_of(stages.design, stages)
+    balance, share = _last_balance(stages, targets, progress)
+    potential = Potential(stages.model, _between(targets, share).ratios)
     place = potential.at(balance.state.moved)
     newtons = newtons_per_unit(stages.model, stages.design.tissue_stiffness)
     passed_on = _Skin(stages.model, place, newtons)
@@ -102,8 +103,8 @@ def fight_of(stages: Stages, progress: Progress = quiet) -> Fight:
         passed_on.pull(names, newtons * force)
         for names, force in _lines(stages.design, potential, place, balance)
     ]
-    if stages.design.volume != "none":
-        pulls.append(_volume(passed_on, place, newtons * balance.pressures))
+    volume = _volume(passed_on, place, newtons * balance.pressures)
+    pulls += [volume] if stages.design.volume != "none" and volume.newtons > _NOTHING else []
     clashes = [passed_on.clash(one, other) for one, other in combinations(pulls, 2)]
     clashes = sorted((each for each in clashes if each.taken > 0.0), key=lambda each: -each.taken)
     return Fight(share, tuple(pulls), tuple(clashes), newtons * _added(place.inner))
@@ -136,18 +137,16 @@ class _Skin:
         return float(np.degrees(np.arccos(np.clip(np.vdot(one, others) / sizes, -1.0, 1.0))))
 
 
-def _last_balance(
-    model: ConstrainedModel, ratios: tuple[float, ...], progress: Progress
-) -> tuple[Balance, float]:
-    """Return the exact balance, or the last before the way from rest breaks off, and its share of the way."""
-    balance = solve_exact(model, ratios)
+def _last_balance(stages: Stages, targets: Targets, progress: Progress) -> tuple[Balance, float]:
+    """Return where a run rests, or the last balance on the way from rest, and its share of the way."""
+    balance = resting(stages, targets)
     if balance.found:
         return balance, 1.0
-    last, share, stride = balance_at(Potential(model, ratios), at_rest(model).moved), 0.0, _STRIDE
+    last, share, stride = resting(stages, _between(targets, 0.0)), 0.0, _STRIDE
     while stride > _PRECISION and share < 1.0:
         progress("diagnosing", 0.0)
         further = min(share + stride, 1.0)
-        there = solve_exact(model, _between(ratios, further), _STEPS, near=last)
+        there = resting(stages, _between(targets, further), last)
         if there.found:
             last, share = there, further
         else:
@@ -155,8 +154,8 @@ def _last_balance(
     return last, share
 
 
-def _between(ratios: tuple[float, ...], share: float) -> tuple[float, ...]:
-    return tuple(1.0 + share * (ratio - 1.0) for ratio in ratios)
+def _between(targets: Targets, share: float) -> Targets:
+    return replace(targets, ratios=tuple(1.0 + share * (ratio - 1.0) for ratio in targets.ratios))
 
 
 def _lines(
@@ -192,7 +191,11 @@ def _volume(skin: _Skin, place: Place, pressures: Floats) -> Pull:
     pull = skin.pull((), sides.sum(axis=0))
     if model.volume.closed or model.mechanics.volume_of == "both":
         return pull
-    return replace(pull, sides=(_added(sides[0]), _added(sides[1])))
+    # A point in the middle is pushed by both: its force goes to each by what it adds.
+    left, right = np.linalg.norm(sides, axis=2)
+    whole = np.linalg.norm(pull.force, axis=1)
+    of_left = float((whole * left / np.maximum(left + right, 1e-300)).sum())
+    return replace(pull, sides=(of_left, pull.newtons - of_left))
 
 
 def _added(force: Points) -> float:

@@ -29,6 +29,7 @@ PUSH = 0.02
 """How far the push moves a point at most [mm]: small enough for turns to answer in proportion."""
 
 _FAR = 0.1  # of the lengths from which another balance is looked for [1]
+_QUICK, _FROM_REST = 20, 90  # Newton steps from near by, and from rest, after which no balance is hoped for
 _SPAN = 30
 _ROUNDS = 12
 _NEAR = 1e-7  # volume errors this far apart are the same [1]
@@ -59,10 +60,10 @@ class Outlook:
 def outlook(stages: Stages, near: Outlook | None = None) -> Outlook | None:
     """Return how the run of a design will end, None where there is nothing for it to rest at.
 
-    From an outlook ``near`` by it is found more quickly.
+    From an outlook ``near`` by it is found quickly or held not to be there.
     """
     model, targets = stages.model, targets_of(stages.design, stages)
-    balance = _resting(stages, model, targets, _start(near, model, targets))
+    balance = resting(stages, targets, _start(near, model, targets))
     if not balance.found:
         return None
     condition = shape_of(model).condition(model.tensegric.expand(balance.state.moved))
@@ -78,11 +79,13 @@ def _start(near: Outlook | None, model: ConstrainedModel, targets: Targets) -> B
     return near.balance if alike and far <= _FAR else None
 
 
-def _resting(stages: Stages, model: ConstrainedModel, targets: Targets, near: Balance | None) -> Balance:
+def resting(stages: Stages, targets: Targets, near: Balance | None = None) -> Balance:
+    """Return the balance that a design comes to rest at with other ``targets``; see ``solve_exact``."""
+    model = stages.model
     if targets.control == "exact":
         if stages.design.dense_volume:
             return solve_body_exact(model, targets.ratios, stages.body_change, near=near)
-        return solve_exact(model, targets.ratios, near=near)
+        return solve_exact(model, targets.ratios, _most_steps(near), near=near)
     # Turns measure both breasts together, whatever the exact answer holds.
     both = replace(model.tensegric, mechanics=replace(model.mechanics, volume_of="both"))
     return _kept(replace(model, tensegric=both), targets, near)
@@ -93,7 +96,7 @@ def _kept(model: ConstrainedModel, targets: Targets, near: Balance | None) -> Ba
 
     There the pressure is the gain times what is missing; that is closed in on by secants.
     """
-    here = solve_exact(model, targets.ratios, near=near)
+    here = solve_exact(model, targets.ratios, _most_steps(near), near=near)
     if targets.control in ("adaptive", "accumulating") or not here.found:
         return here
     gain = targets.gain if targets.control == "conventional" else 0.0
@@ -104,15 +107,18 @@ def _kept(model: ConstrainedModel, targets: Targets, near: Balance | None) -> Ba
     before, excess, amiss_before = 0.0, 0.0, missing(here, 0.0)
     excess = -amiss_before / (gain + 0.3)
     for _ in range(_ROUNDS):
-        here = solve_exact(
-            model, targets.ratios, excess=np.full(2, 0.5 * excess * model.volume.rest_volume), near=here
-        )
+        kept = np.full(2, 0.5 * excess * model.volume.rest_volume)
+        here = solve_exact(model, targets.ratios, _QUICK, excess=kept, near=here)
         amiss = missing(here, excess)
         if not here.found or abs(excess - before) < _NEAR or amiss == amiss_before:
             return here
         slope = (amiss - amiss_before) / (excess - before)
         before, amiss_before, excess = excess, amiss, excess - amiss / slope
     return here
+
+
+def _most_steps(near: Balance | None) -> int:
+    return _FROM_REST if near is None else _QUICK
 
 
 def swing_growth(model: ConstrainedModel, targets: Targets, balance: Balance) -> float:

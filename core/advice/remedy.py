@@ -15,7 +15,7 @@ from functools import partial, reduce
 from typing import Any
 
 from core.advice.outlook import Outlook, outlook
-from core.advice.standing import Standing, gone_on, standing
+from core.advice.standing import Standing, gone_on, rank_of, standing
 from core.design import Design
 from core.errors import UserError
 from core.lines import RATIO_LIMITS
@@ -30,8 +30,14 @@ GAIN_STEP = 0.01
 """Gain that a person sets, in probe units [1]."""
 
 _LEAST_GAIN = 0.1
+_BELOW = 0.96  # of the gain that a shape bears: there a swing fades within the turns that a run is watched
 _WORTH = 1.5  # times the smallest change that looks good: what is larger is not worth a search
-_TRIES = 14
+_TRIES = 6  # runs on one kind of way, and in all: what a search may take
+_MOST_TRIES = 16
+MOST_LOOKS = 140
+"""Outlooks that a search for single changes may take, and half of that the search for what comes after."""
+
+_COARSER = 3  # times as many steps where the outlook was not good
 _MOST_TOGETHER = 95  # %: beyond that nothing is left of the garment
 _FURTHER = 1.08  # a step that a run did not bear out is made larger by so much, then more
 
@@ -55,11 +61,15 @@ class Change:
 
 @dataclass(frozen=True, eq=False)
 class Cure:
-    """A change, and how the design stands with it: run from rest, and on from where it was."""
+    """A change, and how the design stands with it: run from rest, and on from where it was.
+
+    ``left`` is the worse of what is wrong then, empty if nothing is.
+    """
 
     change: Change
     standing: Standing
     ends: bool
+    left: str = ""
 
 
 @dataclass(frozen=True)
@@ -110,8 +120,15 @@ def _length(design: Design, names: tuple[str, ...], sign: int, grid: int, steps:
     )
 
 
-def settings(design: Design, complaint: str) -> Iterator[Change]:
-    """Yield other choices of the model that may end a complaint, the least far-reaching first."""
+def settings(design: Design, complaint: str, bears: float | None = None) -> Iterator[Change]:
+    """Yield other choices of the model that may end a complaint, the least far-reaching first.
+
+    ``bears`` is the gain that the shape bears: where it is known a gain somewhat below it comes first.
+    """
+    if bears is not None:
+        gain = round(math.floor(_BELOW * bears / GAIN_STEP) * GAIN_STEP, 6)
+        if _LEAST_GAIN <= gain < (math.inf if design.gain is None else design.gain):
+            yield _set(design, "gain", gain)
     moving = complaint in ("vibrating", "diverging", "settling")
     in_step = [_set(design, "line_force", "implicit")]
     controls = [_set(design, "volume", control) for control in ("adaptive", "exact")[: 1 + moving]]
@@ -122,7 +139,7 @@ def settings(design: Design, complaint: str) -> Iterator[Change]:
             yield change
 
 
-def _set(design: Design, key: str, value: str) -> Change:
+def _set(design: Design, key: str, value: str | float) -> Change:
     return Change("setting", replace(design, **{key: value}), setting=(key, value))  # type: ignore[arg-type]
 
 
@@ -163,11 +180,12 @@ def _together(design: Design, groups: list[tuple[str, ...]], steps: int) -> Chan
 
 
 class Search:
-    """Looks for what ends the ``complaint`` of a design that was run."""
+    """Looks for what ends the ``complaint`` of a design that was run, by as many more ``looks`` ahead."""
 
     def __init__(self, sick: Standing, progress: Progress) -> None:
         self._sick, self._progress = sick, progress
         self._near: Outlook | None = None
+        self.looks = MOST_LOOKS
         self.tried: list[Cure] = []
         design = sick.stages.design
         steady = design.volume in ("adaptive", "accumulating", "none") and design.line_hold == "spring"
@@ -187,6 +205,9 @@ class Search:
         return seen.stays if self._swings else True
 
     def _hopeful(self, change: Change) -> bool:
+        if not self.looks:
+            return False
+        self.looks -= 1
         try:
             return self._bears(build(change.design, self._sick.stages))
         except UserError:
@@ -199,7 +220,7 @@ class Search:
         """
         none, steps = 0, min(1, way.most)
         while steps > none and not self._hopeful(way.at(steps)):
-            none, steps = steps, min(2 * steps, way.most)
+            none, steps = steps, min(_COARSER * steps, way.most)
             if way.at(none + 1 if none < way.most else none).size > largest:
                 return None
         if steps == none:
@@ -213,13 +234,13 @@ class Search:
         """Run a changed design, from rest and on from where the run stands, and keep what came out."""
         self._progress("diagnosing", 0.0)
         stages = build(change.design, self._sick.stages)
-        after = standing(stages)
-        ends = self._well(after.complaint)
-        if ends:
-            self._progress("diagnosing", 0.0)
-            warm = gone_on(self._sick, stages)
-            ends = warm is None or self._well("" if warm.told == "settled" else warm.told)
-        cure = Cure(change, after, ends)
+        after = standing(stages, self._progress)
+        left = after.complaint
+        if self._well(left):
+            warm = gone_on(self._sick, stages, self._progress)
+            told = "" if warm is None or warm.told == "settled" else warm.told
+            left = max(left, told, key=rank_of)
+        cure = Cure(change, after, self._well(left), left)
         self.tried.append(cure)
         return cure
 
@@ -238,7 +259,7 @@ class Search:
         others = {number: way.at(steps) for _, number, steps, way in hopes}
         further = dict.fromkeys(others, 1.0)
         for _ in range(_TRIES):
-            if not hopes:
+            if not hopes or len(self.tried) >= _MOST_TRIES:
                 break
             _, number, steps, way = heapq.heappop(hopes)
             others.pop(number, None)
@@ -257,6 +278,16 @@ class Search:
             if self._hopeful(change) and (cure := self.tried_out(change)).ends:
                 return cure
         return None
+
+    def plainer(self, cure: Cure) -> Cure:
+        """Return a cure without the other choice that comes with its lengths, if a run bears that out too."""
+        change, key = cure.change, cure.change.setting[0]
+        if change.kind == "setting" or not key:
+            return cure
+        as_before = {key: getattr(self._sick.stages.design, key)}
+        without = replace(change, design=replace(change.design, **as_before), setting=("", None))
+        tried = self.tried_out(without)
+        return tried if tried.ends else cure
 
 
 def _too_far(stages: Stages, bounds: tuple[float, float]) -> bool:
