@@ -20,7 +20,9 @@ from core.pipeline import Stages, build
 from core.progress import Cancelled
 from core.project import open_project
 from core.worn_scan.calibrating import exact_answer
+from core.worn_scan.least_squares import Normal
 from core.worn_scan.numbers import Number, candidates, rates_by
+from core.worn_scan.telling import least_sure, one_will_do
 
 STEP = 3e-4
 
@@ -148,6 +150,36 @@ def test_each_line_or_one_stiffness_for_all() -> None:
         "firm_chest",
         "prestress",
     ]
+
+
+@pytest.mark.parametrize(
+    ("sds", "values", "one"),
+    [
+        ((0.03, 0.3), (40.0, 65.0), True),  # unsure by itself, and not unlike
+        ((0.03, 0.3), (40.0, 4.0), False),  # unsure, but unlike
+        ((0.03, 0.04), (40.0, 41.0), False),  # each is told by itself
+    ],
+)
+def test_lines_share_a_stiffness_where_nothing_tells_them_apart(
+    sds: tuple[float, float], values: tuple[float, float], one: bool
+) -> None:
+    numbers = Number("stiffness", ("mid-bust",)), Number("stiffness", ("full-bust",)), Number("firm_chest")
+    covariance = np.diag([*sds, 0.01]) ** 2
+    plan = VARIANTS["glued"]
+    for number, value in zip(numbers, values, strict=False):
+        plan = number.put(plan, value)
+    assert one_will_do(Normal(np.eye(3), np.zeros(3), covariance), numbers, plan) is one
+
+
+def test_a_number_counts_as_told_by_its_share() -> None:
+    numbers = Number("line_stiffness"), Number("firm_chest")
+    plan = design(firm_chest=0.2)
+    doubts = [number.doubt(plan) for number in numbers]
+    assert doubts == pytest.approx([0.15, 0.03])
+    sure = Normal(np.eye(2), np.zeros(2), np.diag([0.1, 0.02]) ** 2)
+    unsure = Normal(np.eye(2), np.zeros(2), np.diag([0.1, 0.04]) ** 2)
+    assert least_sure(sure, doubts) is None
+    assert least_sure(unsure, doubts) == 1
 
 
 def test_a_design_without_a_calibration_is_written_as_ever() -> None:
