@@ -86,6 +86,9 @@ def ends(stages: Stages, design: Design | None = None) -> str:
             after = build(design, stages)
             comparison.retarget(after.model, targets_of(design, after), fresh=True)
             _to_rest(comparison)
+            if comparison.verdict.motion == "settling":  # as the window does after a change of the doctor's
+                comparison.retarget(after.model, targets_of(design, after))
+                _to_rest(comparison)
             stages = after
     held = stages.design.line_hold == "held"
     if (held or comparison.main is None) and not comparison.exact.found:
