@@ -28,11 +28,15 @@ def sentence(leeway: Leeway) -> str:
 
 
 def hint(leeway: Leeway, ratio: float) -> str:
-    """Return what is told where the pointer rests: the zone of a length [1], and why it is one."""
+    """Return what is told where the pointer rests: the zone of a length [1], and why it is one.
+
+    Where a reason holds for just the lengths of the zone, these are told once.
+    """
     zone = leeway.at(ratio)
     near = _beside(leeway, zone) if zone.tone == GREEN else (zone,)
     reasons = dict.fromkeys(reason for each in near for reason in _told(each))
-    lines = [] if zone.tone == SLACK else [_range(_name(zone), zone.short, zone.long)]
+    alike = any((each.short, each.long) == (zone.short, zone.long) for each in reasons)
+    lines = [] if alike or zone.tone == SLACK else [_range(_name(zone), zone.short, zone.long)]
     lines += [f"{_upper(placed(each))}: {meaning(each)}." for each in reasons]
     if zone.tone == GREEN and not leeway.pressure_known:
         lines.append(tr("Pressure is not looked at: it is made of no elastic."))

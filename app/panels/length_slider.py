@@ -31,6 +31,7 @@ from app.panels.length_groove import (
     wall_of,
 )
 from app.wording.tokens import LINE_COLORS
+from app.wording.words import tr
 from core.leeway import Leeway
 
 STEPS_TO_ONE = 100_000  # one step of the slider is 1/1000 %
@@ -116,8 +117,9 @@ class LengthSlider(QAbstractSlider):
             self.update()
 
     def event(self, event: QEvent) -> bool:
-        if isinstance(event, QHelpEvent) and self._leeway is not None and not self._stale:
-            told = hint(self._leeway, self._ratio_under(event.pos().x()))
+        if isinstance(event, QHelpEvent) and self._leeway is not None:
+            ratio = self._ratio_under(event.pos().x())
+            told = tr("How far it can go is being worked out.") if self._stale else hint(self._leeway, ratio)
             QToolTip.showText(event.globalPos(), f"{told}\n\n{self.toolTip()}", self)
             return True
         return super().event(event)

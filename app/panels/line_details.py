@@ -73,7 +73,7 @@ class LineDetails(QWidget):
             for each in figures:
                 each.setVisible(row < len(sides) and (each is not figures[0] or len(sides) > 1))
         unit = "mm" if len(sides) == 1 else ""  # two sides leave no room for it in each figure
-        tone = tone_at(view.leeway, ratio) if worn else ""
+        tone = tone_at(view.leeway, ratio) if worn and not view.stale else ""
         for side, figures in zip(sides, self._figures, strict=False):
             _show_side(side, ratio, "" if view.elastic else tone, unit, figures, bool(view.elastic))
         made = tr("Unstretched"), tr("Reached"), tr("Stretched by")
@@ -90,7 +90,9 @@ class LineDetails(QWidget):
         self._limits.setVisible(view.leeway is not None)
         if view.leeway is not None:
             self._limit.setText(told(view.leeway))
-            tone = tone_at(view.leeway, view.ratio)
+            # What was said of the design before is faint until it is said of this one, as its zones are.
+            set_tag(self._limit, "tone", "faint" if view.stale else "")
+            tone = "" if view.stale else tone_at(view.leeway, view.ratio)
             self._sign.show_icon("warning" if tone else "info", tone or "text_caption")
         self._pull.setVisible(view.constrained and not view.elastic)  # an elastic has its own
         self._presses.setVisible(bool(view.elastic))
