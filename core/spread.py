@@ -26,8 +26,8 @@ from core.pipeline import Stages
 from core.progress import Progress, quiet
 
 SLIDING = (
-    "Lines that slide answer less evenly than the ± says: sampled, lift, tension and largest pressure were "
-    "off by up to two and a half times as much."
+    "Lines that slide answer less evenly than the ± says: sampled, the lift was off by more than twice as "
+    "much on one body."
 )
 BESIDE = (
     "The ± and the other skin contact are those of the exact answer, which holds the volume; with this "

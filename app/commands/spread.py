@@ -170,7 +170,7 @@ def _sources(spread: Spread) -> Sequence[str]:
 def _of_lines_worn(found: Spreading) -> Iterator[str]:
     """Yield what holds where lines are worn."""
     if any(found.spread.factor(figure.key) for figure in found.figures):
-        yield "(a to b): so many times smaller or larger, where stiffness alone makes most of it."
+        yield "(a to b): where what is known to a factor makes most of it, as many times smaller as larger."
     yield "The skin contact is a choice of the model and no part of the ±: the truth lies between the two."
     yield from found.spread.cautions
 
