@@ -81,7 +81,8 @@ def measure(name: str, stages: Stages, draws: int) -> None:
     )
     for key in SHOWN:
         if key in sds and key in spread.doubts:
-            print(f"  {key:24} ± {spread.sds * spread.doubts[key].sd:7.2f}   sampled {spread.sds * sds[key]:7.2f}")
+            off = spread.sds * spread.doubts[key].sd  # of forces too, which are told as a range
+            print(f"  {key:24} ± {off:7.2f}   sampled {spread.sds * sds[key]:7.2f}")
     for kind in KINDS:
         ratios = [ratio for key, ratio in _ratios(spread, sds) if key.split(":")[0].split()[0] == kind]
         if ratios:
