@@ -73,6 +73,13 @@ class Diagnosis:
         """How its run ended, with period and growth if it swings."""
         return self.standing.verdict
 
+    def seen(self, verdict: Verdict) -> Diagnosis:
+        """Return the same as told of a run that ended by ``verdict``: one that did not begin at rest."""
+        if self.complaint == "unreachable" or verdict.told == "settled":
+            return self
+        solution = replace(self.standing.solution, verdict=verdict)
+        return replace(self, standing=replace(self.standing, solution=solution, complaint=verdict.told))
+
     def line(self, name: str) -> Line:
         """Return a line of the design by name."""
         return next(line for line in self.stages.model.lines if line.name == name)

@@ -64,6 +64,11 @@ class Editing(QObject):
             self._preview = None
             self._submit(self.design)
 
+    def go_on(self) -> None:
+        """Make more turns of the design that is shown, which came nearer to rest but not there."""
+        if self.design is not None and self._preview is None:
+            self._submit(self.design)
+
     def commit_line(self, name: str, title: str, ratio: float) -> None:
         """Set a line's length as one undo step; at its rest length it is off: it does not pull."""
         if self.design is None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -33,9 +33,22 @@ ABOUT = "doctor"
 PATIENCE = 1200
 """Milliseconds that a strained design rests before it is looked at: who is still at work hears nothing."""
 
-_SWINGS = ("vibrating", "diverging")
-_BAD = (*_SWINGS, "folded", "overstrained")
+_BAD = ("vibrating", "diverging", "folded", "overstrained")
 _CURED = ("lines", "gain", "volume", "line_force", "line_hold")
+
+
+@dataclass(frozen=True)
+class _Trouble:
+    """What a notice is about: the complaint, and the two that fight once they are known."""
+
+    complaint: str
+    pair: tuple[tuple[str, ...], ...] | None = None
+
+    def is_that(self, other: _Trouble) -> bool:
+        """Tell whether it is the same, as far as is known."""
+        return self.complaint == other.complaint and (
+            None in (self.pair, other.pair) or self.pair == other.pair
+        )
 
 
 class DoctorDesk(QObject):
@@ -50,7 +63,11 @@ class DoctorDesk(QObject):
         self._frame: Frame | None = None
         self._about: Design | None = None
         self._quiet: set[Design] = set()
+        self._cured: Design | None = None
+        self._said: _Trouble | None = None
+        self._closed: _Trouble | None = None
         self._job: Job | None = None
+        window.notices.closed.connect(self._note_closed)
         self._later = QTimer(self, interval=PATIENCE, singleShot=True)
         self._later.timeout.connect(self._look)
         said = tr("Say what fights in this design, and what ends it")
@@ -65,8 +82,14 @@ class DoctorDesk(QObject):
         self._forget()
         if frame.at_work or design is not self._window.session.design:
             return
-        self._about = design
         state = state_of(frame)
+        if state == "settling" and design is self._cured:
+            self._cured = None
+            self._window.session.go_on()  # back from a fold it takes more turns: the doctor knows
+            return
+        self._about = design
+        if state not in _BAD:
+            self._closed = None
         if state in _BAD:
             self._tell_at_once(frame)
             self._look()
@@ -90,6 +113,7 @@ class DoctorDesk(QObject):
         frame = self._frame
         if frame is not None:
             self._forget()
+            self._closed = None
             self._about = frame.stages.design
             self._run(partial(diagnose, frame.stages), partial(self._answer, frame), waited=True)
 
@@ -100,7 +124,7 @@ class DoctorDesk(QObject):
         self._job = None
         if self._about is not None:
             self._about = None
-            self._window.notices.withdraw(ABOUT)
+            self._withdraw()
 
     def _look(self) -> None:
         frame = self._frame
@@ -123,8 +147,7 @@ class DoctorDesk(QObject):
 
     def _tell_at_once(self, frame: Frame) -> None:
         hint = tr("No garment does that: what is seen here is no result.")
-        actions = [self._other_control(frame.stages.design)] if state_of(frame) in _SWINGS else []
-        self._show("warn", plain_sentence(frame), hint, actions, "")
+        self._show("warn", plain_sentence(frame), hint, [], "", _Trouble(state_of(frame)))
 
     def _found(self, frame: Frame, found: object) -> None:
         """Tell what was found in place of what was told at once."""
@@ -132,14 +155,14 @@ class DoctorDesk(QObject):
         self._job = None
         if not found.complaint:
             return  # from rest it does come to rest: what was told at once still holds for what is seen
-        swing = swing_mm(frame)[1]
+        found, swing = found.seen(frame.verdict), swing_mm(frame)[1]
         tone = "info" if found.complaint in ("strained", "settling") else "warn"
         actions = self._cure(found)
-        if found.complaint in _SWINGS:
-            tried = found.cure is not None and found.cure.change.setting[0] == "volume"
-            actions += [] if tried else [self._other_control(frame.stages.design)]
         self._quiet.add(frame.stages.design)
-        self._show(tone, words.sentence(found, swing), words.hint(found), actions, words.details(found))
+        worst = found.fight.worst
+        trouble = _Trouble(found.complaint, (worst.one.lines, worst.other.lines) if worst else ())
+        said = words.sentence(found, swing)
+        self._show(tone, said, words.hint(found), actions, words.details(found), trouble)
 
     def _answer(self, frame: Frame, found: object) -> None:
         """Tell what was asked for, well or not."""
@@ -149,7 +172,7 @@ class DoctorDesk(QObject):
             return
         self._job = None
         said = tr("Nothing is wrong: the calculation comes to rest, and the skin is calm.")
-        self._show("ok", said, "", [], words.details(found))
+        self._show("ok", said, "", [], words.details(found), None)
 
     def _tell_refused(self, error: NoBalanceError, found: object) -> None:
         """Tell why lengths were refused, and the nearest that are not, in place of the bare refusal."""
@@ -170,11 +193,31 @@ class DoctorDesk(QObject):
             about=REFUSED,
         )
 
-    def _show(self, tone: str, sentence: str, hint: str, actions: list[Action], details: str) -> None:
-        notices = self._window.notices
-        notices.withdraw(ABOUT)
+    def _show(
+        self,
+        tone: str,
+        sentence: str,
+        hint: str,
+        actions: list[Action],
+        details: str,
+        trouble: _Trouble | None,
+    ) -> None:
+        """Show a notice in place of the last, unless the same ``trouble`` was closed by hand."""
+        if trouble and self._closed and trouble.is_that(self._closed):
+            return
+        self._withdraw()
         lasting = tone == "warn"
-        notices.show_notice(tone, sentence, hint, actions, lasting, details, ABOUT)
+        self._window.notices.show_notice(tone, sentence, hint, actions, lasting, details, ABOUT)
+        self._said = trouble if lasting else None
+
+    def _withdraw(self) -> None:
+        self._said = None
+        self._window.notices.withdraw(ABOUT)
+
+    def _note_closed(self) -> None:
+        """Remember what was closed by hand: it is not told again before something else is wrong."""
+        if self._said is not None and not self._window.notices.says(ABOUT):
+            self._closed, self._said = self._said, None
 
     def _cure(self, found: Diagnosis) -> list[Action]:
         if found.cure is None:
@@ -189,9 +232,4 @@ class DoctorDesk(QObject):
         design = self._window.session.design
         if design is not None:
             self._quiet.add(design)
-
-    def _other_control(self, design: Design) -> Action:
-        control, title = ("adaptive", tr("Use Adaptive"))
-        if design.volume == control:
-            control, title = ("exact", tr("Use Exact"))
-        return title, lambda: self._window.session.choose_control(control)
+            self._cured = design

@@ -94,6 +94,10 @@ class NoticeBar(QWidget):
         """Return the notice that stands there."""
         return self._shown
 
+    def says(self, about: str) -> bool:
+        """Return whether something about this stands or waits there."""
+        return any(each is not None and each.about == about for each in (self._shown, *self._waiting))
+
     def close_notice(self) -> None:
         """Take the notice away and show the next."""
         self._shown = None

@@ -84,6 +84,8 @@ def change_words(found: Diagnosis, change: Change) -> str:
         ("line_hold", "spring"): tr("Let lines spring back"),
     }.get(change.setting, "")
     design, what = found.stages.design, ""
+    if "gain" in (change.kind, change.setting[0]) and change.design.gain is not None:
+        choice = tr("Lower the gain to {gain}").format(gain=number(change.design.gain, 2))
     if change.kind == "length":
         ratio = change.design.ratio(change.lines[0])
         values = {
@@ -96,8 +98,6 @@ def change_words(found: Diagnosis, change: Change) -> str:
         if found.complaint == "unreachable":  # that length is nowhere to be seen
             what = tr("Set {line} to {percent} %")
         what = what.format(**values)
-    elif change.kind == "gain" and change.design.gain is not None:
-        what = tr("Lower the gain to {gain}").format(gain=number(change.design.gain, 2))
     elif change.kind == "together":
         what = tr("Bring all lines nearer to 100 %")
     elif change.kind == "off":
@@ -170,6 +170,15 @@ def _changes(found: Diagnosis) -> Iterator[str]:
     if found.cure is not None:
         words = tr("{change}: run from rest and on from here, it ends as “{state}”")
         yield words.format(change=change_words(found, found.cure.change), state=_state(found.cure))
+        if found.cure.change.kind == "together":
+            after = found.cure.change.design
+            yield from (
+                "  "
+                + tr("{line} {percent} %").format(
+                    line=line_title(name, after), percent=number(100.0 * after.ratio(name))
+                )
+                for name in found.cure.change.lines
+            )
     for other in found.others:
         words = tr("{change}: would do too by its outlook; not run")
         yield words.format(change=change_words(found, other))
