@@ -11,7 +11,7 @@ from app.wording.samples import sample_design
 from core.advice.limits import limits_of
 from core.aims.figure import Goal
 from core.aims.outline import profile_name
-from core.aims.reaching import NEAR, Bounds, Search
+from core.aims.reaching import INSIDE, NEAR, Bounds, Search
 from core.aims.readings import reading
 from core.elastics import find_elastic
 from core.errors import UserError
@@ -20,6 +20,7 @@ from core.progress import Cancelled
 from core.request import Asking, Reply, ask
 from core.sewing.comfort import comfort
 from core.solution import run
+from core.solving.condition import CALM_RANGE
 from core.solving.newtons import newtons_per_unit
 
 CONTACTS = ("glued", "sliding")
@@ -85,6 +86,9 @@ def test_lengths_stay_where_the_body_looks_natural(rest: Stages, contact: str) -
     condition = run(solved).verdict.condition
     assert condition is not None
     assert not condition.strained
+    low, high = CALM_RANGE
+    room = min(condition.shortest - low, high - condition.longest)
+    assert room > 0.8 * INSIDE, "a run that ends a hair elsewhere is no more strained"
     for line in reply.design.lines:
         limits = limits_of(solved, line.name)
         begins = limits.begins["strained"]
