@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import reduce
@@ -274,23 +273,3 @@ class Design:
 
 def _twice(names: list[str]) -> str:
     return next((name for name in names if names.count(name) > 1), "")
-
-
-def cannot_hold(design: Design) -> LineError:
-    """Return what to say when there is no balance with the lines held at the lengths of a design."""
-    line = max(design.lines, key=lambda line: abs(math.log(line.ratio)), default=WornLine("The line", 1.0))
-    late = design.line_force == "explicit"
-    return LineError(
-        f"{line.name} cannot be held at {100 * line.ratio:.1f} % of its rest length.",
-        "Let the force of lines act in step, or let lines spring back."
-        if late
-        else "Set it nearer to 100 %, or let lines spring back.",
-    )
-
-
-def no_balance() -> LineError:
-    """Return what to say when no exact answer was found with lines that spring back."""
-    return LineError(
-        "No balance was found with the lines at these lengths.",
-        "Set them nearer to 100 %, or let turns hold the volume.",
-    )

@@ -6,8 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from core.comparison import Comparison
-from core.design import Design
-from core.errors import LineError
 from core.mesh import Points
 from core.pipeline import Stages
 from core.solver import Marks, Record
@@ -46,14 +44,6 @@ class Failure:
 
     revision: int
     error: Exception
-
-
-class NoBalanceError(LineError):
-    """The lines of ``design`` find no balance at their lengths; it says what ``why`` says."""
-
-    def __init__(self, why: LineError, design: Design) -> None:
-        super().__init__(why.message, why.hint)
-        self.design = design
 
 
 def make_frame(revision: int, stages: Stages, comparison: Comparison, seconds: float = 0.0) -> Frame:

@@ -14,10 +14,11 @@ from dataclasses import dataclass
 from threadpoolctl import threadpool_limits
 
 from core import kernels
+from core.answer import NoBalanceError
 from core.comparison import Comparison
-from core.design import Design, cannot_hold, no_balance
+from core.design import Design
 from core.errors import UserError
-from core.frame import Failure, Frame, NoBalanceError, make_frame
+from core.frame import Failure, Frame, make_frame
 from core.pipeline import Stages, StuckError, build, targets_of
 from core.progress import Cancelled, Progress, quiet
 
@@ -276,8 +277,7 @@ class LiveSolver:
         lost = (held or comparison.main is None) and not comparison.exact.found
         if lost or (held and comparison.main and not comparison.main.sane):
             self._comparison = None
-            why = cannot_hold(stages.design) if held else no_balance()
-            raise NoBalanceError(why, stages.design)
+            raise NoBalanceError(stages.design)
 
     def _publish(self, frame: Frame) -> None:
         with self._wake:

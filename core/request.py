@@ -13,12 +13,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from core.aims.answers import Look, NoBalanceError, exact_points
+from core.aims.answers import Look, exact_points
 from core.aims.figure import Goal, Read
 from core.aims.reaching import LOOSEST, NEAR, Bounds, Found, Search
 from core.aims.readings import reading
+from core.answer import NoBalanceError
 from core.cutting import goes_on
-from core.design import Design, cannot_hold, no_balance
+from core.design import Design
 from core.errors import LineError
 from core.mesh import Points
 from core.pipeline import Stages, build
@@ -129,10 +130,7 @@ class Asking:
         These are the largest pressures [kPa] of all lines made of elastic. Raises UserError.
         """
         with threadpool_limits(1):
-            try:
-                points = exact_points(self._stages)
-            except NoBalanceError:
-                raise no_balance() from None
+            points = exact_points(self._stages)
             return self.figures(names, points), self._pressures(self._stages, points, straps=True)
 
     def figures(self, names: Collection[str], points: Points) -> dict[str, float]:
@@ -150,8 +148,7 @@ class Asking:
                 return answered()
             except NoBalanceError:
                 self._search = None
-                held = self._stages.design.line_hold == "held"
-                raise (cannot_hold(self._stages.design) if held else no_balance()) from None
+                raise NoBalanceError(self._stages.design) from None
 
     # -- the answer
 

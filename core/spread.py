@@ -38,7 +38,7 @@ BESIDE = (
 class Spreading:
     """Finds how far the figures of a design may be off, the ``quick`` part, then the ``whole``.
 
-    Raises NoAnswerError where the design has no exact answer, and Cancelled.
+    Raises NoBalanceError where the design has no exact answer, and Cancelled.
     """
 
     def __init__(self, trials: Trials, sizes: Assumed | None = None) -> None:

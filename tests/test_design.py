@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.design import TEMPLATES, WEIGHTS, Design, ScanSource, cannot_hold
+from core.answer import NoBalanceError
+from core.design import TEMPLATES, WEIGHTS, Design, ScanSource
 from core.design_lines import LineTraits, OwnLine, WornLine
 from core.design_text import FORMAT, from_json, to_json
 from core.errors import LineError, ProjectError, UserError
@@ -237,8 +238,8 @@ def test_a_scan_is_called_by_its_file_name():
 
 @pytest.mark.parametrize(("force", "advice"), [("implicit", "nearer to 100 %"), ("explicit", "act in step")])
 def test_a_length_that_cannot_be_held_comes_with_the_advice_that_helps(force, advice):
-    design = replace(Design(ScanSource("a.ply")), line_force=force).with_line("mid-bust", 0.7)
-    refusal = cannot_hold(design)
+    design = replace(Design(ScanSource("a.ply")), line_hold="held", line_force=force).with_line("mid-bust", 0.7)
+    refusal = NoBalanceError(design)
     assert "mid-bust cannot be held at 70.0 %" in refusal.message
     assert advice in refusal.hint
 

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from app.commands.settings import dressed, made_of
-from core.design import Design, cannot_hold
+from core.answer import NoBalanceError
+from core.design import Design
 from core.doubts import doubts
 from core.pipeline import build
 from core.report import shape_warnings, still_lines, write_solution
@@ -43,7 +44,7 @@ def run_solve(
     verdict = solution.verdict
     lost = ("diverging", "settling") if design.volume == "exact" else ("diverging",)
     if design.line_hold == "held" and verdict.motion in lost:
-        raise cannot_hold(design)
+        raise NoBalanceError(design)
     out = place()
     figures = write_solution(solution, out)
     ran_away = [RAN_AWAY] * (verdict.motion == "diverging")

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from functools import reduce
 
 from app.commands.settings import dressed, made_of
-from core.design import Design, cannot_hold
+from core.answer import NoBalanceError
+from core.design import Design
 from core.errors import LineError
 from core.pipeline import Stages, build
 from core.report import shape_warnings
@@ -29,7 +30,7 @@ def run_to_body(stages: Stages) -> Solution:
     """Solve the design of ``stages``. Raises LineError if the turns ran away: what they leave is no body."""
     solution = run(stages)
     if solution.verdict.motion == "diverging":
-        raise cannot_hold(stages.design) if stages.design.line_hold == "held" else ran_away()
+        raise NoBalanceError(stages.design) if stages.design.line_hold == "held" else ran_away()
     return solution
 
 

@@ -16,10 +16,10 @@ from app.presenting import doctor as words
 from app.presenting.lines import titled
 from app.presenting.verdict import plain_sentence, state_of, swing_mm
 from app.wording.words import joined, say, tr
+from core.answer import NoBalanceError
 from core.design import Design
 from core.doctor import Diagnosis, diagnose
 from core.errors import UserError
-from core.frame import NoBalanceError
 from core.live import Frame
 from core.pipeline import build
 from core.progress import Progress

@@ -23,16 +23,14 @@ from core.advice.told_figures import (
     skin_normals,
 )
 from core.advice.trials import Trials
+from core.answer import volume_keeper
 from core.errors import UserError
 from core.measuring.plus_minus import ELASTIC, LANDMARKS, LINE, SCAN, TAPE, TISSUE
 from core.mesh import Floats, Points
 from core.pipeline import targets_of
 from core.sewing.tensions import LineTension, line_tensions
-from core.solving.body_volume import body_kept
 from core.solving.newtons import newtons_per_unit
-from core.solving.potential import Potential
-from core.solving.sensitivity import Answer, Rates
-from core.solving.stiffness import Changes, Kept, answers_to
+from core.solving.stiffness import Changes, answers_to
 from core.tffd import deform
 
 
@@ -48,17 +46,15 @@ class Effect:
 
 
 class Propagation:
-    """One solved design and what its knobs do to it. Raises NoAnswerError."""
+    """One solved design and what its knobs do to it. Raises NoBalanceError."""
 
     def __init__(self, trials: Trials) -> None:
         self.trials, self.stages = trials, trials.base
-        stages, balance = trials.base, trials.balance
+        stages = trials.base
         self.ratios = np.array(targets_of(stages.design, stages).ratios)
         self.points = trials.points
-        excess = None
-        if stages.design.dense_volume:
-            excess = stages.model.volume.side_volumes(self.points) - stages.model.rest_sides
-        self.answer = Answer(Potential(stages.model, tuple(self.ratios.tolist()), excess), balance)
+        self.answer = trials.answer
+        self._kept = volume_keeper(stages, self.answer)
         self.places = deform(stages.binding, self.points)
         self.normals = skin_normals(stages, self.points)
         self.tensions = line_tensions(stages, self.points)
@@ -176,22 +172,6 @@ class Propagation:
             return knob.sd * force
         ends = [elastic.force(1.0 / (ratio + turn * longer) - 1.0) for turn in (-1.0, 1.0)]
         return (ends[1] - ends[0]) / 2.0
-
-    @property
-    def _kept(self) -> Kept:
-        """What holds the volume of the body itself, where that is asked for."""
-        stages, answer = self.stages, self.answer
-        if not stages.design.dense_volume:
-            return lambda rates: rates
-        binding, moving, free = stages.binding, stages.moving, stages.model.tensegric.free
-        sides = moving.side_volume_slopes(stages.shape(self.points)[0])[:, : moving.count]
-        slopes = np.stack([binding.pulled(self.points, side)[free].ravel() for side in sides])
-        each = stages.model.mechanics.volume_of == "each"
-
-        def kept(rates: Rates) -> Rates:
-            return body_kept(rates, answer.by_excess, slopes, each=each)
-
-        return kept
 
 
 _STILL = 1e-9  # a knob that moves no point further changes no measure [mm]

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
+from core.answer import balance_of
 from core.comparison import TURN_CONTROLS, Run, carried, shape_of
-from core.exact import solve_exact
 from core.pipeline import Stages, targets_of
 from core.progress import Progress, quiet
 from core.solution import Solution, run
 from core.solver import turn
-from core.solving.body_volume import solve_body_exact
 from core.verdict import Verdict
 
 COMPLAINTS = ("strained", "settling", "overstrained", "folded", "vibrating", "diverging", "unreachable")
@@ -66,18 +65,10 @@ def standing(stages: Stages, progress: Progress = quiet) -> Standing:
     complaint = "" if told == "settled" else told
     held, exact = stages.design.line_hold == "held", stages.design.volume == "exact"
     if (exact and solution.verdict.motion != "settled") or (
-        held and (told == "diverging" or not has_balance(stages))
+        held and (told == "diverging" or not balance_of(stages).found)
     ):
         complaint = "unreachable"
     return Standing(solution, complaint)
-
-
-def has_balance(stages: Stages) -> bool:
-    """Return whether an exact answer is found from rest."""
-    ratios = targets_of(stages.design, stages).ratios
-    if stages.design.dense_volume:
-        return solve_body_exact(stages.model, ratios, stages.body_change).found
-    return solve_exact(stages.model, ratios).found
 
 
 def gone_on(before: Standing, stages: Stages, progress: Progress = quiet) -> Verdict | None:

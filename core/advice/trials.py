@@ -17,16 +17,14 @@ from core.advice.told_figures import (
     rested_figures,
     steps_of,
 )
-from core.errors import UserError
-from core.exact import solve_exact
+from core.answer import answer_of
 from core.measures import reshaped, subject_at_rest
 from core.measuring.subject import subject_of
 from core.mesh import Points
-from core.pipeline import Stages, build, find, targets_of
+from core.pipeline import Stages, build, find
 from core.placing import PlacedMark
 from core.sewing.tensions import line_tensions
-from core.solving.body_volume import solve_body_exact
-from core.solving.newton import Balance
+from core.solving.sensitivity import Answer
 from core.tffd import deform
 
 _KEPT = ("read scan", "find landmarks", "read template", "fit control mesh")
@@ -41,25 +39,6 @@ class Tried:
     points: Points
     places: Points
     figures: Figures
-
-
-class NoAnswerError(UserError):
-    """A design that was tried has no answer."""
-
-
-def balance_of(stages: Stages) -> Balance:
-    """Return the exact answer of a design, which all ± are told of. Raises NoAnswerError."""
-    ratios = targets_of(stages.design, stages).ratios
-    if stages.design.dense_volume:
-        balance = solve_body_exact(stages.model, ratios, stages.body_change)
-    else:
-        balance = solve_exact(stages.model, ratios)
-    if not balance.found:
-        raise NoAnswerError(
-            "No balance was found with the lines at these lengths.",
-            "Set them nearer to 100 %, or let turns hold the volume.",
-        )
-    return balance
 
 
 class Trials:
@@ -90,7 +69,7 @@ class Trials:
             self._known[placed] = replace(self.base, design=stages.design, memo=slim), rest
         if turned.skin:
             rest = rested(stages, self.steps, rest.subject, turned.skin)
-        points = stages.model.tensegric.expand(balance_of(stages).state.moved)
+        points = answer_of(stages).place.points
         ratios = {line.name: self.base.design.ratio(line.name) for line in stages.model.lines}
         figures = {
             **measured_figures(stages, self.steps, rest, points, turned.skin),
@@ -122,13 +101,13 @@ class Trials:
 
     @cached_property
     def points(self) -> Points:
-        """The control points of the exact answer, shape (n, 3) [mm]. Raises NoAnswerError."""
-        return self.base.model.tensegric.expand(self.balance.state.moved)
+        """The control points of the exact answer, shape (n, 3) [mm]. Raises NoBalanceError."""
+        return self.answer.place.points
 
     @cached_property
-    def balance(self) -> Balance:
-        """The exact answer of the design. Raises NoAnswerError."""
-        return balance_of(self.base)
+    def answer(self) -> Answer:
+        """The exact answer of the design. Raises NoBalanceError."""
+        return answer_of(self.base)
 
     @cached_property
     def steps(self) -> Steps:

@@ -8,14 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.aims.figure import Read
+from core.answer import NoBalanceError, answer_of, volume_keeper
 from core.comparison import shape_of
-from core.exact import solve_exact
 from core.mesh import Floats, Points
 from core.pipeline import Stages, targets_of
-from core.solving.body_volume import body_kept, solve_body_exact
 from core.solving.condition import CALM_RANGE
 from core.solving.newton import Balance
-from core.solving.potential import Potential
 from core.solving.sensitivity import Answer, Rates
 
 PERCENT = 0.01
@@ -26,10 +24,6 @@ _SHARP = 2000.0  # of the smooth least margin: where ten edges strain alike it i
 _KEPT = 200  # answers, so that a hand may drag for as long as it likes
 
 _ALIKE = 1e-3  # two answers that are the same [mm]
-
-
-class NoBalanceError(Exception):
-    """There is no balance at the lengths that were tried."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +100,8 @@ class Answers:
         ratios = self._ratios.copy()
         for group, length in zip(self._groups, lengths, strict=True):
             ratios[group] = PERCENT * length
-        answer = self._answer(tuple(ratios.tolist()))
+        answer = answer_of(self._stages, tuple(ratios.tolist()), self._near)
+        self._near = None if self._from_rest else answer.balance
         points = answer.place.points
         rates = self._rates(answer)
         figures = [read(points) for read in self._reads]
@@ -119,29 +114,14 @@ class Answers:
             *self._margin(points, rates),
         )
 
-    def _answer(self, ratios: tuple[float, ...]) -> Answer:
-        model, excess = self._stages.model, None
-        balance = _balance(self._stages, ratios, self._near)
-        if self._stages.design.dense_volume:
-            points = model.tensegric.expand(balance.state.moved)
-            excess = model.volume.side_volumes(points) - model.rest_sides
-        self._near = None if self._from_rest else balance
-        return Answer(Potential(model, ratios, excess), balance)
-
     def _rates(self, answer: Answer) -> Rates:
         """Return the rates by the lengths of the groups, in percent. Raises NoBalanceError."""
-        stages, points = self._stages, answer.place.points
+        stages = self._stages
         try:
             rates = answer.by_ratio(np.arange(len(stages.model.lines))).summed(self._groups, PERCENT)
         except ValueError as unbounded:
-            raise NoBalanceError from unbounded
-        if not stages.design.dense_volume:
-            return rates
-        binding, moving = stages.binding, stages.moving
-        places = binding.operator.added(binding.change(points), moving.rest)
-        sides = moving.side_volume_slopes(places)[:, : moving.count]
-        slopes = np.stack([self._by_free(binding.pulled(points, side)) for side in sides])
-        return body_kept(rates, answer.by_excess, slopes, each=stages.model.mechanics.volume_of == "each")
+            raise NoBalanceError(stages.design) from unbounded
+        return volume_keeper(stages, answer)(rates)
 
     def _by_free(self, slopes: Points) -> Floats:
         return np.asarray(slopes[self._stages.model.tensegric.free].ravel())
@@ -164,19 +144,7 @@ class Answers:
 
 def exact_points(stages: Stages) -> Points:
     """Return the control points, (n, 3) [mm], that a design is solved to. Raises NoBalanceError."""
-    ratios = targets_of(stages.design, stages).ratios
-    return stages.model.tensegric.expand(_balance(stages, ratios).state.moved)
-
-
-def _balance(stages: Stages, ratios: tuple[float, ...], near: Balance | None = None) -> Balance:
-    model = stages.model
-    if stages.design.dense_volume:
-        balance = solve_body_exact(model, ratios, stages.body_change, near=near)
-    else:
-        balance = solve_exact(model, ratios, near=near)
-    if not balance.found:
-        raise NoBalanceError
-    return balance
+    return answer_of(stages).place.points
 
 
 def free_lines(stages: Stages, kept: Collection[str] = ()) -> Iterator[tuple[str, ...]]:

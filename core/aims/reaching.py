@@ -16,10 +16,11 @@ from typing import Any
 import numpy as np
 from scipy.optimize import lsq_linear, minimize
 
-from core.aims.answers import PERCENT, Answers, Look, NoBalanceError, free_lines
+from core.aims.answers import PERCENT, Answers, Look, free_lines
 from core.aims.figure import Goal, Read
 from core.aims.outline import section_of
 from core.aims.readings import reading
+from core.answer import NoBalanceError
 from core.design import Design
 from core.errors import UserError
 from core.lines import RATIO_LIMITS

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from core.design import Design, no_balance
+from core.answer import NoBalanceError
+from core.design import Design
 from core.design_elastics import Elastic
 from core.errors import LineError
 from core.exact import solve_exact
@@ -38,7 +39,7 @@ def reached_points(stages: Stages) -> Points:
     """Return the control points of the exact answer, (n, 3) [mm]. Raises LineError if nothing balances."""
     balance = solve_exact(stages.model, targets_of(stages.design, stages).ratios)
     if not balance.found:
-        raise no_balance()
+        raise NoBalanceError(stages.design)
     return stages.model.tensegric.expand(balance.state.moved)
 
 

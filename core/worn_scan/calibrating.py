@@ -11,16 +11,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from core.answer import NoBalanceError, answer_of
 from core.design import Design
 from core.design_calibration import Calibration, FoundNumber
 from core.errors import LineError, UserError
-from core.exact import solve_exact
 from core.mesh import Floats, Indices, Points
-from core.pipeline import Stages, build, targets_of
+from core.pipeline import Stages, build
 from core.progress import Progress, quiet
-from core.solving.body_volume import solve_body_exact
 from core.solving.newton import Balance
-from core.solving.potential import Potential
 from core.solving.sensitivity import Answer
 from core.worn_scan.comparing import Difference, Worn, compare, gaps_to
 from core.worn_scan.gap import cells, known
@@ -174,19 +172,13 @@ def moved_by(design: Design, numbers: tuple[Number, ...], step: Floats) -> Desig
 
 
 def exact_answer(stages: Stages, near: Balance | None = None) -> Answer:
-    """Return the exact answer of a design, ready to be asked. Raises LineError if there is none."""
-    ratios, excess = targets_of(stages.design, stages).ratios, None
-    if stages.design.dense_volume:
-        balance = solve_body_exact(stages.model, ratios, stages.body_change, near=near)
-        points = stages.model.tensegric.expand(balance.state.moved)
-        excess = stages.model.volume.side_volumes(points) - stages.model.rest_sides
-    else:
-        balance = solve_exact(stages.model, ratios, near=near)
-    if not balance.found and near is not None:
-        return exact_answer(stages)
-    if not balance.found:
-        raise LineError("No balance was found with the lines at these lengths.", "Set them nearer to 100 %.")
-    return Answer(Potential(stages.model, ratios, excess), balance)
+    """Return the exact answer of a design; if not from ``near`` by then from rest. Raises NoBalanceError."""
+    try:
+        return answer_of(stages, near=near)
+    except NoBalanceError:
+        if near is None:
+            raise
+        return answer_of(stages)
 
 
 def refuse_bare(stages: Stages) -> None:

@@ -9,15 +9,15 @@ from typing import Any
 
 import numpy as np
 
+from core.answer import volume_keeper
 from core.design import Design
 from core.design_elastics import TISSUE_LIMITS
 from core.lines import RATIO_LIMITS
 from core.mechanics import RANGES
 from core.mesh import Floats
 from core.pipeline import Stages
-from core.solving.body_volume import body_kept
 from core.solving.numbers import by_ground, by_net, by_prestress
-from core.solving.sensitivity import Answer, Rates
+from core.solving.sensitivity import Answer
 from core.solving.stiffness import Changes, answers_to
 from core.tensegric import firm_ground
 
@@ -185,9 +185,7 @@ def rates_by(stages: Stages, answer: Answer, numbers: tuple[Number, ...]) -> Flo
         elif number.kind == PRESTRESS:
             stiffer[list(elastics), column] = by_net(design.prestress)
 
-    def kept(rates: Rates) -> Rates:
-        return _kept(stages, answer, rates)
-
+    kept = volume_keeper(stages, answer)
     beside = np.zeros((answer.place.gradient.size, len(numbers)))
     for column, number in enumerate(numbers):
         if number.kind == FIRM_CHEST:
@@ -199,20 +197,3 @@ def rates_by(stages: Stages, answer: Answer, numbers: tuple[Number, ...]) -> Flo
 
 def _ground(stages: Stages) -> Floats:
     return firm_ground(stages.model.tensegric, stages.control.mesh)
-
-
-def _kept(stages: Stages, answer: Answer, rates: Rates) -> Rates:
-    """Return the rates at which the body keeps its volume, where the design asks for that."""
-    if not stages.design.dense_volume:
-        return rates
-    points, binding, moving = answer.place.points, stages.binding, stages.moving
-    places = binding.operator.added(binding.change(points), moving.rest)
-    free = stages.model.tensegric.free
-    slopes = np.stack(
-        [
-            binding.pulled(points, side)[free].ravel()
-            for side in moving.side_volume_slopes(places)[:, : moving.count]
-        ]
-    )
-    each = stages.model.mechanics.volume_of == "each"
-    return body_kept(rates, answer.by_excess, slopes, each=each)
