@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
+import advice_scenes
 import scenes
 from scenes import (
     Scene,
@@ -90,6 +91,9 @@ ONCE = (
     Shot("window", _mannequin, scenes.nothing, {"size": LARGE}),
     Shot("map", _mannequin, scenes.mapped, {"size": LARGE}),
     Shot("vibrating", vibrating, scenes.with_control_mesh, {"dark": True, "size": SMALL}),
+    Shot("spread", bra, advice_scenes.sure, {"size": LARGE}),
+    Shot("even", bra, advice_scenes.even, {"size": SMALL}),
+    Shot("worn", bra, advice_scenes.compared, {"size": SMALL}),
     Shot("report-dark-ja", for_somebody, scenes.reported, DARK),
     Shot("lines-dark-ja", _person, step("lines"), DARK, small=True),
     Shot("export-dark-ja", made_of_elastics, sheet(scenes.exporting("turntable")), DARK),
