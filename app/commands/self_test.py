@@ -6,7 +6,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from app.checking import figures, letters, papers, program, screen
+from app.checking import advice, figures, letters, papers, program, screen
 from app.checking.apart import apart
 from app.checking.bench import Bench
 from app.checking.parts import Part, try_parts
@@ -26,6 +26,7 @@ PARTS: tuple[Part[Bench], ...] = (
     Part("scan formats", figures.scan_formats),
     Part("landmarks", figures.landmarks),
     Part("solver", figures.solver, ("landmarks",)),
+    Part("advice", advice.advice, _SAMPLE),
     Part("compiled loops", figures.compiled_loops, ("landmarks",)),
     Part("projects", figures.projects, _SAMPLE),
     Part("damaged project", figures.damaged_projects, ("projects",)),
