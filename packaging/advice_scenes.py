@@ -50,5 +50,5 @@ def worn_scan(stages: Stages) -> str:
     places = deform(other.binding, answer_of(other).place.points)
     places += _NOISE * np.random.default_rng(7).normal(size=places.shape)
     path = Path(HOUSE.name) / "customer 0412 in the bra.ply"
-    write_mesh(path, stages.body.mesh.moved(places + [120.0, -40.0, 15.0]))
+    write_mesh(path, stages.body.mesh.moved(places + np.array([120.0, -40.0, 15.0])))
     return str(path)

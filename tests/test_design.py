@@ -238,8 +238,8 @@ def test_a_scan_is_called_by_its_file_name():
 
 @pytest.mark.parametrize(("force", "advice"), [("implicit", "nearer to 100 %"), ("explicit", "act in step")])
 def test_a_length_that_cannot_be_held_comes_with_the_advice_that_helps(force, advice):
-    design = replace(Design(ScanSource("a.ply")), line_hold="held", line_force=force).with_line("mid-bust", 0.7)
-    refusal = NoBalanceError(design)
+    design = replace(Design(ScanSource("a.ply")), line_hold="held", line_force=force)
+    refusal = NoBalanceError(design.with_line("mid-bust", 0.7))
     assert "mid-bust cannot be held at 70.0 %" in refusal.message
     assert advice in refusal.hint
 

@@ -209,7 +209,7 @@ def test_a_bare_body_is_neither_fitted_nor_solved(plain: Stages, monkeypatch: py
     assert known.bare
     assert known.points is not None
     monkeypatch.setattr("core.advice.trials.build", None)
-    monkeypatch.setattr("core.advice.trials.balance_of", None)
+    monkeypatch.setattr("core.advice.trials.answer_of", None)
     spread = Spreading(known, SURE).whole()
     assert spread.whole
     assert spread.contact == ""
