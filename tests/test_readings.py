@@ -54,7 +54,8 @@ def test_apexes_are_those_of_the_marks(stages: Stages) -> None:
     points = run(stages).control_points
     marks, rest = stages.watch(points), stages.rest_marks
     assert reading(stages, "apex lift")(points).value == pytest.approx(marks.apex_z - rest.apex_z)
-    assert reading(stages, "apex out")(points).value == pytest.approx(marks.apex_protrusion - rest.apex_protrusion)
+    out = marks.apex_protrusion - rest.apex_protrusion
+    assert reading(stages, "apex out")(points).value == pytest.approx(out)
     for what in ("apex lift", "apex out"):
         both = [reading(stages, f"{what} {side}")(points).value for side in ("left", "right")]
         assert reading(stages, what)(points).value == pytest.approx(sum(both) / 2.0)

@@ -59,8 +59,8 @@ WANT_HELP = (
     "what the body is to have, in mm (also cm, in); may be repeated. lift and out: how far the bust points "
     "rise and come out from where they are at rest; apex: the same of whatever lies foremost; girth: the "
     "tape round the body at the bust points' height; left higher and left further out: by how much the left "
-    "one is. The names are: lift, lift left, lift right, out, out left, out right, apex lift, apex lift left, "
-    "apex lift right, apex out, apex out left, apex out right, girth, left higher, left further out"
+    "one is. The names are: lift, lift left, lift right, out, out left, out right, apex lift, "
+    "apex lift left, apex lift right, apex out, apex out left, apex out right, girth, left higher, left further out"
 )
 """What a user has to know to ask for a result."""
 
