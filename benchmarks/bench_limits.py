@@ -1,7 +1,7 @@
 """Leeways of lines against a brute-force scan of their sliders.
 
-Run: python benchmarks/bench_limits.py [FOLDER] [--seed N] [--only SCAN...] [--put]; the two samples are always
-in it, and the scans of a folder.
+Run: python benchmarks/bench_limits.py [FOLDER] [--seed N] [--only SCAN...] [--put]; scans of a folder come to
+the two samples.
 For each body, glued and sliding, the other lines stand in several ways: all off, by chance, a preset by
 chance, lines of elastic by chance. Then each length of a line is solved from rest by itself, half a percent
 apart, and what changes between two of them is halved to 0.05 %: strain, folds and lengths without balance
