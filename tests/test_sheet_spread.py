@@ -75,4 +75,4 @@ def test_it_stands_on_paper(mannequin: Path, tmp_path: Path, monkeypatch: pytest
     assert "± 7.4" not in Pdf(out).text()
     run_report(str(mannequin), design, [], [], SheetWishes(str(out), spread=True))
     said = Pdf(out).text()
-    assert all(each in said for each in ("± 7.4", "± 8.4", "± 1.4", "twice the standard deviation"))
+    assert all(each in said for each in ("± 7.4", "± 8.4", "± 0.2 mm", "± 1.4", "twice the standard"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from app.panels.measure_view import plus_minus
 from app.presenting.bust import forward_words
 from app.reporting.flow import Block
 from app.reporting.handout import SHOT_SIZES, SHOTS, Handout
@@ -10,6 +11,7 @@ from app.reporting.paper import A4, MARGIN, Paper, elided, line_height, text_wid
 from app.reporting.telling import cut_pieces, other_sizes, project_words, state_words, system_word
 from app.wording.tokens import LIGHT
 from app.wording.words import number, say, tr
+from core.measuring.plus_minus import LIFT
 from core.sheet import Sheet
 
 WIDE = A4[0] - 2 * MARGIN
@@ -173,7 +175,8 @@ def _lift(sheet: Sheet) -> Block:
     left, room, caption = _CELLS[3], _CELLS[4] - _CELLS[3] - 6.0, tr("Lift of the bust points")
     if sheet.lift is None:
         return _sentence(left, room, caption, tr("No figure: the shape is no result."))
-    below = forward_words(sheet.lift.forward)
+    off, below = sheet.off.get(LIFT), forward_words(sheet.lift.forward)
+    below = below if off is None else f"{plus_minus(off)} mm · {below}"
     return _great(left, room, caption, number(sheet.lift.up, 1, signed=True), below, "mm")
 
 
