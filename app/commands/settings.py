@@ -60,7 +60,8 @@ WANT_HELP = (
     "rise and come out from where they are at rest; apex: the same of whatever lies foremost; girth: the "
     "tape round the body at the bust points' height; left higher and left further out: by how much the left "
     "one is. The names are: lift, lift left, lift right, out, out left, out right, apex lift, "
-    "apex lift left, apex lift right, apex out, apex out left, apex out right, girth, left higher, left further out"
+    "apex lift left, apex lift right, apex out, apex out left, apex out right, girth, left higher, "
+    "left further out"
 )
 """What a user has to know to ask for a result."""
 
