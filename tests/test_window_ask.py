@@ -60,55 +60,51 @@ def ratios(design: Design | None) -> dict[str, float]:
     return {line.name: line.ratio for line in design.lines}
 
 
-def test_a_wish_is_typed_seen_taken_and_undone_or_left_without_a_trace() -> None:
-    def script(window: MainWindow) -> Script:
-        yield settled(window)
-        undrawn(window)
-        yield wear(window)
-        before, at = window.session.design, points(window).copy()
-        window.ask_door.click()
-        card = window.ask_desk.card
-        assert card.isVisible()
-        assert list(card.wishes) == ["lift", "out"]
+def is_typed_seen_taken_and_undone_or_left(window: MainWindow) -> Script:
+    yield settled(window)
+    yield wear(window)
+    before, at = window.session.design, points(window).copy()
+    window.ask_door.click()
+    card = window.ask_desk.card
+    assert card.isVisible()
+    assert list(card.wishes) == ["lift", "out"]
+    yield answered(window)
+    assert card.wishes["out"].now.text() == "free"
+    assert not card.apply.isEnabled(), "nothing is wished yet"
+    now = window.ask_desk.answer.now["out"]
+    assert float(card.wishes["out"].field.text().replace("\N{MINUS SIGN}", "-")) == pytest.approx(
+        now, abs=0.06
+    )
+    type_wish(window, "out", "-4")
+    yield answered(window)
+    assert card.answer.text() == "Reached."
+    assert "Mid-bust 97.0 → " in card.changes.text() or "Full bust 98.0 → " in card.changes.text()
+    assert card.wishes["out"].now.text().startswith("was \N{MINUS SIGN}")
+    assert window.session.design is before, "seen, not taken"
+    assert np.abs(points(window) - at).max() > 0.5
+    steps = window.session.undo_stack.count()
+    card.apply.click()
+    assert not card.isVisible()
+    yield settled(window)
+    assert window.session.undo_stack.count() == steps + 1
+    assert window.session.undo_stack.undoText() == "Asked for: Bust point forward −4.0 mm"
+    marks, rest = window.session.frame.exact_marks, window.session.frame.stages.rest_marks
+    outs = [marks.nipple_left_out - rest.nipple_left_out, marks.nipple_right_out - rest.nipple_right_out]
+    assert np.mean(outs) == pytest.approx(-4.0, abs=0.06)
+    window.session.undo_stack.undo()
+    yield settled(window)
+    assert ratios(window.session.design) == ratios(before)
+    # Left, the body is as before.
+    window.layout_.give_up()  # the tour of a first start
+    for leave in (card.cancel.click, lambda: QTest.keyClick(window, Qt.Key.Key_Escape)):
+        window.ask_desk.begin([Goal("out", -5.0)])
         yield answered(window)
-        assert card.wishes["out"].now.text() == "free"
-        assert not card.apply.isEnabled(), "nothing is wished yet"
-        now = window.ask_desk.answer.now["out"]
-        assert float(card.wishes["out"].field.text().replace("\N{MINUS SIGN}", "-")) == pytest.approx(
-            now, abs=0.06
-        )
-        type_wish(window, "out", "-4")
-        yield answered(window)
-        assert card.answer.text() == "Reached."
-        assert "Mid-bust 97.0 → " in card.changes.text() or "Full bust 98.0 → " in card.changes.text()
-        assert card.wishes["out"].now.text().startswith("was \N{MINUS SIGN}")
-        assert window.session.design is before, "seen, not taken"
         assert np.abs(points(window) - at).max() > 0.5
-        steps = window.session.undo_stack.count()
-        card.apply.click()
-        assert not card.isVisible()
+        leave()
+        assert not window.ask_desk.is_open
         yield settled(window)
-        assert window.session.undo_stack.count() == steps + 1
-        assert window.session.undo_stack.undoText() == "Asked for: Bust point forward −4.0 mm"
-        marks, rest = window.session.frame.exact_marks, window.session.frame.stages.rest_marks
-        outs = [marks.nipple_left_out - rest.nipple_left_out, marks.nipple_right_out - rest.nipple_right_out]
-        assert np.mean(outs) == pytest.approx(-4.0, abs=0.06)
-        window.session.undo_stack.undo()
-        yield settled(window)
-        assert ratios(window.session.design) == ratios(before)
-        # Left, the body is as before.
-        window.layout_.give_up()  # the tour of a first start
-        for leave in (card.cancel.click, lambda: QTest.keyClick(window, Qt.Key.Key_Escape)):
-            window.ask_desk.begin([Goal("out", -5.0)])
-            yield answered(window)
-            assert np.abs(points(window) - at).max() > 0.5
-            leave()
-            assert not window.ask_desk.is_open
-            yield settled(window)
-            assert np.abs(points(window) - at).max() < 0.01
-        assert window.session.undo_stack.count() == steps + 1
-
-    run_main([], script)
+        assert np.abs(points(window) - at).max() < 0.01
+    assert window.session.undo_stack.count() == steps + 1
 
 
 def lock(design: Design, name: str) -> Design:
@@ -122,80 +118,77 @@ def made(design: Design) -> Design:
     return design
 
 
-def test_what_keeps_a_wish_from_being_met_is_told() -> None:
-    def script(window: MainWindow) -> Script:
-        yield settled(window)
-        undrawn(window)
-        desk, card = window.ask_desk, window.ask_desk.card
-        window.session.reset_lines()
-        desk.begin()
-        assert not card.apply.isVisible()
-        assert card.help_.isVisible()
-        assert "choose a preset" in card._hint.text()
-        yield wear(window)
-        yield answered(window)
-        assert card.apply.isVisible()
-        desk.add("girth")
-        desk.wish("girth", 1200.0)
-        yield answered(window)
-        assert card.answer.text().startswith("Not reachable: nearest is Bust girth ")
-        assert "because Full bust, Mid-bust may not be longer." in card.answer.text()
-        assert set(ratios(desk.answer.reply.design).values()) == {0.999}, "no line is off"
-        desk.drop("girth")
-        yield answered(window)
-        assert card.answer.text() == ""
-        # A locked line stays.
-        window.session.edit(lambda d: lock(d, "mid-bust"), "Lock it")
-        desk.wish("out", -4.0)
-        yield answered(window)
-        assert card.note.text() == "Locked, so kept: Mid-bust."
-        assert desk.answer.reply.design.ratio("mid-bust") == 0.97
-        window.session.edit(lambda d: lock(d, "full-bust"), "Lock it too")
-        assert "All worn lines are locked" in card._hint.text()
-        yield settled(window)
-
-    run_main([], script)
+def tells_what_keeps_a_wish_from_being_met(window: MainWindow) -> Script:
+    yield settled(window)
+    desk, card = window.ask_desk, window.ask_desk.card
+    window.session.reset_lines()
+    desk.begin()
+    assert not card.apply.isVisible()
+    assert card.help_.isVisible()
+    assert "choose a preset" in card._hint.text()
+    yield wear(window)
+    yield answered(window)
+    assert card.apply.isVisible()
+    desk.add("girth")
+    desk.wish("girth", 1200.0)
+    yield answered(window)
+    assert card.answer.text().startswith("Not reachable: nearest is Bust girth ")
+    assert "because Full bust, Mid-bust may not be longer." in card.answer.text()
+    assert set(ratios(desk.answer.reply.design).values()) == {0.999}, "no line is off"
+    desk.drop("girth")
+    yield answered(window)
+    assert card.answer.text() == ""
+    # A locked line stays.
+    window.session.edit(lambda d: lock(d, "mid-bust"), "Lock it")
+    desk.wish("out", -4.0)
+    yield answered(window)
+    assert card.note.text() == "Locked, so kept: Mid-bust."
+    assert desk.answer.reply.design.ratio("mid-bust") == 0.97
+    window.session.edit(lambda d: lock(d, "full-bust"), "Lock it too")
+    assert "All worn lines are locked" in card._hint.text()
+    desk.leave()
+    window.session.edit(lambda d: replace(d, traits=()), "Unlock both")
+    yield settled(window)
 
 
-def test_other_edits_openings_and_saves_meanwhile_lose_nothing(tmp_path: Path) -> None:
-    def script(window: MainWindow) -> Script:
-        yield settled(window)
-        undrawn(window)
-        yield wear(window)
-        desk = window.ask_desk
-        desk.begin([Goal("out", -4.0)])
-        yield answered(window)
-        first = ratios(desk.answer.reply.design)
-        path = str(tmp_path / "meanwhile.busk")
-        window.session.save(path, None)
-        yield lambda: not window.session.unsaved
-        assert ratios(open_project(path).design) == {"mid-bust": 0.97, "full-bust": 0.98}, "what is taken"
-        # Another edit: asked again from there, the wish as it was.
-        window.session.edit(lambda d: d.with_line("mid-bust", None), "Off")
-        yield answered(window)
-        assert desk.goals() == (Goal("out", -4.0),)
-        assert set(ratios(desk.answer.reply.design)) == {"full-bust"} != set(first)
-        window.session.undo_stack.undo()
-        yield answered(window)
-        assert ratios(desk.answer.reply.design) == pytest.approx(first, abs=1e-4)
-        # The same lift with less pressure is a wish of its own.
-        window.session.edit(made, "Elastics")
-        desk.begin()
-        yield answered(window)
-        before = max(desk.answer.presses.values())
-        assert float(desk.card.wishes["pressure"].field.text()) == pytest.approx(before, abs=0.06)
-        type_wish(window, "pressure", "1")
-        yield answered(window)
-        assert [goal.name for goal in desk.goals()] == ["lift"], "the same, unless another is wished"
-        assert max(desk.answer.reply.pressure.values()) < 1.02 < before
-        assert "kPa at most" in desk.card.changes.text()
-        window.session.undo_stack.setClean()
-        window.desk.open_sample("person")
-        yield lambda: not desk.is_open
-        yield settled(window)
-        assert window.session.design.scan.name != "mannequin.ply"
-
-    run_main([], script)
+def loses_nothing_meanwhile(window: MainWindow, tmp_path: Path) -> Script:
+    yield settled(window)
+    yield wear(window)
+    desk = window.ask_desk
+    desk.begin([Goal("out", -4.0)])
+    yield answered(window)
+    first = ratios(desk.answer.reply.design)
+    path = str(tmp_path / "meanwhile.busk")
+    window.session.save(path, None)
+    yield lambda: not window.session.unsaved
+    assert ratios(open_project(path).design) == {"mid-bust": 0.97, "full-bust": 0.98}, "what is taken"
+    # Another edit: asked again from there, the wish as it was.
+    window.session.edit(lambda d: d.with_line("mid-bust", None), "Off")
+    yield answered(window)
+    assert desk.goals() == (Goal("out", -4.0),)
+    assert set(ratios(desk.answer.reply.design)) == {"full-bust"} != set(first)
+    window.session.undo_stack.undo()
+    yield answered(window)
+    assert ratios(desk.answer.reply.design) == pytest.approx(first, abs=1e-4)
+    # The same lift with less pressure is a wish of its own.
+    window.session.edit(made, "Elastics")
+    desk.begin()
+    yield answered(window)
+    before = max(desk.answer.presses.values())
+    assert float(desk.card.wishes["pressure"].field.text()) == pytest.approx(before, abs=0.06)
+    type_wish(window, "pressure", "1")
+    yield answered(window)
+    assert [goal.name for goal in desk.goals()] == ["lift"], "the same, unless another is wished"
+    assert max(desk.answer.reply.pressure.values()) < 1.02 < before
+    said = desk.card.answer.text()
+    assert said.startswith("Presses with ")
+    assert "kPa at most; then Bust point up " in said
+    assert desk.card.wishes["lift"].now.text() == "free", "it is not what was asked for"
+    window.session.undo_stack.setClean()
+    window.desk.open_sample("person")
+    yield lambda: not desk.is_open
+    yield settled(window)
+    assert window.session.design.scan.name != "mannequin.ply"
 
 
 def drag(handle: BustHandle, right: int, down: int, *, fine: bool = False, drop: bool = True) -> None:
@@ -214,52 +207,86 @@ def drag(handle: BustHandle, right: int, down: int, *, fine: bool = False, drop:
         QTest.mouseRelease(handle, Qt.MouseButton.LeftButton, keys, handle.rect().center())
 
 
-def test_the_bust_point_is_dragged_to_where_it_is_to_be() -> None:
+def drags_the_bust_point(window: MainWindow) -> Script:
+    yield settled(window)
+    yield wear(window)
+    window.layout_.give_up()
+    desk, viewport = window.ask_desk, window.view.viewport
+    viewport.set_view("left")
+    desk.begin()
+    yield answered(window)
+    left, right = (desk.handles.by_side[side] for side in ("left", "right"))
+    assert (left.isVisible(), right.isVisible()) == (True, False), "the far one is behind the body"
+    now = dict(desk.answer.now)
+    # Seen from the left the front is on the left: to the right is in.
+    drag(left, 20, -10)
+    yield answered(window)
+    scale = 2.0 * viewport.view.half_height / viewport.height()
+    assert set(desk.wishes) == {"lift", "out"}
+    assert desk.wishes["lift"] - now["lift"] == pytest.approx(10.0 * scale, rel=0.15)
+    assert desk.wishes["out"] - now["out"] == pytest.approx(-20.0 * scale, rel=0.15)
+    assert desk.answer.reply is not None
+    assert not desk.answer.question.hurried, "at rest the best lengths are looked for"
+    # Straight up is up, and no wish for what was free.
+    desk.drop("out")
+    desk.add("out")
+    yield answered(window)
+    drag(left, 1, -20)
+    assert desk.wishes["out"] is None
+    drag(left, 20, -10)
+    yield answered(window)
+    # While it is in the hand it answers in a hurry; Esc gives back what was wished.
+    before = dict(desk.wishes)
+    drag(left, 0, -30, fine=True, drop=False)
+    assert desk.wishes["lift"] - before["lift"] == pytest.approx(3.0 * scale, rel=0.15)
+    assert window.actions_.cancel.isEnabled()
+    window.job_desk.cancel()
+    assert desk.wishes == before
+    yield answered(window)
+    # From the front it goes up and down, and nothing else; by keys a millimetre.
+    viewport.set_view("front")
+    assert right.isVisible()
+    drag(right, 40, -10)
+    assert desk.wishes["out"] == before["out"]
+    raised = desk.wishes["lift"]
+    assert raised > before["lift"]
+    QTest.keyClick(right, Qt.Key.Key_Down)
+    QTest.keyClick(right, Qt.Key.Key_Up, Qt.KeyboardModifier.ShiftModifier)
+    assert desk.wishes["lift"] == pytest.approx(raised + 4.0)
+    # Set apart, each goes its own way.
+    desk.card.link.click()
+    QTest.keyClick(right, Qt.Key.Key_Up)
+    assert set(desk.wishes) == {"out", "lift right"}
+    desk.leave()
+    assert not left.isVisible()
+    yield settled(window)
+
+
+def sends_to_apply_or_cancel(window: MainWindow) -> Script:
+    """Nothing waits for ever while it is open: measures are of what is seen, the sheet says what to do."""
+    yield wear(window)
+    desk = window.ask_desk
+    desk.begin([Goal("out", -4.0)])
+    yield answered(window)
+    window.report_desk.open()
+    assert "apply what is asked for, or cancel it, first" in window.report_desk.page.state.text()
+    window.report_desk.leave()
+    window.desk.go_to("result")
+    yield lambda: bool(window.result.measured) and not window.result.stale
+    assert desk.is_tried_on
+    window.desk.go_to("landmarks")
+    assert not desk.is_open, "its handles are of the reshaped body"
+    window.desk.go_to("lines")
+    yield settled(window)
+
+
+def test_the_result_is_asked_for(tmp_path: Path) -> None:
     def script(window: MainWindow) -> Script:
-        yield settled(window)
         undrawn(window)
-        yield wear(window)
-        window.layout_.give_up()
-        desk, viewport = window.ask_desk, window.view.viewport
-        viewport.set_view("left")
-        desk.begin()
-        yield answered(window)
-        left, right = (desk.handles.by_side[side] for side in ("left", "right"))
-        assert (left.isVisible(), right.isVisible()) == (True, False), "the far one is behind the body"
-        now = dict(desk.answer.now)
-        # Seen from the left the front is on the left: to the right is in.
-        drag(left, 20, -10)
-        yield answered(window)
-        scale = 2.0 * viewport.view.half_height / viewport.height()
-        assert set(desk.wishes) == {"lift", "out"}
-        assert desk.wishes["lift"] - now["lift"] == pytest.approx(10.0 * scale, rel=0.15)
-        assert desk.wishes["out"] - now["out"] == pytest.approx(-20.0 * scale, rel=0.15)
-        assert desk.answer.reply is not None
-        assert not desk.answer.question.hurried, "at rest the best lengths are looked for"
-        # While it is in the hand it answers in a hurry; Esc gives back what was wished.
-        before = dict(desk.wishes)
-        drag(left, 0, -30, fine=True, drop=False)
-        assert desk.wishes["lift"] - before["lift"] == pytest.approx(3.0 * scale, rel=0.15)
-        assert window.actions_.cancel.isEnabled()
-        window.job_desk.cancel()
-        assert desk.wishes == before
-        yield answered(window)
-        # From the front it goes up and down, and nothing else; by keys a millimetre.
-        viewport.set_view("front")
-        assert right.isVisible()
-        drag(right, 40, -10)
-        assert desk.wishes["out"] == before["out"]
-        raised = desk.wishes["lift"]
-        assert raised > before["lift"]
-        QTest.keyClick(right, Qt.Key.Key_Down)
-        QTest.keyClick(right, Qt.Key.Key_Up, Qt.KeyboardModifier.ShiftModifier)
-        assert desk.wishes["lift"] == pytest.approx(raised + 4.0)
-        # Set apart, each goes its own way.
-        desk.card.link.click()
-        QTest.keyClick(right, Qt.Key.Key_Up)
-        assert set(desk.wishes) == {"out", "lift right"}
-        desk.leave()
-        assert not left.isVisible()
-        yield settled(window)
+        yield from is_typed_seen_taken_and_undone_or_left(window)
+        yield from tells_what_keeps_a_wish_from_being_met(window)
+        yield from sends_to_apply_or_cancel(window)
+        yield from drags_the_bust_point(window)
+        yield from loses_nothing_meanwhile(window, tmp_path)
 
     run_main([], script)

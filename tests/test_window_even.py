@@ -15,7 +15,6 @@ import app.keeping.even_desk as desk_module
 from app.keeping.spread_desk import SpreadDesk
 from app.main_window import MainWindow
 from app.panels.even_card import EvenCard
-from core.design import Design
 from core.evenness import BeforeAfter, evenness
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -139,35 +138,44 @@ def leaves_what_is_not_worth_it(window: MainWindow) -> Script:
 
 
 def makes_even(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> Script:
-    """Lines are parted in one step and the wishes filled in; not if the design was changed meanwhile."""
-    begun: list[tuple[Design | None, list[tuple[str, float]]]] = []
-
-    def begin(goals: object) -> None:
-        frame = window.session.frame
-        design = frame.stages.design if frame else None
-        begun.append((design, [(goal.name, goal.value) for goal in goals]))  # type: ignore[attr-defined]
-
-    monkeypatch.setattr(window.ask_desk, "begin", begin)
-    card, before = window.even_desk.card, window.session.design
+    """Lines are parted in the one step that takes the answer; left, or changed meanwhile, nothing is."""
+    card, desk, before = window.even_desk.card, window.ask_desk, window.session.design
     assert card.hint.text() == "Make even begins by setting left and right apart: Full bust, Mid-bust."
     count = window.session.undo_stack.count()
-    card.make.click()
-    yield lambda: bool(begun)
-    (design, goals), after = begun[0], window.session.design
-    assert goals[:2] == [("left higher", 0.0), ("left further out", 0.0)]
+    for end in (desk.leave, desk.apply):
+        card.make.click()
+        yield lambda: desk.is_tried_on and not desk.work.at_work
+        assert [(goal.name, goal.value) for goal in desk.goals()[:2]] == [
+            ("left higher", 0.0),
+            ("left further out", 0.0),
+        ]
+        assert {"lift", "out"} <= set(desk.card.wishes), "what moves besides is seen"
+        assert desk.card.note.text() == "Left and right apart: Full bust, Mid-bust"
+        assert window.session.design is before, "seen, not taken"
+        assert window.session.undo_stack.count() == count
+        end()
+        yield settled(window)
+        if end == desk.leave:
+            assert window.session.design is before
+            window.desk.go_to("result")
+            yield lambda: is_fresh(window)
+    after = window.session.design
     assert after is not None
-    assert design == after
     assert after.worn() == {f"{line} {side}" for line in ("mid-bust", "full-bust") for side in SIDES}
     assert window.session.undo_stack.count() == count + 1
-    assert window.session.undo_stack.undoText() == "Left and right apart: Full bust, Mid-bust"
+    asked = "Left and right apart: Full bust, Mid-bust · Asked for: Left higher than right 0.0 mm"
+    assert window.session.undo_stack.undoText().startswith(asked)
     window.actions_.undo.trigger()
     yield settled(window)
     assert window.session.design == before
+    window.desk.go_to("result")
     yield lambda: is_fresh(window)
+    begun: list[object] = []
+    monkeypatch.setattr(desk, "begin", lambda *_: begun.append(_))
     card.make.click()
     window.session.edit(lambda d: d.with_line("mid-bust", 0.96), "Another")
     yield lambda: is_fresh(window)
-    assert len(begun) == 1, "what was looked for was for another design"
+    assert not begun, "what was looked for was for another design"
 
 
 def splits(window: MainWindow) -> Script:
