@@ -234,7 +234,7 @@ def _left(
     """
     while told:
         equations = fit.normal(here)
-        worst = least_sure(equations, [number.doubt(here.stages.design) for number in told])
+        worst = least_sure(equations, [number.blind for number in told])
         if worst is None:
             break
         confused[told[worst].name] = confused_with(equations, told, worst)

@@ -43,15 +43,10 @@ _BLIND = {
     PRESTRESS: 0.15,
     LENGTH: 0.01,
 }
-"""A number less sure than this before any fit is not sought: of stiffness and tissue the logarithm [1]."""
-
-DOUBT = 0.15
-"""A number that was found less sure than this part of itself (one standard deviation) is not told [1]."""
+"""A number less sure than this is not told, and stays: of stiffness and tissue the logarithm [1]."""
 
 OWN_DOUBT = 0.075
 """Lines share one stiffness where that of one alone is less sure than this part of itself [1]."""
-
-_LEAST_DOUBT = {FIRM_CHEST: 0.01, PRESTRESS: 0.05}  # as sure as matters, however small they are
 
 
 @dataclass(frozen=True)
@@ -75,12 +70,6 @@ class Number:
     def blind(self) -> float:
         """The largest standard deviation [as it is sought] at which it is sought at all."""
         return _BLIND[self.kind]
-
-    def doubt(self, design: Design) -> float:
-        """Return the largest standard deviation [as it is sought] at which it counts as told of a design."""
-        if self.kind == LENGTH or self.logarithmic:
-            return _BLIND[LENGTH] if self.kind == LENGTH else DOUBT
-        return max(DOUBT * self.of(design), _LEAST_DOUBT[self.kind])
 
     @property
     def range(self) -> tuple[float, float]:
