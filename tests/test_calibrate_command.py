@@ -20,7 +20,7 @@ from core.project import open_project, save_project
 def pair(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, str]:
     """A project on a body of 2,100 corners, and a scan with the garment on that needs other numbers."""
     folder = tmp_path_factory.mktemp("worn")
-    small = open_project(Path(__file__).parent / "releases" / "0.1.0" / "first.busk").design
+    small = open_project(Path(__file__).parent / "releases/0.1.0/first.busk").design
     design = replace(small, volume="exact", firm_chest=0.03).with_line("mid-bust", 0.88)
     stages = build(design)
     truth = worn_mesh(stages, replace(design, line_stiffness=6.0, firm_chest=0.1))

@@ -29,7 +29,7 @@ STEP = 3e-4
 
 def design(**settings: object) -> Design:
     """Two lines on a mannequin of 2,100 corners, as an older version kept it."""
-    small = open_project(Path(__file__).parent / "releases" / "0.1.0" / "first.busk").design
+    small = open_project(Path(__file__).parent / "releases/0.1.0/first.busk").design
     base = replace(small, lines=(), volume="exact", **settings)
     return base.with_line("mid-bust", 0.85).with_line("full-bust", 0.9)
 

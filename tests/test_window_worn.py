@@ -23,7 +23,7 @@ from core.project import open_project, save_project
 def pair(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, str, str]:
     """A project on a body of 2,100 corners, a scan with the garment on, and one of another body."""
     folder = tmp_path_factory.mktemp("worn")
-    small = open_project(Path(__file__).parent / "releases" / "0.1.0" / "first.busk").design
+    small = open_project(Path(__file__).parent / "releases/0.1.0/first.busk").design
     design = replace(small, volume="exact", firm_chest=0.03).with_line("mid-bust", 0.88)
     stages = build(design)
     truth = replace(design, line_stiffness=6.0, firm_chest=0.1)

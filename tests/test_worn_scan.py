@@ -28,7 +28,7 @@ POSE = Pose("mm", "+z", "-y", np.eye(4), True, "", 0.0)
 @pytest.fixture(scope="module")
 def stages() -> Stages:
     """One line on a mannequin of 2,100 corners, as an older version kept it."""
-    small = open_project(Path(__file__).parent / "releases" / "0.1.0" / "first.busk").design
+    small = open_project(Path(__file__).parent / "releases/0.1.0/first.busk").design
     return build(replace(small, volume="exact").with_line("mid-bust", 0.85))
 
 
