@@ -98,6 +98,7 @@ def test_something_has_to_be_asked_for(capsys: pytest.CaptureFixture[str]) -> No
         ((*WORN, "--lock", "mid-bust", "--lock", "full-bust"), "No line that moves the body may change"),
         ((*WORN, "--out", "found.ply"), "no name of a project"),
         ((*WORN, "--profile", "missing.csv"), "cannot be read as a table"),
+        ((*WORN, "--profile", "bust=missing.csv"), "no section 'bust'"),
         ((*WORN, "--pressure", "0"), "no pressure to keep to"),
     ],
 )

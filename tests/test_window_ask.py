@@ -146,6 +146,7 @@ def tells_what_keeps_a_wish_from_being_met(window: MainWindow) -> Script:
     assert desk.answer.reply.design.ratio("mid-bust") == 0.97
     window.session.edit(lambda d: lock(d, "full-bust"), "Lock it too")
     assert "All worn lines are locked" in card._hint.text()
+    assert not card.help_.isVisible(), "other lines are not what is missing"
     desk.leave()
     window.session.edit(lambda d: replace(d, traits=()), "Unlock both")
     yield settled(window)

@@ -7,6 +7,7 @@ import re
 import unicodedata
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -112,6 +113,10 @@ def _curve(request: str) -> tuple[str, Floats]:
     """Return the section and the curve, (k, 2) [mm], of one request. Raises UserError."""
     match = _SECTION.match(request)
     section = match[1].lower() if match else "left"
+    named, equals, _ = request.partition("=")
+    if match is None and equals and not Path(request).exists():
+        hint = "Name left, right, or its x in mm: 60=FILE.csv."
+        raise UserError(f"There is no section '{named.strip()}'.", hint)
     return section, read_profile(request[match.end() :] if match else request)
 
 

@@ -260,7 +260,8 @@ class AskDesk(QObject):
         if not self.is_open or frame is None or design is None:
             return
         missing = self._missing(frame, design)
-        self.card.show_help(bool(missing))
+        moving = {line.name for line in frame.stages.model.lines if line.constrains}
+        self.card.show_help(bool(missing), lines=not moving & design.worn())
         if missing:
             self.card.show_wishes([], missing)
             self.card.show_answer()

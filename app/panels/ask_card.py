@@ -169,9 +169,9 @@ class AskCard(OverCard):
         self.apply.setEnabled(can_apply)
         self._fit()
 
-    def show_help(self, shown: bool) -> None:
-        """Offer the button that leads to what is missing, in place of Apply."""
-        self.help_.setVisible(shown)
+    def show_help(self, shown: bool, lines: bool = True) -> None:
+        """Take Apply away while something is missing; ``lines`` tells that it is these, and leads to them."""
+        self.help_.setVisible(shown and lines)
         self.apply.setVisible(not shown)
         for part in (self.add, self.link):
             part.setVisible(not shown)
