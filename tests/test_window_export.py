@@ -184,9 +184,11 @@ def test_a_folded_body_is_told_before_it_is_written(tmp_path: Path, monkeypatch:
         assert not sheet._doubt.isVisible(), "the body at rest is as it was scanned"
         sheet.reject()
         window.actions_.export.trigger()
-        assert window.notices.notice().sentence == "Folded: this is no shape to work from."
+        said = [each.sentence for each in (window.notices.notice(), *window.notices._waiting)]
+        assert said[0].startswith(("The skin folds over", "Mid-bust and")), "the doctor's stands already"
+        assert said[-1] == "Folded: this is no shape to work from."
         yield lambda: window.notices.notice().sentence == "anna.stl written, in mm, z-up."
-        assert window.notices.more.text() == "1 more"
+        assert window.notices.more.text() == "2 more"
 
     run_main([], script)
 
