@@ -42,8 +42,7 @@ class WornDesk(QObject):
         self._window, self._panel = window, panel
         self.page = WornPage()
         self.door = Door(tr("Compare with a worn scan"))
-        if (column := panel.layout()) is not None:
-            column.addWidget(self.door)  # under what is measured, as other doors stand under their lists
+        panel.doors.addWidget(self.door)
         self.worn: Worn | None = None
         self._of: Body | None = None
         self._path, self._unit, self._thickness = "", "", 0.0

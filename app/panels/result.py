@@ -53,8 +53,12 @@ class ResultPanel(QStackedWidget):
         self._table.marked.connect(self._mark)
         self._scroll = QTimer(self, singleShot=True, interval=0)  # once what is opened has got its room
         self._scroll.timeout.connect(self._scroll_to_mark)
-        page = QWidget()
-        column = QVBoxLayout(page)
+        page, column, self.doors = QWidget(), QVBoxLayout(), QVBoxLayout()
+        whole = QVBoxLayout(page)
+        whole.setContentsMargins(0, 0, 0, 0)
+        whole.setSpacing(0)
+        whole.addLayout(column, 1)
+        whole.addLayout(self.doors)  # under what is measured, as other doors stand under their lists
         column.setContentsMargins(14, 8, 14, 12)
         column.setSpacing(4)
         column.addWidget(self._empty)
