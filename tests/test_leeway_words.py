@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+
 import pytest
 from PySide6.QtCore import QEvent, QPoint
 from PySide6.QtGui import QHelpEvent
@@ -121,9 +123,12 @@ def test_zones_follow_an_edit_while_the_model_still_settles(monkeypatch: pytest.
     """Turns are made so slowly that nothing settles; zones come all the same, the selected first."""
     order: list[str] = []
     work_out = app.lining.limits_desk.leeway_of
+    seen = threading.Event()  # the zones of before, faint: new ones may be too quick for a look
+    seen.set()
 
     def noted(stages, name, progress):  # type: ignore[no-untyped-def]
         order.append(name)
+        seen.wait(20.0)
         return work_out(stages, name, progress)
 
     monkeypatch.setattr(app.lining.limits_desk, "leeway_of", noted)
@@ -136,10 +141,12 @@ def test_zones_follow_an_edit_while_the_model_still_settles(monkeypatch: pytest.
         before = row.view.leeway
         window.session.set_pace(5.0)
         order.clear()
+        seen.clear()
         window.session.change({"line_stiffness": 40.0}, "stiffer")
         said = row.details._limit
         yield lambda: row.view.stale
         assert said.property("tone") == "faint"
+        seen.set()
         yield lambda: row.view.leeway is not before and not row.view.stale
         assert said.property("tone") == ""
         assert not settled(window)()
