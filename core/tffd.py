@@ -129,14 +129,7 @@ class Binding:
         found[self.points], by_normal = np.split(columns, [len(self.points)])
         v0, v1, v2 = control_points[self._corners]
         across = np.cross(v1 - v0, v2 - v0)
-        length = np.where((size := np.linalg.norm(across, axis=1)) > 0.0, size, 1.0)[:, None]
-        unit = across / length
-        along = np.sum(unit * by_normal, axis=1, keepdims=True) * unit
-        if self.scaled_normals:
-            rest = 2.0 * self.control.face_areas[self.triangles, None]
-            by_area = (by_normal - 0.5 * along) / np.sqrt(length * np.where(rest > 0.0, rest, 1.0))
-        else:
-            by_area = (by_normal - along) / length
+        by_area = self._through_normals(across, by_normal)
         by_second, by_third = np.cross(v2 - v0, by_area), np.cross(by_area, v1 - v0)
         for corner, share in zip(self._corners, (-by_second - by_third, by_second, by_third), strict=True):
             np.add.at(found, corner, share)
@@ -148,15 +141,20 @@ class Binding:
         w0, w1, w2 = moved[self._corners]
         across = np.cross(v1 - v0, v2 - v0)
         by_move = np.cross(w1 - w0, v2 - v0) + np.cross(v1 - v0, w2 - w0)
+        return np.concatenate([moved[self.points], self._through_normals(across, by_move)])
+
+    def _through_normals(self, across: Floats, rates: Floats) -> Floats:
+        """Return the rates of normals by ``rates`` (t, 3) of the products ``across`` that they come of.
+
+        The derivative is symmetric, so it carries slopes by the normals back to the products as well.
+        """
         length = np.where((size := np.linalg.norm(across, axis=1)) > 0.0, size, 1.0)[:, None]
         unit = across / length
-        along = np.sum(unit * by_move, axis=1, keepdims=True) * unit
-        if self.scaled_normals:
-            rest = 2.0 * self.control.face_areas[self.triangles, None]
-            by_normal = (by_move - 0.5 * along) / np.sqrt(length * np.where(rest > 0.0, rest, 1.0))
-        else:
-            by_normal = (by_move - along) / length
-        return np.concatenate([moved[self.points], by_normal])
+        along = np.sum(unit * rates, axis=1, keepdims=True) * unit
+        if not self.scaled_normals:
+            return np.asarray((rates - along) / length)
+        rest = 2.0 * self.control.face_areas[self.triangles, None]
+        return np.asarray((rates - 0.5 * along) / np.sqrt(length * np.where(rest > 0.0, rest, 1.0)))
 
     @cached_property
     def _rest_frames(self) -> Floats:
