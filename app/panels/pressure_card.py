@@ -10,7 +10,8 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
-from app.dress.parts import Disclosure, ToolButton, button, hairline, sentence
+from app.dress.folded_list import folded_list
+from app.dress.parts import ToolButton, button, hairline, sentence
 from app.dress.theme import font, label, set_tag, set_tip, tokens_of
 from app.wording.words import number, tr
 
@@ -174,8 +175,8 @@ class PressureCard(QWidget):
         for each in (self.says, self.force, self.scale, self.sure, self.limits):
             column.addWidget(each)
         self.folds = [
-            _fold(column, tr("Where the limits come from"), limits.sources),
-            _fold(column, tr("What the figures leave out"), limits.left_out),
+            folded_list(column, tr("Where the limits come from"), limits.sources),
+            folded_list(column, tr("What the figures leave out"), limits.left_out),
         ]
 
     def show_summary(self, view: PressureSummary, faint: bool) -> None:
@@ -216,13 +217,3 @@ class PressureCard(QWidget):
         row.addWidget(self.light)
         row.addStretch(1)
         return row
-
-
-def _fold(column: QVBoxLayout, title: str, sentences: tuple[str, ...]) -> Disclosure:
-    fold, words = Disclosure(title), sentence("\n".join(f"• {each}" for each in sentences), "caption")
-    words.setContentsMargins(28, 0, 0, 4)
-    words.hide()
-    fold.toggled.connect(words.setVisible)
-    column.addWidget(fold)
-    column.addWidget(words)
-    return fold

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from app.dress.parts import Disclosure, hairline, sentence
+from app.dress.folded_list import folded_list
+from app.dress.parts import hairline, sentence
 from app.dress.theme import label, set_tag
 from app.wording.words import tr
 
@@ -37,8 +38,8 @@ class SpreadCard(QWidget):
         column.addWidget(self.meaning)
         column.addWidget(self.contact)
         self.folds = [
-            _fold(column, tr("Where the ± comes from"), sources),
-            _fold(column, tr("What these figures leave out"), left_out),
+            folded_list(column, tr("Where the ± comes from"), sources),
+            folded_list(column, tr("What these figures leave out"), left_out),
         ]
         self.show_view(SpreadView(""))
 
@@ -48,13 +49,3 @@ class SpreadCard(QWidget):
             words.setText(text)
             words.setVisible(bool(text))
             set_tag(words, "tone", "faint" if view.faint else "")
-
-
-def _fold(column: QVBoxLayout, title: str, sentences: tuple[str, ...]) -> Disclosure:
-    fold, words = Disclosure(title), sentence("\n".join(f"• {each}" for each in sentences), "caption")
-    words.setContentsMargins(28, 0, 0, 4)
-    words.hide()
-    fold.toggled.connect(words.setVisible)
-    column.addWidget(fold)
-    column.addWidget(words)
-    return fold
