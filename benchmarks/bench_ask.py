@@ -23,7 +23,6 @@ import numpy as np
 from pages import put, table
 
 from app.wording.samples import SAMPLES, sample_design
-from core.aims.answers import free_lines
 from core.aims.curve_file import profile_goals
 from core.aims.figure import Goal
 from core.aims.girth import GIRTH
@@ -41,6 +40,7 @@ from core.request import ask
 from core.sewing.comfort import comfort
 from core.solution import run
 from core.solving.condition import CALM_RANGE, Condition
+from core.worn_lines import free_lines
 
 MET = 0.5  # mm
 SHORTEST, SHORTEST_ELASTIC, LOOSE = 0.85, 0.75, 0.97
@@ -89,7 +89,7 @@ def worn(rng: np.random.Generator, stages: Stages) -> Stages:
         for name in sorted(design.worn()):
             design = design.with_line(name, 1.0)
         dressed = build(design, stages)
-        if 2 <= len(list(free_lines(dressed))) <= 4:
+        if 2 <= len(free_lines(dressed)) <= 4:
             return dressed
 
 
@@ -134,7 +134,7 @@ def _calm(condition: Condition) -> bool:
 
 def figures(rng: np.random.Generator, start: Stages) -> list[str]:
     """Return one to three figures by chance, no more than lines are free."""
-    count = int(rng.integers(1, 1 + min(3, len(list(free_lines(start))))))
+    count = int(rng.integers(1, 1 + min(3, len(free_lines(start)))))
     return [str(name) for name in rng.choice(NAMES, count, replace=False)]
 
 

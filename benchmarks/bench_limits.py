@@ -29,7 +29,6 @@ from pages import put, table
 from threadpoolctl import threadpool_limits
 
 from core.advice.limits import Limits, limits_of
-from core.aims.answers import free_lines
 from core.comparison import shape_of
 from core.cutting import goes_on
 from core.design import Design
@@ -43,6 +42,7 @@ from core.presets import built_in, with_preset
 from core.pressure import pressures
 from core.sewing.comfort import comfort
 from core.solver import Targets, at_rest, turn
+from core.worn_lines import free_lines
 
 NEAR = 0.005
 STEP, FINE = 0.005, 0.0005

@@ -17,7 +17,6 @@ from core.advice.remedy import (
     Change,
     Cure,
     Search,
-    free_groups,
     line_ways,
     off_changes,
     settings,
@@ -30,6 +29,7 @@ from core.lines import Line
 from core.pipeline import Stages
 from core.progress import Progress, quiet
 from core.verdict import Verdict
+from core.worn_lines import free_lines
 
 __all__ = ["Change", "Cure", "Diagnosis", "diagnose"]
 
@@ -133,7 +133,7 @@ def _treated(found: Diagnosis, search: Search) -> Diagnosis:
         cure = search.plainer(cure)
         return replace(found, cure=cure, others=tuple(others))
     worn = (line.name for line in stages.model.lines if line.constrains)
-    free = set(chain.from_iterable(free_groups(stages)))
+    free = set(chain.from_iterable(free_lines(stages)))
     locked = tuple(name for name in worn if name in stages.design.worn() and name not in free)
     milder = [each for each in search.tried if rank_of(each.left) < found.standing.rank]
     nearest = min(milder, key=lambda each: (rank_of(each.left), each.change.size), default=None)

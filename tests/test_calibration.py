@@ -140,7 +140,7 @@ def test_each_line_or_one_stiffness_for_all() -> None:
     stages = build(VARIANTS["glued"])
     both = [candidates(stages, lengths=False, each=each) for each in (True, False)]
     assert [[number.name for number in numbers] for numbers in both] == [
-        ["stiffness of full-bust", "stiffness of mid-bust", "firm_chest"],
+        ["stiffness of mid-bust", "stiffness of full-bust", "firm_chest"],
         ["line_stiffness", "firm_chest"],
     ]
     elastic = build(VARIANTS["elastic"])

@@ -17,7 +17,6 @@ from scipy import sparse
 from scipy.sparse import linalg as sparse_linalg
 
 from core.advice.outlook import resting
-from core.design import Design
 from core.mesh import Floats, Points
 from core.model import ConstrainedModel
 from core.pipeline import Stages, targets_of
@@ -27,6 +26,7 @@ from core.solving.newton import Balance
 from core.solving.newtons import newtons_per_unit
 from core.solving.potential import Place, Potential
 from core.solving.sliding import Skin
+from core.worn_lines import Together, worn_lines
 
 OPPOSED = 100.0
 """Angle from which on two constraints count as pulling against each other [degrees]; ours."""
@@ -100,8 +100,7 @@ def fight_of(stages: Stages, progress: Progress = quiet) -> Fight:
     newtons = newtons_per_unit(stages.model, stages.design.tissue_stiffness)
     passed_on = _Skin(stages.model, place, newtons)
     pulls = [
-        passed_on.pull(names, newtons * force)
-        for names, force in _lines(stages.design, potential, place, balance)
+        passed_on.pull(names, newtons * force) for names, force in _lines(stages, potential, place, balance)
     ]
     volume = _volume(passed_on, place, newtons * balance.pressures)
     pulls += [volume] if stages.design.volume != "none" and volume.newtons > _NOTHING else []
@@ -159,8 +158,8 @@ def _between(targets: Targets, share: float) -> Targets:
 
 
 def _lines(
-    design: Design, potential: Potential, place: Place, balance: Balance
-) -> Iterator[tuple[tuple[str, ...], Points]]:
+    stages: Stages, potential: Potential, place: Place, balance: Balance
+) -> Iterator[tuple[Together, Points]]:
     """Yield the force of each worn line that acts, linked ones together, in units of the model."""
     model = potential.model
     tension = potential.tape * (place.lengths - potential.natural)
@@ -169,12 +168,7 @@ def _lines(
     along = (tension / place.lengths)[:, None] * place.spans
     acts = Skin(model).across(place) if _slides(model) else None
     names = [line.name for line in model.lines]
-    seen: set[str] = set()
-    for index in model.pulling.tolist():
-        together = tuple(name for name in design.linked(names[index]) if name in names)
-        if together[0] in seen:
-            continue
-        seen.update(together)
+    for together in worn_lines(stages):
         owners = [names.index(name) for name in together]
         mine = np.isin(model.owner, owners)[:, None]
         force = -model.segments.sum(np.where(mine, along, 0.0))

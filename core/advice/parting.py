@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import reduce
 
-from core.aims.answers import free_lines
 from core.design import Design
 from core.pipeline import Stages
 from core.splitting import can_split, split
 from core.template import Template
+from core.worn_lines import free_lines
 
 ENOUGH = 0.5
 """Bust points that differ by less count as even: they ride on the nearest vertex of the skin [mm]."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import heapq
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial, reduce
 from typing import Any
@@ -22,6 +22,7 @@ from core.lines import RATIO_LIMITS
 from core.pipeline import Stages, build
 from core.progress import Progress
 from core.solving.condition import CALM_RANGE, STRAIN_RANGE
+from core.worn_lines import Together, free_lines
 
 LENGTH_STEP = 0.001
 """Ratio of lengths that a person sets [1]."""
@@ -80,14 +81,6 @@ class Way:
     most: int
 
 
-def free_groups(stages: Stages) -> list[tuple[str, ...]]:
-    """Return the worn lines that move anything and are not locked, linked ones together."""
-    design = stages.design
-    names = (line.name for line in stages.model.lines if line.constrains and line.name in design.worn())
-    free = (name for name in names if not design.traits_of(name).locked)
-    return list(dict.fromkeys(tuple(sorted(design.linked(name))) for name in free))
-
-
 def single_ways(stages: Stages) -> Iterator[Way]:
     """Yield the ways to change one line, or the gain."""
     if stages.design.volume == "conventional" and stages.gain > _LEAST_GAIN:
@@ -98,7 +91,7 @@ def single_ways(stages: Stages) -> Iterator[Way]:
 
 def line_ways(stages: Stages) -> Iterator[Way]:
     """Yield the ways to make one line longer or shorter; at its rest length it would be off."""
-    for names in free_groups(stages):
+    for names in free_lines(stages):
         ratio = stages.design.ratio(names[0])
         low, high = RATIO_LIMITS
         top, bottom = (1.0 - LENGTH_STEP, low) if ratio < 1.0 else (high, 1.0 + LENGTH_STEP)
@@ -155,19 +148,19 @@ def with_setting(setting: Change, ways: Iterator[Way]) -> Iterator[Way]:
 
 def off_changes(stages: Stages) -> Iterator[Change]:
     """Yield the ways to take one line off."""
-    for names in free_groups(stages):
+    for names in free_lines(stages):
         size = 100.0 * abs(stages.design.ratio(names[0]) - 1.0)
         yield Change("off", stages.design.with_linked(names[0], None), size, names)
 
 
 def together_ways(stages: Stages) -> Iterator[Way]:
     """Yield the way of all lines nearer to rest, a hundredth of how far they are a step, if there are two."""
-    groups = free_groups(stages)
+    groups = free_lines(stages)
     if len(groups) > 1:
         yield Way(partial(_together, stages.design, groups), _MOST_TOGETHER)
 
 
-def _together(design: Design, groups: list[tuple[str, ...]], steps: int) -> Change:
+def _together(design: Design, groups: Sequence[Together], steps: int) -> Change:
     size = 0.0
     for names in groups:
         before = design.ratio(names[0])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -145,17 +145,3 @@ class Answers:
 def exact_points(stages: Stages) -> Points:
     """Return the control points, (n, 3) [mm], that a design is solved to. Raises NoBalanceError."""
     return answer_of(stages).place.points
-
-
-def free_lines(stages: Stages, kept: Collection[str] = ()) -> Iterator[tuple[str, ...]]:
-    """Yield the worn lines that may change and move anything, linked ones together.
-
-    Those that are locked may not, and none of ``kept``.
-    """
-    design, seen = stages.design, set(kept)
-    moving = {line.name for line in stages.model.lines if line.constrains} & design.worn()
-    for name in sorted(moving):
-        group = tuple(each for each in design.linked(name) if each in moving)
-        if not (seen & set(group) or design.traits_of(name).locked):
-            seen |= set(group)
-            yield group

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import lsq_linear, minimize
 
-from core.aims.answers import PERCENT, Answers, Look, free_lines
+from core.aims.answers import PERCENT, Answers, Look
 from core.aims.figure import Goal, Read
 from core.aims.outline import section_of
 from core.aims.readings import reading
@@ -27,6 +27,7 @@ from core.lines import RATIO_LIMITS
 from core.mesh import Floats
 from core.pipeline import Stages
 from core.progress import Progress, quiet
+from core.worn_lines import free_lines
 
 NEAR = 0.05
 """A figure this near to what was asked for is what was asked for [mm]."""
@@ -100,7 +101,7 @@ class Search:
         reads: Sequence[Read] | None = None,
     ) -> None:
         self.stages, self.progress = stages, progress
-        self._groups = list(free_lines(stages, bounds.kept))
+        self._groups = free_lines(stages, bounds.kept)
         if not goals or not self._groups:
             raise UserError(
                 "No line that moves the body may change.", "Wear one that is not locked, and name a figure."

@@ -20,6 +20,7 @@ from core.solving.numbers import by_ground, by_net, by_prestress
 from core.solving.sensitivity import Answer
 from core.solving.stiffness import Changes, answers_to
 from core.tensegric import firm_ground
+from core.worn_lines import worn_lines
 
 LINE_STIFFNESS, FIRM_CHEST, PRESTRESS, TISSUE = (
     "line_stiffness",
@@ -124,7 +125,7 @@ def candidates(stages: Stages, *, lengths: bool, each: bool) -> tuple[Number, ..
 
 def _candidates(stages: Stages, lengths: bool, each: bool) -> Iterator[Number]:
     design = stages.design
-    groups = list(_groups(stages))
+    groups = worn_lines(stages)
     elastic, own = design.worn_elastics(), design.own_stiffness()
     springy = [group for group in groups if group[0] not in elastic]
     if design.line_hold == "spring":
@@ -141,17 +142,6 @@ def _candidates(stages: Stages, lengths: bool, each: bool) -> Iterator[Number]:
         yield Number(PRESTRESS)
     if lengths:
         yield from (Number(LENGTH, group) for group in groups)
-
-
-def _groups(stages: Stages) -> Iterator[tuple[str, ...]]:
-    """Yield the worn lines that move anything, linked ones together."""
-    moving = {stages.model.lines[at].name for at in stages.model.pulling}
-    seen: set[str] = set()
-    for name in sorted(moving):
-        group = tuple(each for each in stages.design.linked(name) if each in moving)
-        if name not in seen:
-            seen |= set(group)
-            yield group
 
 
 def rates_by(stages: Stages, answer: Answer, numbers: tuple[Number, ...]) -> Floats:
