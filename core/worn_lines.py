@@ -11,7 +11,7 @@ Together = tuple[str, ...]
 
 
 def worn_lines(stages: Stages) -> tuple[Together, ...]:
-    """Return the worn lines that pull at a point which can move, linked ones together, in the model's order."""
+    """Return the worn lines that pull at points which can move, in the model's order; linked ones as one."""
     model = stages.model
     pulling = [model.lines[at].name for at in model.pulling]
     groups = (tuple(sorted(set(stages.design.linked(name)).intersection(pulling))) for name in pulling)
