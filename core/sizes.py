@@ -6,11 +6,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
+from itertools import product
 from math import isfinite
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
 import platformdirs
 
 from core.design_measures import WORN_TIGHT
@@ -24,6 +26,7 @@ ALLOWANCE = WORN_TIGHT
 
 _ORDER = ("jp", "eu", "uk", "us", "fr", "it", "au")
 _LONGEST = 5000.0  # mm; no girth of a body is longer
+_SHARES, _ROUND = (0.25, 0.5, 0.75, 1.0), 32  # of an ellipse that is looked at, and places round it
 
 
 @dataclass(frozen=True)
@@ -117,6 +120,19 @@ def sizes(underbust_mm: float, bust_mm: float, allowance_mm: float = 0.0) -> Map
     """
     tables = (*built_in(), *own_tables()[0])
     return MappingProxyType({each.key: size(each, underbust_mm, bust_mm, allowance_mm) for each in tables})
+
+
+def nearby(answer: SizeAnswer, underbust_off: float, bust_off: float) -> tuple[str, ...]:
+    """Return the other sizes of bodies whose girths are no further off than that [mm], the nearest first.
+
+    Both girths may be off at once, together no further than the ellipse with these half axes.
+    """
+    table, found = answer.table, dict[str, None]()
+    for share, angle in product(_SHARES, np.linspace(0.0, 2.0 * np.pi, _ROUND, endpoint=False)):
+        underbust = answer.underbust_mm + share * underbust_off * np.cos(angle) - answer.allowance_mm
+        bust = answer.bust_mm + share * bust_off * np.sin(angle)
+        found[table.labelled(*table.steps(table.in_unit(underbust), table.in_unit(bust)))] = None
+    return tuple(label for label in found if label not in ("", answer.label))
 
 
 def sizes_text(answer: SizeAnswer, language: str = "en") -> dict[str, Any]:

@@ -21,6 +21,7 @@ from core.body import Body
 from core.live import Frame
 from core.measures import Measures, before_after
 from core.measuring.definitions import Measure
+from core.measuring.plus_minus import Spread
 from core.mesh import Points
 
 if TYPE_CHECKING:
@@ -39,6 +40,7 @@ class MeasuresDesk(QObject):
         self._job: Job | None = None
         self._rest: Measures | None = None
         self._worn: Measures | None = None
+        self._sized: Spread | None = None  # what the sizes shown were told with
         self._tried: tuple[Measure, Measure] | None = None
         self._views: list[MeasureView] = []  # what was measured, without what it may be off by
         panel.marked.connect(self._show_mark)
@@ -68,6 +70,8 @@ class MeasuresDesk(QObject):
         if self._frame is None or not self._panel.isVisible():
             return
         self._panel.set_rows(self._spread(measure_views(self._frame)), doubt_of(self._frame))
+        if self._sized is not self._sure:
+            self._show_sizes()
         if self._panel.measured:
             stale = self._panel.stale
             self._panel.set_measured(self._spread(self._views))
@@ -163,8 +167,15 @@ class MeasuresDesk(QObject):
     def _show_sizes(self) -> None:
         design = self._window.session.design
         allowance = design.worn_tight_mm if design else 0.0
-        views, why = size_views(self._rest, allowance) if self._rest else ([], "")
+        self._sized = self._sure
+        views, why = size_views(self._rest, allowance, self._sized) if self._rest else ([], "")
         self._panel.sizes.set_sizes(views, wish("size_system"), allowance, why)
+
+    @property
+    def _sure(self) -> Spread | None:
+        """How far the girths of the shown body may be off, once all of it is known."""
+        spread, faint = self._window.spread_desk.shown
+        return None if faint else spread
 
     def _as_table(self) -> list[list[str]]:
         # What was measured on a former body is no measure of this one.

@@ -25,6 +25,7 @@ class SizeView:
 
     ``short`` is the system in a few letters, ``system`` its name; ``doubts`` are what is uncertain in it.
     Where others may find quite another size, ``caution`` says so in a few words and ``doubt`` in a sentence.
+    ``within`` says which other sizes lie within what the girths may be off.
     """
 
     key: str
@@ -36,6 +37,7 @@ class SizeView:
     doubts: tuple[str, ...]
     caution: str = ""
     doubt: str = ""
+    within: str = ""
 
     @property
     def title(self) -> str:
@@ -62,7 +64,7 @@ class SizeCard(QWidget):
         self._grid = QGridLayout(self.others)
         self._grid.setContentsMargins(0, 0, 0, 4)
         self._grid.setSpacing(2)
-        self.rule, self.doubt, self.near = (sentence("", "secondary") for _ in range(3))
+        self.within, self.rule, self.doubt, self.near = (sentence("", "secondary") for _ in range(4))
         set_tag(self.doubt, "tone", "warn")
         self.fold, self.doubts = Disclosure(tr("What is uncertain in it")), sentence("", "caption")
         self.fold.toggled.connect(self.doubts.setVisible)
@@ -74,6 +76,7 @@ class SizeCard(QWidget):
         column.addWidget(label(tr("Band and cup, of the body at rest"), "caption"))
         column.addLayout(self._make_head())
         for each in (
+            self.within,
             self.others,
             self.rule,
             self.doubt,
@@ -90,7 +93,8 @@ class SizeCard(QWidget):
         """Show sizes, the ``chosen`` system large; without any, ``why`` there is none, or nothing at all."""
         self.views = tuple(views)
         self.setVisible(bool(views or why))
-        for each in (self.main, self.caution, self.others, self.doubt, self.near, self.fold, self._allowed):
+        parts = (self.main, self.caution, self.others, self.doubt, self.near, self.fold, self._allowed)
+        for each in (*parts, self.within):
             each.setVisible(bool(views))
         self.doubts.setVisible(bool(views) and self.fold.isChecked())
         self.allowance.show_value(allowance_mm)
@@ -101,6 +105,8 @@ class SizeCard(QWidget):
         self.main.setText(main.title)
         self.main.setToolTip(main.tip)
         self.caution.setText(main.caution)
+        self.within.setText(main.within)
+        self.within.setVisible(bool(main.within))
         self.rule.setText(main.rule)
         self.doubt.setText(main.doubt)
         self.doubt.setVisible(bool(main.doubt))

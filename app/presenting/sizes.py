@@ -7,21 +7,39 @@ from collections.abc import Iterator
 from app.panels.size_card import SizeView
 from app.wording.words import colon, joined, language, listed, number, say, tr
 from core.measures import Measures
-from core.sizes import Neighbour, SizeAnswer, sizes
+from core.measuring.plus_minus import BEFORE, Spread
+from core.sizes import Neighbour, SizeAnswer, nearby, sizes
 from core.sizing.letters import letter_sizes
 
 NEEDED = ("underbust_girth", "bust_girth")
 """The measures that a size is made of."""
 
 
-def size_views(measured: Measures, allowance_mm: float) -> tuple[list[SizeView], str]:
-    """Return the sizes of a body in every system, or none and why."""
+def size_views(
+    measured: Measures, allowance_mm: float, spread: Spread | None = None
+) -> tuple[list[SizeView], str]:
+    """Return the sizes of a body in every system, or none and why; ``spread`` tells the others within the ±."""
     underbust, bust = (measured[key] for key in NEEDED)
     if underbust.value is None or bust.value is None:
         return [], say(underbust.note or bust.note)
     answers = sizes(underbust.value, bust.value, allowance_mm)
     letters = {"jp": tuple(_letters(measured))}
-    return [_view(key, answer, letters.get(key, ())) for key, answer in answers.items()], ""
+    return [
+        _view(key, answer, letters.get(key, ()), within_words(answer, spread))
+        for key, answer in answers.items()
+    ], ""
+
+
+def within_words(answer: SizeAnswer, spread: Spread | None) -> str:
+    """Return which other sizes lie within what both girths may be off, once all of that is known."""
+    offs = [spread.plus_minus(f"{BEFORE}:{key}") for key in NEEDED] if spread and spread.whole else [None]
+    known = [off for off in offs if off is not None]
+    if len(known) < len(NEEDED) or not answer.inside:
+        return ""
+    others = nearby(answer, *known)
+    if not others:
+        return tr("No other size lies within the ±.")
+    return tr("Within the ± also: {sizes}").format(sizes=listed(others))
 
 
 def _letters(measured: Measures) -> Iterator[str]:
@@ -33,7 +51,7 @@ def _letters(measured: Measures) -> Iterator[str]:
             yield f"{table.title.told(language())}{colon()}{' / '.join(found)}"
 
 
-def _view(key: str, answer: SizeAnswer, letters: tuple[str, ...]) -> SizeView:
+def _view(key: str, answer: SizeAnswer, letters: tuple[str, ...], within: str) -> SizeView:
     said = (*answer.doubts, *(letter_sizes().doubts if letters else ()))
     doubts, caution = _unlike([each.told(language()) for each in said]), answer.table.caution
     return SizeView(
@@ -46,6 +64,7 @@ def _view(key: str, answer: SizeAnswer, letters: tuple[str, ...]) -> SizeView:
         doubts,
         caution.told(language()) if caution else "",
         doubts[0] if caution and doubts else "",
+        within,
     )
 
 
