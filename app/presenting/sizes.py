@@ -18,7 +18,7 @@ NEEDED = ("underbust_girth", "bust_girth")
 def size_views(
     measured: Measures, allowance_mm: float, spread: Spread | None = None
 ) -> tuple[list[SizeView], str]:
-    """Return the sizes of a body in every system, or none and why; ``spread`` tells the others within the ±."""
+    """Return the sizes of a body in every system, or none and why; ``spread`` tells others within the ±."""
     underbust, bust = (measured[key] for key in NEEDED)
     if underbust.value is None or bust.value is None:
         return [], say(underbust.note or bust.note)
