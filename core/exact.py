@@ -36,15 +36,16 @@ def solve_exact(
     *,
     excess: Floats | None = None,
     near: Balance | None = None,
+    turns: bool = True,
 ) -> Balance:
     """Return the exact balance for line ``ratios``, one per line.
 
     ``excess`` (2,) [mm^3] is what the left and the right volume are to have beyond rest. ``near`` is a
     balance of the same model for other ratios to start from: quicker, but where there are several equilibria
     the answer then depends on it. If there is no balance, the nearest on the way there is returned, which is
-    not ``found``.
+    not ``found``. Without ``turns`` those of the last resort, a second of work, are not made.
     """
-    *_, last = newton(model, ratios, limit, excess=excess, near=near)
+    *_, last = newton(model, ratios, limit, excess=excess, near=near, turns=turns)
     return last
 
 
@@ -55,6 +56,7 @@ def newton(
     *,
     excess: Floats | None = None,
     near: Balance | None = None,
+    turns: bool = True,
 ) -> Iterator[Balance]:
     """Yield the iterates on the way to the exact balance, the start included; see ``solve_exact``."""
     potential = Potential(model, ratios, excess)
@@ -69,7 +71,7 @@ def newton(
     for last in _walk(model, ratios, excess, max(limit - done - spared, 1)):
         yield replace(last, steps=done + last.steps)
     done += last.steps
-    if not last.found and _slides(model) and limit - done >= spared:
+    if turns and not last.found and _slides(model) and limit - done >= spared:
         turned = _turned(model, ratios, excess)
         # Where turns run away, what the walk came to stays the answer.
         if turned is not None:
