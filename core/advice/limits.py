@@ -10,9 +10,11 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from core.advice.beginnings import spans
 from core.advice.ground import Ground
 from core.advice.looks import Look, looks_at, looks_in
-from core.advice.walk import PRECISION, RED, Length, Span, Walk
+from core.advice.stops import Length, Span
+from core.advice.walk import PRECISION, RED, Walk
 from core.design import Design
 from core.design_lines import WornLine
 from core.lines import Line
@@ -95,7 +97,7 @@ def limits_of(stages: Stages, name: str, progress: Progress = quiet, *, through:
     """Return the limits of a line, worn or not, the others being as they are set.
 
     A linked partner goes with it. Lines made of elastics pull as these do at each length. ``through``: go on
-    where it is red, to tell all of SIGNS. Raises Cancelled.
+    where it is red, to tell all of SIGNS, and look at the line as it is set too. Raises Cancelled.
     """
     both, worn = stages.design.linked(name), name in stages.design.worn()
     tried = build(_wearing(stages.design, both), stages)
@@ -120,7 +122,7 @@ def all_limits(stages: Stages) -> Iterator[Limits]:
 def _limits(ground: Ground, index: int, looks: Mapping[str, Look], through: bool) -> Limits:
     line, set_ = ground.model.lines[index], ground.set_[index]
     walk = Walk(ground, line, looks)
-    present = walk.solved(set_)
+    present = walk.solved(set_) if through else None
     length = None if present is None else present.length
     beyond = tuple(sign for sign in SIGNS if present is not None and present.shows(sign))
     if not line.constrains:
@@ -128,7 +130,7 @@ def _limits(ground: Ground, index: int, looks: Mapping[str, Look], through: bool
     walk.go(set_, through)
     if not walk.stops:
         return Limits(line, length, beyond, {}, None, found=False)
-    shows = {sign: walk.spans(sign) for sign in looks}
+    shows = {sign: spans(walk, sign) for sign in looks}
     rest = min(walk.stops, key=lambda stop: abs(stop.length.ratio - 1.0)).length
     looked = Span(walk.stops[0].length, walk.stops[-1].length)
     ends = looked, walk.last, walk.longest

@@ -30,6 +30,9 @@ Look = Callable[[Found], float]
 OF_SHAPE = ("strained", "overstrained", "folded", "inverted")
 """Signs of the shape alone, which are quick to look at."""
 
+COSTLY = ("vibrating", "restless", "pressing")
+"""Signs that take as long to look at as a balance takes to find."""
+
 _CALM = 1.0  # of the margin where nothing can vibrate
 
 
