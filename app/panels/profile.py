@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QResizeEvent
+from PySide6.QtGui import QColor, QPainter, QPainterPath, QPaintEvent, QPen, QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QSlider, QStyle, QStyleOptionSlider, QVBoxLayout, QWidget
 
 from app.dress.parts import FloatingPanel, ToolButton
@@ -15,7 +15,8 @@ from app.dress.theme import font, label, tokens_of
 from app.dress.wishes import wish, wish_for
 from app.panels.figure_field import FigureField
 from app.showing.live_plot import PullTitle, Quantity
-from app.showing.profile_plot import BAND_INK, Drawn, ProfilePlot
+from app.showing.profile_band import paint_band
+from app.showing.profile_plot import Drawn, ProfilePlot
 from app.wording.words import number, tr
 
 STEPS = 2
@@ -203,6 +204,9 @@ class CurveKeys(QWidget):
             "other": tr("other side, mirrored"),
             "band": tr("may be off"),
         }
+        self.setToolTip(
+            tr("Each place of the skin lies within the band in 95 % of cases, if errors are normal.")
+        )
         self.setFixedHeight(self.sizeHint().height())
 
     def sizeHint(self) -> QSize:
@@ -225,9 +229,9 @@ class CurveKeys(QWidget):
             if role == "before":
                 pen.setDashPattern([3.0, 2.0])
             if role == "band":
-                ground = QColor(inks[role])
-                ground.setAlphaF(BAND_INK)
-                painter.fillRect(QRectF(x, y - 4.0, 18.0, 8.0), ground)
+                swatch = QPainterPath()
+                swatch.addRect(QRectF(x, y - 4.0, 18.0, 8.0))
+                paint_band(painter, swatch, QColor(inks[role]), faint=False)
             else:
                 painter.setPen(pen)
                 painter.drawLine(QPointF(x, y), QPointF(x + 18.0, y))

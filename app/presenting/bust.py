@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from app.panels.measure_view import plus_minus
 from app.wording.words import listed, number, tr
 from core.frame import Frame
+from core.measuring.plus_minus import LIFT, OUT, Spread
 from core.mesh import Floats
 from core.solver import Marks
 
@@ -58,20 +60,38 @@ def ups(rest: Marks, left: Floats, right: Floats) -> Floats:
     return 0.5 * ((left - rest.nipple_left_z) + (right - rest.nipple_right_z))
 
 
-def step_words(step: BustStep) -> str:
-    """Return a move in words: "3.9 mm up, 2.1 mm forward"."""
-    return listed((up_words(step.up), forward_words(step.forward)))
+Offs = tuple[float | None, float | None]
+"""How far a move up and one forward may be off [mm], None where that is not known."""
+
+UNKNOWN: Offs = (None, None)
 
 
-def up_words(up: float) -> str:
+def offs_of(spread: Spread | None, side: str = "") -> Offs:
+    """Return how far the move of the bust point of a ``side`` may be off, or the mean of both."""
+    if spread is None:
+        return UNKNOWN
+    up, out = (spread.plus_minus(" ".join(filter(None, (kind, side)))) for kind in (LIFT, OUT))
+    return up, out
+
+
+def step_words(step: BustStep, offs: Offs = UNKNOWN) -> str:
+    """Return a move in words: "3.9 mm up, 2.1 mm forward", or "3.9 ± 0.4 mm up" where that is known."""
+    return listed((up_words(step.up, offs[0]), forward_words(step.forward, offs[1])))
+
+
+def up_words(up: float, off: float | None = None) -> str:
     """Return a move up or down in words [mm]."""
-    return (tr("{mm} mm down") if round(up, 1) < 0.0 else tr("{mm} mm up")).format(mm=number(abs(up)))
+    return (tr("{mm} mm down") if round(up, 1) < 0.0 else tr("{mm} mm up")).format(mm=_sized(up, off))
 
 
-def forward_words(forward: float) -> str:
+def forward_words(forward: float, off: float | None = None) -> str:
     """Return a move forward or back in words [mm]."""
     back = round(forward, 1) < 0.0
-    return (tr("{mm} mm back") if back else tr("{mm} mm forward")).format(mm=number(abs(forward)))
+    return (tr("{mm} mm back") if back else tr("{mm} mm forward")).format(mm=_sized(forward, off))
+
+
+def _sized(move: float, off: float | None) -> str:
+    return number(abs(move)) if off is None else f"{number(abs(move))} {plus_minus(off)}"
 
 
 def sides_words(move: BustMove) -> tuple[str, str]:
@@ -82,9 +102,9 @@ def sides_words(move: BustMove) -> tuple[str, str]:
     return forward_words(left.forward), forward_words(right.forward)
 
 
-def bust_sentence(move: BustMove) -> str:
-    """Return a move in one line, with both sides where they differ."""
-    said = tr("Bust point {way}").format(way=step_words(move.mean))
+def bust_sentence(move: BustMove, offs: Offs = UNKNOWN) -> str:
+    """Return a move in one line, with both sides where they differ; ``offs`` are those of the mean."""
+    said = tr("Bust point {way}").format(way=step_words(move.mean, offs))
     if not move.differs:
         return said
     left, right = sides_words(move)

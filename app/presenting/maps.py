@@ -8,11 +8,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from app.panels.legend import MapKind
-from app.presenting.bust import BustMove, BustStep, bust_sentence, forward_words, step_words
+from app.presenting.bust import BustMove, BustStep, bust_sentence, forward_words, offs_of, step_words
 from app.presenting.pressure import limit_marks
 from app.seeing.paint import Ramp
 from app.wording.tokens import MAP_AMOUNT, MAP_LESS, MAP_MORE
 from app.wording.words import number, tr
+from core.measuring.plus_minus import Spread
 from core.mesh import Floats
 from core.press_list import PressList
 from core.pressure import mmhg
@@ -152,13 +153,14 @@ def rounded_up(value: float) -> float:
     return next(unit * power for unit in _ROUND if unit * power >= value * (1.0 - 1e-9))
 
 
-def section_words(axis: str, side: str, move: BustMove) -> str:
+def section_words(axis: str, side: str, move: BustMove, spread: Spread | None = None) -> str:
     """Return how far the bust points went, in words; a plane across x has that of its ``side`` alone."""
     if axis != "x":
-        return bust_sentence(move)
+        return bust_sentence(move, offs_of(spread))
+    offs = offs_of(spread, side)
     if side == "left":
-        return tr("Bust point left {way}").format(way=step_words(move.left))
-    return tr("Bust point right {way}").format(way=step_words(move.right))
+        return tr("Bust point left {way}").format(way=step_words(move.left, offs))
+    return tr("Bust point right {way}").format(way=step_words(move.right, offs))
 
 
 def sides_words(axis: str, pairs: Sequence[tuple[Floats, Floats]]) -> str:

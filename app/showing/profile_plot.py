@@ -26,14 +26,12 @@ from PySide6.QtWidgets import QWidget
 from app.dress.spoken import speak_value
 from app.dress.theme import font, tokens_of
 from app.showing.plot_scale import load_curves
+from app.showing.profile_band import paint_band, write_off
 from app.wording.words import number, tr
 from core.mesh import Floats
 
 LEFT, BOTTOM, EDGE = 34.0, 18.0, 6.0
 """Room for the numbers of the axes, and round the curves [px]."""
-
-BAND_INK = 0.28
-"""How strong the band is that tells how far a curve may be off, in parts of the curve's own ink."""
 
 _FINEST = 22.0  # grid lines are never nearer to each other [px]
 
@@ -44,7 +42,7 @@ class Drawn:
 
     Roles: "before" is dashed, "after" strong, "other" the mirrored side. ``home``, shape (2, 2) [mm], is the
     box that is seen first. ``bands`` are outlines, by role, of where the skin may lie; ``faint`` until all of
-    it is known.
+    it is known. ``most`` is where that is widest: the place and the way out, both (2,), and how far in words.
     """
 
     curves: dict[str, Sequence[Floats]] = field(default_factory=dict)
@@ -52,6 +50,7 @@ class Drawn:
     home: Floats = field(default_factory=lambda: np.array([[-100.0, -100.0], [100.0, 100.0]]))
     bands: dict[str, list[Floats]] = field(default_factory=dict)
     faint: bool = False
+    most: tuple[Floats, Floats, str] | None = None
 
 
 class ProfilePlot(QWidget):
@@ -128,15 +127,12 @@ class ProfilePlot(QWidget):
         looks = {
             "before": QPen(QColor(tokens.ghost_curve), 1.4, Qt.PenStyle.DashLine),
             "other": QPen(QColor(tokens.warn_mark), 1.6),
-            "after": QPen(QColor(tokens.accent), 2.2),
+            # Within its band a curve is thin, else it would cover what it stands in.
+            "after": QPen(QColor(tokens.accent), 1.2 if self._drawn.bands else 2.2),
         }
         for role, outlines in self._drawn.bands.items():
-            ink = QColor(looks[role].color())
-            ink.setAlphaF(BAND_INK * (0.5 if self._drawn.faint else 1.0))
             for outline in outlines:
-                path = self._path(outline)
-                path.setFillRule(Qt.FillRule.WindingFill)
-                painter.fillPath(path, ink)
+                paint_band(painter, self._path(outline), looks[role].color(), faint=self._drawn.faint)
         for role, pen in looks.items():
             painter.setPen(pen)
             for places in self._drawn.curves.get(role, ()):
@@ -148,6 +144,9 @@ class ProfilePlot(QWidget):
                 painter.setBrush(QColor(colour))
                 painter.drawEllipse(self._spot(place), 4.0, 4.0)
         painter.setClipping(False)
+        if self._drawn.most is not None and not self._drawn.faint and self._mark is None:
+            place, way, text = self._drawn.most
+            write_off(painter, self._spot(place), way, text, self._room(), tokens.accent)
         if self._mark is not None:
             self._paint_gap(painter, *self._mark)
         if self.hasFocus():

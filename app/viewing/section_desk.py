@@ -18,11 +18,12 @@ from app.presenting.verdict import is_result
 from app.showing.plane_handle import PlaneHandle
 from app.showing.profile_plot import Drawn
 from app.showing.viewport import Viewport
-from app.viewing.section_marks import apex_pairs, bands, bust_points, home, side_of
+from app.viewing.section_marks import apex_pairs, bands, bust_points, home, most_off, side_of
 from app.wording.words import number, tr
 from core.errors import UserError
 from core.export import write_profile
 from core.live import Frame
+from core.measuring.plus_minus import Spread
 from core.mesh import Floats
 from core.profile import AXES, Curve, Plane, Slicer, mirrored, nearest, stand_out
 
@@ -242,17 +243,19 @@ class SectionDesk(QObject):
             home(now, plane),
             bands(now, self._slicer, curves, spread),
             spread is not None and not spread.whole,
+            most_off(now, self._slicer, curves["after"], spread),
         )
-        words = sides_words(plane.axis, pairs) if sides else self._words()
+        words = sides_words(plane.axis, pairs) if sides else self._words(spread)
         self.panel.show_curves(drawn, words, again=self._again)
         self._again = False
         self._point(self._place)
 
-    def _words(self) -> str:
+    def _words(self, spread: Spread | None) -> str:
         assert self._now is not None
         assert self._slicer is not None
         frame, side = self._now.frame, side_of(self._now, self._slicer.plane)
-        return section_words(self.axis, side, bust_move(frame)) if is_result(frame) else ""
+        known = spread if spread is not None and spread.whole else None
+        return section_words(self.axis, side, bust_move(frame), known) if is_result(frame) else ""
 
     def _point(self, place: Floats | None) -> None:
         """Read how far the curves are apart at a place of the plot, (2,) [mm]."""

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from app.panels.measure_view import plus_minus
 from app.presenting.body_now import BodyNow
 from app.presenting.bust import bust_move
 from core.measuring.plus_minus import Spread
@@ -66,6 +67,25 @@ def bands(
         role: [_round(curve, off) for curve, off in zip(curves[role], offs, strict=True)]
         for role, offs in (("before", before), ("after", after))
     }
+
+
+def most_off(
+    now: BodyNow, slicer: Slicer, curves: Sequence[Curve], spread: Spread | None
+) -> tuple[Floats, Floats, str] | None:
+    """Return where the skin may be off the most in the box that is seen first: place, way out, and the ±."""
+    if spread is None:
+        return None
+    low, high = home(now, slicer.plane)
+    found = []
+    for curve, off in zip(curves, slicer.along(now.places, spread.sds * spread.skin), strict=True):
+        inside = ((curve.places > low) & (curve.places < high)).all(axis=1)
+        if inside.any():
+            at = int(np.argmax(np.where(inside, off, -1.0)))
+            found.append((curve.places[at], curve.normals[at], float(off[at])))
+    if not found:
+        return None
+    place, way, off = max(found, key=lambda each: each[2])
+    return place, way, f"{plus_minus(off)} mm"
 
 
 def _round(curve: Curve, off: Floats) -> Floats:

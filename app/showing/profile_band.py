@@ -1,0 +1,39 @@
+"""The band round the curve of a section within which the skin may lie, and how wide that is in words."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPainterPath, QPen
+
+from app.dress.theme import font
+from core.mesh import Floats
+
+BAND_INK, EDGE_INK = 0.28, 0.65
+"""How strong the band and its edges are, in parts of the curve's own ink."""
+
+_EDGE = 0.8  # [px]
+_AWAY = 9.0  # from the curve to the words [px]
+_HIGH = 16.0
+
+
+def paint_band(painter: QPainter, path: QPainterPath, colour: QColor, *, faint: bool) -> None:
+    """Paint a band and its edges, which are seen even where it is hardly wider than its curve."""
+    ground, edge = QColor(colour), QColor(colour)
+    for ink, share in ((ground, BAND_INK), (edge, EDGE_INK)):
+        ink.setAlphaF(share * (0.5 if faint else 1.0))
+    path.setFillRule(Qt.FillRule.WindingFill)
+    painter.fillPath(path, ground)
+    painter.strokePath(path, QPen(edge, _EDGE))
+
+
+def write_off(painter: QPainter, spot: QPointF, way: Floats, text: str, room: QRectF, ink: str) -> None:
+    """Write outside a place of the curve how far it may be off; ``way`` (2,) is outward, up positive."""
+    face = font("caption", tabular=True)
+    wide = QFontMetricsF(face).horizontalAdvance(text)
+    left = spot.x() + _AWAY * way[0] - (wide if way[0] < 0.0 else 0.0)
+    box = QRectF(left, spot.y() - _AWAY * way[1] - 0.5 * _HIGH, wide, _HIGH)
+    box.moveLeft(min(max(box.left(), room.left()), room.right() - wide))
+    if room.contains(box.center()):
+        painter.setFont(face)
+        painter.setPen(QColor(ink))
+        painter.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
