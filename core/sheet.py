@@ -14,7 +14,7 @@ from core.cutting import CutList, cut_list
 from core.doubts import doubts
 from core.measures import Measures, before_after, measure_rows
 from core.measuring.definitions import DEFINITIONS
-from core.measuring.plus_minus import Spread
+from core.measuring.plus_minus import BEFORE, Spread
 from core.mesh import Floats, Mesh, Points
 from core.pipeline import Stages
 from core.press_list import PressRow, press_list
@@ -23,7 +23,7 @@ from core.profile import AXES, Curve, Plane, Slicer, nearest
 from core.progress import Progress, quiet
 from core.report import Shown, kept_volume, shape_warnings, still_lines, warnings
 from core.sewing.tensions import ran_away
-from core.sizes import sizes, sizes_text
+from core.sizes import GIRTHS_OF_SIZES, sizes, sizes_text, with_nearby
 from core.solver import Marks, Record
 from core.tffd import deform
 from core.verdict import SOUND
@@ -207,16 +207,18 @@ def with_spread(sheet: Sheet, stages: Stages, control_points: Points, spread: Sp
     for cut in sheet.sections:
         slicer = Slicer(rest, Plane(cut.axis, cut.after_at_mm))
         offs = slicer.along(places, spread.sds * spread.skin)
-        told = tuple(tuple(np.round(each, 3).tolist()) for each in offs)
-        sections.append(replace(cut, off_mm=told, off_before_mm=spread.sds * spread.rest))
+        rounded = tuple(tuple(np.round(each, 3).tolist()) for each in offs)
+        sections.append(replace(cut, off_mm=rounded, off_before_mm=spread.sds * spread.rest))
     off = {key: off for key in spread.doubts if (off := spread.plus_minus(key)) is not None}
     factors = {key: factor for key in spread.doubts if (factor := spread.factor(key)) is not None}
-    return replace(sheet, off=off, off_factor=factors, off_notes=spread.cautions, sections=tuple(sections))
+    told = with_nearby(sheet.sizes, *(off.get(f"{BEFORE}:{key}") for key in GIRTHS_OF_SIZES))
+    notes = spread.cautions
+    return replace(sheet, off=off, off_factor=factors, off_notes=notes, sections=tuple(sections), sizes=told)
 
 
 def _sizes(before: Measures, heading: Heading) -> tuple[tuple[dict[str, Any], ...], str]:
     """Return the sizes of the body at rest, the chosen system first, or none and why."""
-    underbust, bust = before["underbust_girth"], before["bust_girth"]
+    underbust, bust = (before[key] for key in GIRTHS_OF_SIZES)
     if underbust.value is None or bust.value is None:
         return (), underbust.note or bust.note
     answers = sizes(underbust.value, bust.value, heading.allowance_mm)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
@@ -23,6 +23,9 @@ from core.sizing.table_file import read_table, table_of
 
 ALLOWANCE = WORN_TIGHT
 """What may be taken off the under-bust girth for a tape that is worn tight [mm]: an estimate, not a norm."""
+
+GIRTHS_OF_SIZES = ("underbust_girth", "bust_girth")
+"""The measures that a size is made of."""
 
 _ORDER = ("jp", "eu", "uk", "us", "fr", "it", "au")
 _LONGEST = 5000.0  # mm; no girth of a body is longer
@@ -169,6 +172,19 @@ def sizes_text(answer: SizeAnswer, language: str = "en") -> dict[str, Any]:
         "doubts": [each.told(language) for each in answer.doubts],
         "sources": [{"name": each.name, "says": each.words.told(language)} for each in table.sources],
     }
+
+
+def with_nearby(
+    told: Sequence[dict[str, Any]], underbust_off: float | None, bust_off: float | None
+) -> tuple[dict[str, Any], ...]:
+    """Return sizes of ``sizes_text``, each with the others ``within_off`` (``nearby``) if both are known."""
+    if underbust_off is None or bust_off is None or not told:
+        return tuple(told)
+    girths = ("underbust_mm", "bust_mm", "allowance_mm")
+    answers = sizes(*(told[0][name] for name in girths))
+    return tuple(
+        {**each, "within_off": list(nearby(answers[each["key"]], underbust_off, bust_off))} for each in told
+    )
 
 
 @cache

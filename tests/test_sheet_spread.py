@@ -5,18 +5,24 @@ from __future__ import annotations
 import csv
 import io
 import json
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from pdf_tools import Pdf
+from PySide6.QtGui import QImage
 
 from app.commands import reported
 from app.commands.reported import SheetWishes, run_report
+from app.dress.theme import load_fonts
+from app.reporting.handout import SHOTS, Handout
+from app.reporting.pages import pages_of
 from app.wording.samples import sample_design
-from core.measuring.plus_minus import SOURCES, Doubt, Spread
+from core.measuring.plus_minus import AFTER, BEFORE, CHANGE, LIFT, OUT, SOURCES, Doubt, Spread
 from core.pipeline import Stages, build
+from core.presets import built_in, with_preset
 from core.report import Shown
 from core.sheet import Heading, Sheet, sheet_of, with_spread
 from core.solution import Solution, run
@@ -67,6 +73,29 @@ def test_figures_and_curves_get_what_they_may_be_off_by(solved: Solution, plain:
     assert float(rows["up"]["off_difference"]) == 0.2
 
 
+def everywhere(stages: Stages, sheet: Sheet) -> Spread:
+    """What is off by as much as on a usual body, at every figure."""
+    keys = [f"{kind}:{row['key']}" for row in sheet.measures for kind in (BEFORE, AFTER, CHANGE)]
+    doubts = {key: Doubt({"scan": 4.0}) for key in (*keys, LIFT, OUT)}
+    return Spread(doubts, np.full(len(stages.body.mesh.vertices), 1.0), 0.2, 2.0, SOURCES, {}, "sliding")
+
+
+@pytest.mark.parametrize("body", ["mannequin", "person"])
+def test_a_usual_design_has_room_on_two_pages(
+    body: str, built: Callable[[str], Stages], qapp: object
+) -> None:
+    load_fonts()
+    stages = built(body)
+    bra = with_preset(stages.design, next(each for each in built_in() if each.title == "Bra"))
+    shown = run(build(bra, stages))
+    sheet = sheet_of(shown, shown.records, Heading("anna", "2026-01-31", customer="Anna"))
+    sheet = with_spread(sheet, shown.stages, shown.control_points, everywhere(shown.stages, sheet))
+    assert [row["within_off"] for row in sheet.sizes if row["key"] == "jp"] != [[]]
+    pictures = {name: QImage(40, 80, QImage.Format.Format_RGB32) for name in SHOTS}
+    for language in ("en", "ja"):
+        assert pages_of(Handout(sheet, pictures, {}), language).count == 2
+
+
 def test_it_stands_on_paper(mannequin: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(reported, "spread_of", spread)
     monkeypatch.setattr(reported, "_pictures", lambda _: {})
@@ -76,3 +105,4 @@ def test_it_stands_on_paper(mannequin: Path, tmp_path: Path, monkeypatch: pytest
     run_report(str(mannequin), design, [], [], SheetWishes(str(out), spread=True))
     said = Pdf(out).text()
     assert all(each in said for each in ("± 7.4", "± 8.4", "± 0.2 mm", "± 1.4", "twice the standard"))
+    assert said.index("Lift of the bust points") < said.index("± 0.2 mm") < said.index("Measures")

@@ -8,18 +8,15 @@ from app.panels.size_card import SizeView
 from app.wording.words import colon, joined, language, listed, number, say, tr
 from core.measures import Measures
 from core.measuring.plus_minus import BEFORE, Spread
-from core.sizes import Neighbour, SizeAnswer, nearby, sizes
+from core.sizes import GIRTHS_OF_SIZES, Neighbour, SizeAnswer, nearby, sizes
 from core.sizing.letters import letter_sizes
-
-NEEDED = ("underbust_girth", "bust_girth")
-"""The measures that a size is made of."""
 
 
 def size_views(
     measured: Measures, allowance_mm: float, spread: Spread | None = None
 ) -> tuple[list[SizeView], str]:
     """Return the sizes of a body in every system, or none and why; ``spread`` tells others within the ±."""
-    underbust, bust = (measured[key] for key in NEEDED)
+    underbust, bust = (measured[key] for key in GIRTHS_OF_SIZES)
     if underbust.value is None or bust.value is None:
         return [], say(underbust.note or bust.note)
     answers = sizes(underbust.value, bust.value, allowance_mm)
@@ -32,9 +29,13 @@ def size_views(
 
 def within_words(answer: SizeAnswer, spread: Spread | None) -> str:
     """Return which other sizes lie within what both girths may be off, once all of that is known."""
-    offs = [spread.plus_minus(f"{BEFORE}:{key}") for key in NEEDED] if spread and spread.whole else [None]
+    offs = (
+        [spread.plus_minus(f"{BEFORE}:{key}") for key in GIRTHS_OF_SIZES]
+        if spread and spread.whole
+        else [None]
+    )
     known = [off for off in offs if off is not None]
-    if len(known) < len(NEEDED) or not answer.inside:
+    if len(known) < len(GIRTHS_OF_SIZES) or not answer.inside:
         return ""
     others = nearby(answer, *known)
     if not others:

@@ -79,11 +79,9 @@ def _meaning(sheet: Sheet) -> list[str]:
     if not (sheet.off and sheet.sound):
         return []
     sources = listed([source_words(each) for each in SOURCES])
-    return [
-        tr("± is twice the standard deviation: 95 % of all cases, if errors are normal."),
-        tr("It holds: {sources}. Whether lines stick or slide is no part of it.").format(sources=sources),
-        *map(say, sheet.off_notes),
-    ]
+    means = tr("± is twice the standard deviation: 95 % of all cases, if errors are normal.")
+    holds = tr("It holds: {sources}. Whether lines stick or slide is no part of it.").format(sources=sources)
+    return [joined([means, holds]), *map(say, sheet.off_notes)]
 
 
 def _limits() -> list[str]:

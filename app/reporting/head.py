@@ -8,17 +8,17 @@ from app.reporting.flow import Block
 from app.reporting.handout import SHOT_SIZES, SHOTS, Handout
 from app.reporting.marks import paint_chip, paint_state
 from app.reporting.paper import A4, MARGIN, Paper, elided, line_height, text_width, wrapped
-from app.reporting.telling import cut_pieces, other_sizes, project_words, state_words, system_word
+from app.reporting.telling import cut_pieces, project_words, size_words, state_words, system_word
 from app.wording.tokens import LIGHT
 from app.wording.words import number, say, tr
-from core.measuring.plus_minus import LIFT
+from core.measuring.plus_minus import LIFT, OUT
 from core.sheet import Sheet
 
 WIDE = A4[0] - 2 * MARGIN
 """What is between the margins of a page [mm]."""
 
 _CELLS = (0.0, 28.0, 58.0, 121.0, 154.0)  # where band, cup, lengths to cut, lift and volume begin [mm]
-_HERO, _LARGE = 25.5, 3
+_HERO, _LARGE = 26.5, 3
 _USUAL = LIGHT.control  # of a line that has no colour
 
 
@@ -80,22 +80,25 @@ def _hero(handout: Handout) -> Block:
     return Block(_HERO, paint)
 
 
-def _great(left: float, width: float, caption: str, figure: str, below: str, unit: str = "") -> Block:
-    """Return one figure with what it is over it and what belongs to it below."""
-    lines, end = wrapped(below, "caption", width)[:3], text_width(figure, "hero") + 1.2
+def _great(
+    left: float, width: float, caption: str, figure: str, below: str, unit: str = "", off: str = ""
+) -> Block:
+    """Return one figure with what it is over it and what belongs to it below, first how far it may be off."""
+    lines, end = wrapped(below, "caption", width)[: 2 if off else 3], text_width(figure, "hero") + 1.2
 
     def paint(paper: Paper, x: float, y: float) -> None:
         paper.text(x + left, y + 4.6, caption, "caption")
         paper.text(x + left, y + 12.8, figure, "hero")
         paper.text(x + left + end, y + 12.8, unit, "name")
-        paper.lines(x + left, y + 14.8, lines, "caption")
+        down = paper.lines(x + left, y + 14.6, [off] if off else [], "figure strong")
+        paper.lines(x + left, max(down, y + 14.8), lines, "caption")
 
     return Block(_HERO, paint)
 
 
 def _size(sheet: Sheet) -> Block:
     chosen = sheet.sizes[0] if sheet.sizes else {"band": None, "cup": None}
-    below = other_sizes(sheet) if sheet.sizes else say(sheet.no_size)
+    below = size_words(sheet) if sheet.sizes else say(sheet.no_size)
     nothing = "\N{EN DASH}"
     system = f" {system_word(chosen)}" if sheet.sizes else ""
     band = _great(_CELLS[0], _CELLS[2] - 6.0, tr("Band") + system, chosen["band"] or nothing, below)
@@ -175,9 +178,9 @@ def _lift(sheet: Sheet) -> Block:
     left, room, caption = _CELLS[3], _CELLS[4] - _CELLS[3] - 6.0, tr("Lift of the bust points")
     if sheet.lift is None:
         return _sentence(left, room, caption, tr("No figure: the shape is no result."))
-    off, below = sheet.off.get(LIFT), forward_words(sheet.lift.forward)
-    below = below if off is None else f"{plus_minus(off)} mm · {below}"
-    return _great(left, room, caption, number(sheet.lift.up, 1, signed=True), below, "mm")
+    off, below = sheet.off.get(LIFT), forward_words(sheet.lift.forward, sheet.off.get(OUT))
+    figure = number(sheet.lift.up, 1, signed=True)
+    return _great(left, room, caption, figure, below, "mm", "" if off is None else f"{plus_minus(off)} mm")
 
 
 def _volume(sheet: Sheet) -> Block:

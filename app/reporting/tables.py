@@ -15,15 +15,20 @@ from app.wording.tokens import LIGHT
 from app.wording.words import tr
 from core.sheet import Sheet
 
+Edges = tuple[float, float, float]
+"""Right ends of the figures of a measure: before, after, change [mm]."""
+
 HALF = 88.0
 """The width of a column where two stand beside each other [mm]."""
 
 _ROW, _CUT_ROW = 4.6, 5.6
-_OFF = 2.6  # so much higher is a row with ± under its figures
 _FEW = 3  # footnotes that stand below each other
 _EDGES = (78.0, 92.0, 105.0, 116.0, 130.0, 144.0, 151.5, 161.5)  # right ends of the figures of a cut
 _ELASTIC, _LIGHT, _WORD = 35.0, 164.5, 168.0
 _MEASURED = (HALF - 29.0, HALF - 14.5, HALF)  # right ends of before, after, change
+_BESIDE = (HALF - 41.3, HALF - 24.1, HALF - 6.9)  # the same where ± stands behind each
+_OFF = 6.9  # from a figure's right end to that of its ±
+_SECOND = 3.2  # so much higher is a row whose title takes two lines
 
 
 def heading(title: str, width: float, *, gap: float = 5.0) -> Block:
@@ -46,13 +51,15 @@ def cut_blocks(handout: Handout) -> list[Block]:
 
 def measure_blocks(sheet: Sheet) -> Iterator[Block]:
     """Give the table of measures before and after, group by group."""
+    groups = measure_rows(sheet)
+    edges = _BESIDE if any(row.off for _, rows in groups for row in rows) else _MEASURED
     yield heading(tr("Measures"), HALF)
-    yield _measure_head()
-    for group, rows in measure_rows(sheet):
+    yield _measure_head(edges)
+    for group, rows in groups:
         said = elided(group, "strong", HALF)
         yield Block(5.0, _ruled(said, "strong", HALF, 5.0), gap=1.2, keep=True)
         for row in rows:
-            yield _measure(row) if row.figures else _paragraph(row.note, "small", HALF, 0.9)
+            yield _measure(row, edges) if row.figures else _paragraph(row.note, "small", HALF, 0.9)
 
 
 def note_blocks(sheet: Sheet) -> Iterator[Block]:
@@ -180,39 +187,51 @@ def _beside(blocks: list[Block]) -> Block:
     return Block(max(map(high, halves)), paint, gap=0.6)
 
 
-def _measure_head() -> Block:
+def _measure_head(edges: Edges) -> Block:
     titles = tr("before"), tr("after"), tr("change")
-    unit = tr("mm, if not told otherwise")
+    unit = elided(tr("mm, if not told otherwise"), "caption", edges[0] - 10.0)
 
     def paint(paper: Paper, x: float, y: float) -> None:
         paper.text(x, y + 2.6, unit, "caption")
-        for edge, title in zip(_MEASURED, titles, strict=True):
+        for edge, title in zip(edges, titles, strict=True):
             paper.text(x + edge, y + 2.6, title, "caption", align="right")
 
     return Block(3.4, paint, keep=True)
 
 
-def _measure(row: MeasureRow) -> Block:
-    room = _MEASURED[0] - 11.0
+def _measure(row: MeasureRow, edges: Edges) -> Block:
+    """Return a measure: its figures, behind each how far it may be off; a long title takes two lines."""
+    room = edges[0] - 9.5
     unit = elided(row.unit, "caption", room)
-    room -= text_width(unit, "caption") + 1.6 if unit else 0.0
-    name = fitting(row.title, room)
-    title = elided(row.title, name, room)
-    high = _ROW + (_OFF if row.off else 0.0)
+    beside = room - (text_width(unit, "caption") + 1.6 if unit else 0.0)
+    kind, lines = fitting(row.title, beside), _in_two(row.title, beside)
+    high = _ROW + _SECOND * (len(lines) - 1)
 
     def paint(paper: Paper, x: float, y: float) -> None:
         base = y + 3.3
-        paper.text(x, base, title, name, ink=LIGHT.text)
-        paper.text(x + text_width(title, name) + 1.6, base, unit, "caption")
-        for edge, figure, kind in zip(
-            _MEASURED, row.figures, ("before", "figure strong", "figure"), strict=True
+        for place, line in enumerate(lines):
+            paper.text(x, base + place * _SECOND, line, kind, ink=LIGHT.text)
+        paper.text(x + text_width(lines[-1], kind) + 1.6, base + (len(lines) - 1) * _SECOND, unit, "caption")
+        for edge, figure, type_ in zip(
+            edges, row.figures, ("before", "figure strong", "figure"), strict=True
         ):
-            paper.text(x + edge, base, figure, kind, align="right")
-        for edge, off in zip(_MEASURED, row.off, strict=False):
-            paper.text(x + edge, base + _OFF, off, "axis", align="right")
+            paper.text(x + edge, base, figure, type_, align="right")
+        for edge, off in zip(edges, row.off, strict=False):
+            paper.text(x + edge + _OFF, base, off, "axis", align="right")
         paper.rule(x, y + high, HALF, weight=0.1)
 
     return Block(high, paint)
+
+
+def _in_two(title: str, width: float) -> list[str]:
+    """Return a title on one line, or on two: a side in Japanese brackets stands on the second by itself."""
+    name, bracket, side = title.rpartition("（")
+    if text_width(title, "small") <= width:
+        return [title]
+    if name and text_width(name, "small") <= width:
+        return [name, f"{bracket}{side}"]
+    first, *others = wrapped(title, "small", width)
+    return [first, elided("".join(others), "small", width)]
 
 
 def _title(title: str) -> Block:

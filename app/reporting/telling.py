@@ -80,6 +80,14 @@ def state_words(sheet: Sheet) -> tuple[str, str]:
     return word, tr("{state}: these figures are no result to sew for.").format(state=word)
 
 
+def size_words(sheet: Sheet) -> str:
+    """Return the size as each system writes it, and which others lie within what girths may be off."""
+    within = sheet.sizes[0].get("within_off")
+    words = tr("Within the ± also: {sizes}") if within else tr("No other size lies within the ±.")
+    said = words.format(sizes=listed(within or ())) if within is not None and sheet.sizes[0]["inside"] else ""
+    return "\n".join(filter(None, (said, other_sizes(sheet))))
+
+
 def other_sizes(sheet: Sheet) -> str:
     """Return the size as each system writes it, the chosen one first; a star where others find another."""
     said = (
