@@ -108,7 +108,7 @@ def _walk(
         potential = Potential(model, between, None if excess is None else share * excess)
         found = last
         for found in _steps(potential, last, min(_STRIDE_STEPS, limit - steps)):
-            if found.steps:
+            if found.steps or found.found:
                 yield replace(found, steps=steps + found.steps)
         steps += found.steps
         if found.found:
