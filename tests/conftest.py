@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from dead_process import pytest_testnodedown  # noqa: F401 (pytest finds it here)
 from PySide6.QtCore import QSettings
 from PySide6.QtWidgets import QApplication
 from small_project import write_project
