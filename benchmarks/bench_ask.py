@@ -27,8 +27,8 @@ from core.aims.curve_file import profile_goals
 from core.aims.figure import Goal
 from core.aims.girth import GIRTH
 from core.aims.outline import profile_name
-from core.aims.reaching import INSIDE
 from core.aims.readings import NAMES, reading
+from core.aims.wanted import INSIDE
 from core.design import Design, ScanSource
 from core.elastics import find_elastic
 from core.errors import UserError

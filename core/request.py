@@ -14,9 +14,10 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from core.aims.answers import Look, exact_points
-from core.aims.figure import Goal, Read
-from core.aims.reaching import LOOSEST, NEAR, Bounds, Found, Search
-from core.aims.readings import reading
+from core.aims.figure import Goal
+from core.aims.reaching import LOOSEST, Bounds, Found, Search
+from core.aims.readings import Figures
+from core.aims.wanted import NEAR
 from core.answer import NoBalanceError
 from core.cutting import goes_on
 from core.design import Design
@@ -104,7 +105,7 @@ class Asking:
             shortest[name] = max(shortest.get(name, 0.0), 1.0 / (1.0 + elastic.reach))
         self._bounds = replace(bounds, shortest=shortest)
         self._newtons = newtons_per_unit(stages.model, design.tissue_stiffness)
-        self._reads: dict[str, Read] = {}
+        self._figures = Figures(stages)  # they hang on the body, not on its lines
         self._goals: Sequence[Goal] = ()
         self._progress: Progress = quiet
         self._search: Search | None = None
@@ -135,7 +136,8 @@ class Asking:
 
     def figures(self, names: Collection[str], points: Points) -> dict[str, float]:
         """Return what the figures ``names`` are where the control points are at ``points`` (n, 3) [mm]."""
-        return {name: self._read(name)(points).value for name in names}
+        values, _ = self._figures.of(tuple(names))(points)
+        return dict(zip(names, values.tolist(), strict=True))
 
     def _told(self, answered: Callable[[], Reply], goals: Sequence[Goal], progress: Progress) -> Reply:
         same = [goal.name for goal in goals] == [goal.name for goal in self._goals]
@@ -201,17 +203,11 @@ class Asking:
     # -- its parts
 
     def _begun(self, stages: Stages) -> Search:
-        reads = [self._read(goal.name) for goal in self._goals]
-        search = Search(stages, self._goals, self._bounds, self._progress, reads)
-        search.hardest = self._hardest
+        read = self._figures.of([goal.name for goal in self._goals])
+        search = Search(stages, self._goals, self._bounds, self._progress, read)
+        search.limit(self._hardest)
         self._used.append((search, 0))
         return search
-
-    def _read(self, name: str) -> Read:
-        # Figures hang on the body and its control mesh, not on the lines.
-        if name not in self._reads:
-            self._reads[name] = reading(self._stages, name)
-        return self._reads[name]
 
     def _presses_well(self, search: Search, look: Look) -> bool:
         """Look at what lines press with, limit what those that press too much may pull; tell if none did."""
@@ -222,7 +218,7 @@ class Asking:
         for name, kpa in self._pressure.items():
             if pulls[name] > 0.0 and (kpa > limit or name in self._hardest):
                 self._hardest[name] = pulls[name] * limit / kpa
-        search.hardest = dict(self._hardest)
+        search.limit(self._hardest)
         return all(kpa < _TOO_MUCH * limit for kpa in self._pressure.values())
 
     def _pressures(self, stages: Stages, points: Points, *, straps: bool) -> dict[str, float]:

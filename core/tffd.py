@@ -122,18 +122,22 @@ class Binding:
         return self.by_points(control_points, self.operator.pulled(slopes))
 
     def by_points(self, control_points: Points, slopes: Points) -> Points:
-        """Return slopes by the control points, (n, 3), of what has ``slopes`` (c, 3) by the first columns."""
-        columns = np.zeros((len(self.points) + len(self.triangles), 3))
-        columns[: len(slopes)] = slopes
-        found = np.zeros_like(control_points)
-        found[self.points], by_normal = np.split(columns, [len(self.points)])
+        """Return slopes by the control points, (n, 3), of what has ``slopes`` (c, 3) by the first columns.
+
+        Of several figures at once, (k, c, 3), they are (k, n, 3).
+        """
+        columns = np.zeros((*slopes.shape[:-2], len(self.points) + len(self.triangles), 3))
+        columns[..., : slopes.shape[-2], :] = slopes
+        points, by_normal = np.split(columns, [len(self.points)], axis=-2)
         v0, v1, v2 = control_points[self._corners]
         across = np.cross(v1 - v0, v2 - v0)
         by_area = self._through_normals(across, by_normal)
         by_second, by_third = np.cross(v2 - v0, by_area), np.cross(by_area, v1 - v0)
+        found = np.zeros((len(control_points), *slopes.shape[:-2], 3))
+        found[self.points] = np.moveaxis(points, -2, 0)
         for corner, share in zip(self._corners, (-by_second - by_third, by_second, by_third), strict=True):
-            np.add.at(found, corner, share)
-        return found
+            np.add.at(found, corner, np.moveaxis(share, -2, 0))
+        return np.asarray(np.moveaxis(found, 0, -2))
 
     def pushed(self, control_points: Points, moved: Points) -> Floats:
         """Return how fast ``change`` changes at ``control_points`` as they move by ``moved``, both (n, 3)."""
@@ -150,7 +154,7 @@ class Binding:
         """
         length = np.where((size := np.linalg.norm(across, axis=1)) > 0.0, size, 1.0)[:, None]
         unit = across / length
-        along = np.sum(unit * rates, axis=1, keepdims=True) * unit
+        along = np.sum(unit * rates, axis=-1, keepdims=True) * unit
         if not self.scaled_normals:
             return np.asarray((rates - along) / length)
         rest = 2.0 * self.control.face_areas[self.triangles, None]

@@ -10,13 +10,14 @@ from slopes import doubled, slope
 
 from app.wording.samples import sample_design
 from core.aims.answers import Answers
-from core.aims.readings import reading
+from core.aims.readings import Figures
 from core.pipeline import Stages, build
 from core.presets import built_in, with_preset
 from core.worn_lines import free_lines
 
 GROUPS = [("mid-bust",), ("full-bust",)]
 HERE = np.array([91.0, 96.0])
+HEIGHTS = ("profile left 340", "profile left 372.5")
 CHOICES = (
     {},
     {"line_contact": "sliding"},
@@ -36,7 +37,7 @@ def plain() -> Stages:
 @pytest.mark.parametrize("choice", CHOICES, ids=str)
 def test_slopes_are_those_of_differences(plain: Stages, choice: dict[str, str | bool]) -> None:
     stages = doubled(build(replace(plain.design, **choice), plain))
-    answers = Answers(stages, GROUPS, [reading(stages, name) for name in ("lift", "out left", "girth")])
+    answers = Answers(stages, GROUPS, Figures(stages).of(("lift", "out left", "girth", *HEIGHTS)))
     look = answers(HERE)
     for column, way in enumerate(np.eye(2)):
 
@@ -50,7 +51,7 @@ def test_slopes_are_those_of_differences(plain: Stages, choice: dict[str, str | 
 
 
 def test_answers_are_those_from_rest_and_worked_out_once(plain: Stages) -> None:
-    answers = Answers(plain, GROUPS, [reading(plain, "out")])
+    answers = Answers(plain, GROUPS, Figures(plain).of(["out"]))
     assert answers(HERE) is answers(HERE.copy())
     assert len(answers) == 1
     assert answers.checked(HERE)

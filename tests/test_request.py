@@ -11,8 +11,9 @@ from app.wording.samples import sample_design
 from core.advice.limits import limits_of
 from core.aims.figure import Goal
 from core.aims.outline import profile_name
-from core.aims.reaching import INSIDE, NEAR, Bounds, Search
+from core.aims.reaching import Bounds, Search
 from core.aims.readings import reading
+from core.aims.wanted import INSIDE, NEAR
 from core.elastics import find_elastic
 from core.errors import UserError
 from core.pipeline import Stages, build

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.aims.figure import Read
+from core.aims.figure import ReadMany
 from core.answer import NoBalanceError, answer_of, volume_keeper
 from core.comparison import shape_of
 from core.mesh import Floats, Points
@@ -46,12 +46,12 @@ class Look:
 class Answers:
     """Worked out on demand and kept: those of a design whose ``groups`` of lines change together.
 
-    ``reads`` are the figures that are looked at. Each answer begins near the one before, which is quicker,
+    ``read`` reads the figures that are looked at. Each answer begins near the one before, which is quicker,
     until ``checked`` finds that rest leads elsewhere.
     """
 
-    def __init__(self, stages: Stages, groups: Sequence[tuple[str, ...]], reads: Sequence[Read]) -> None:
-        self._stages, self._reads = stages, reads
+    def __init__(self, stages: Stages, groups: Sequence[tuple[str, ...]], read: ReadMany) -> None:
+        self._stages, self._read = stages, read
         names = [line.name for line in stages.model.lines]
         self._groups = [[names.index(name) for name in group] for group in groups]
         self._ratios = np.array(targets_of(stages.design, stages).ratios)
@@ -104,12 +104,11 @@ class Answers:
         self._near = None if self._from_rest else answer.balance
         points = answer.place.points
         rates = self._rates(answer)
-        figures = [read(points) for read in self._reads]
-        slopes = np.stack([self._by_free(figure.slopes) for figure in figures])
+        values, slopes = self._read(points)
         return Look(
             points,
-            np.array([figure.value for figure in figures]),
-            rates.of(slopes),
+            values,
+            rates.of(slopes[:, self._stages.model.tensegric.free].reshape(len(values), -1)),
             *answer.tensions(rates, self._natural),
             *self._margin(points, rates),
         )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.mesh import Points
+from core.mesh import Floats, Points
 from core.pipeline import Stages
 
 SIDES = {"": np.array([0.5, 0.5]), " left": np.array([1.0, 0.0]), " right": np.array([0.0, 1.0])}
@@ -32,6 +32,9 @@ class Reading:
 
 Read = Callable[[Points], Reading]
 """Reads a figure off control points, shape (n, 3) [mm]."""
+
+ReadMany = Callable[[Points], tuple[Floats, Floats]]
+"""Reads m figures off control points at once: values (m,) [mm] and slopes (m, n, 3) [1]."""
 
 
 @dataclass(frozen=True)

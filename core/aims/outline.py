@@ -13,9 +13,9 @@ from functools import lru_cache
 import numpy as np
 from scipy import sparse
 
-from core.aims.figure import Family, Goal, Read, Reading
+from core.aims.figure import Family, Goal, Read, Reading, ReadMany
 from core.errors import UserError
-from core.mesh import Floats, Indices, Mesh, Points
+from core.mesh import Flags, Floats, Indices, Mesh, Points
 from core.pipeline import Stages
 from core.tffd import Binding
 
@@ -62,44 +62,57 @@ class _Section:
         self._faces, self._vertices = _near(mesh, at)
         self._rest = mesh.vertices[self._vertices]
         self._operator = _operator_of(binding, self._vertices)
-        self._last: tuple[Points, Points, Indices, Points] | None = None
 
-    def __call__(self, control_points: Points, height: float) -> Reading | None:
-        """Return how far the skin stands out at a height [mm], and its slopes; None where there is none."""
-        places, faces, corners = self._crossing(control_points)
-        inside = (corners[:, :, 2].min(axis=1) <= height) & (corners[:, :, 2].max(axis=1) >= height)
-        faces, corners = faces[inside], corners[inside]
-        parts = _parts(corners[:, :, [0, 2]], np.array([self._at, height]))
-        hit = np.flatnonzero(parts.min(axis=1, initial=1.0) >= -1e-9)
-        if not len(hit):
-            return None
-        outs = np.einsum("fc,fc->f", parts[hit], corners[hit, :, 1])
-        first = hit[int(outs.argmin())]
-        a, b, c = corners[first]
-        normal = np.cross(b - a, c - a)
-        slopes = np.zeros_like(places)
-        slopes[faces[first]] = -parts[first][:, None] * (normal / normal[1])
-        by_points = self._binding.by_points(control_points, self._operator.T @ slopes)
-        return Reading(-float(outs.min()), by_points)
+    def __call__(self, control_points: Points, heights: Floats) -> tuple[Floats, Floats]:
+        """Return how far the skin stands out at heights (k,) [mm], and its slopes, (k, n, 3).
 
-    def _crossing(self, control_points: Points) -> tuple[Points, Indices, Points]:
-        """Return the places, (k, 3), and the faces that cross the section: (f, 3) and corners (f, 3, 3)."""
-        last = self._last
-        if last is None or last[0] is not control_points:
-            places = self._rest + self._operator @ self._binding.change(control_points)
-            across = places[self._faces, 0] - self._at
-            faces = self._faces[(across.min(axis=1) <= 0.0) & (across.max(axis=1) >= 0.0)]
-            self._last = last = control_points, places, faces, places[faces]
-        return last[1:]
+        Where there is no skin it is nan, and the slopes are nothing.
+        """
+        places = self._rest + self._operator @ self._binding.change(control_points)
+        faces = self._faces[_crossing(places[:, 0], self._at, self._faces)]
+        corners = places[faces]
+        low, high = corners[:, :, 2].min(axis=1), corners[:, :, 2].max(axis=1)
+        row, face = np.nonzero((low <= heights[:, None]) & (high >= heights[:, None]))
+        spot = np.stack([np.full(len(row), self._at), heights[row]], axis=1)
+        parts = _parts(corners[face][:, :, [0, 2]], spot)
+        hit = parts.min(axis=1, initial=1.0) >= -1e-9
+        row, face, parts = row[hit], face[hit], parts[hit]
+        outs = -np.einsum("hc,hc->h", parts, corners[face, :, 1])
+        order = np.lexsort((-outs, row))
+        found, first = np.unique(row[order], return_index=True)
+        foremost = order[first]
+        values, slopes = np.full(len(heights), np.nan), np.zeros((len(heights), *control_points.shape))
+        values[found] = outs[foremost]
+        chosen = face[foremost]
+        slopes[found] = self._slopes(control_points, faces[chosen], corners[chosen], parts[foremost])
+        return values, slopes
+
+    def _slopes(self, control_points: Points, faces: Indices, corners: Floats, parts: Floats) -> Floats:
+        """Return the slopes of places on ``faces`` (k, 3), at their ``parts``, along y, (k, n, 3)."""
+        a, b, c = corners.swapaxes(0, 1)
+        normals = np.cross(b - a, c - a)
+        ways = -normals / normals[:, 1:2]
+        starts = np.arange(0, 3 * len(faces) + 1, 3)
+        shape = (len(faces), len(self._rest))
+        weights = sparse.csr_array((parts.ravel(), faces.ravel(), starts), shape=shape) @ self._operator
+        by_columns = weights.toarray()[:, :, None] * ways[:, None, :]
+        return self._binding.by_points(control_points, by_columns)
 
 
 def _near(mesh: Mesh, at: float) -> tuple[Indices, Indices]:
     """Return the faces that may come to cross x = ``at``, as places among their vertices, and these."""
-    side = np.digitize(mesh.vertices[:, 0] - at, [-_REACH, _REACH])[mesh.faces]
-    faces = mesh.faces[side.min(axis=1) <= 1]
-    faces = faces[side[side.min(axis=1) <= 1].max(axis=1) >= 1]
-    vertices, place = np.unique(faces, return_inverse=True)
-    return place.reshape(-1, 3), vertices
+    x = mesh.vertices[:, 0]
+    faces = mesh.faces[_crossing(x, at - _REACH, mesh.faces, at + _REACH)]
+    used = np.zeros(len(x), dtype=bool)
+    used[faces] = True
+    return (np.cumsum(used) - 1)[faces], np.flatnonzero(used)
+
+
+def _crossing(x: Floats, low: float, faces: Indices, high: float | None = None) -> Flags:
+    """Tell which faces come between ``low`` and ``high`` (or to ``low``), by the x of their vertices."""
+    a, b, c = faces.T
+    left, right = x <= (low if high is None else high), x >= low
+    return np.asarray((left[a] | left[b] | left[c]) & (right[a] | right[b] | right[c]))
 
 
 def _operator_of(binding: Binding, vertices: Indices) -> sparse.csr_array:
@@ -115,9 +128,9 @@ def _operator_of(binding: Binding, vertices: Indices) -> sparse.csr_array:
     return sparse.csr_array(spread @ rows)
 
 
-def _parts(corners: Floats, place: Floats) -> Floats:
-    """Return what each corner of flat triangles, (f, 3, 2), counts for at a place, (f, 3); flat ones: -1."""
-    (ax, ay), (bx, by), (cx, cy) = (corners[:, at].T - place[:, None] for at in range(3))
+def _parts(corners: Floats, places: Floats) -> Floats:
+    """Return what corners of flat triangles, (f, 3, 2), count for at places (f, 2), (f, 3); flat ones: -1."""
+    (ax, ay), (bx, by), (cx, cy) = ((corners[:, at] - places).T for at in range(3))
     areas = np.stack([bx * cy - by * cx, cx * ay - cy * ax, ax * by - ay * bx], axis=1)
     whole = areas.sum(axis=1, keepdims=True)
     return np.asarray(np.where(np.abs(whole) > 1e-12, areas / np.where(whole == 0.0, 1.0, whole), -1.0))
@@ -128,25 +141,39 @@ def _section(mesh: Mesh, binding: Binding, at: float) -> _Section:
     return _Section(mesh, binding, at)
 
 
-def _read(stages: Stages, name: str) -> Read:
-    match = _NAME.fullmatch(name)
-    if match is None:
-        raise UserError(
-            f"'{name}' names no place of a profile.", "Name the section and a height: profile left 1150."
-        )
-    at, height = section_at(stages, match[1]), float(match[2])
+def heights_of(stages: Stages, names: Sequence[str]) -> ReadMany:
+    """Return what reads heights of one section at once. Raises UserError if a name names none."""
+    found = [_NAME.fullmatch(name) for name in names]
+    for name, match in zip(names, found, strict=True):
+        if match is None:
+            raise UserError(
+                f"'{name}' names no place of a profile.", "Name the section and a height: profile left 1150."
+            )
+    known = [match for match in found if match is not None]
+    at, heights = section_at(stages, known[0][1]), np.array([float(match[2]) for match in known])
     section = _section(stages.body.mesh, stages.binding, at)
 
-    def read(control_points: Points) -> Reading:
-        found = section(control_points, height)
-        if found is None:
+    def read(control_points: Points) -> tuple[Floats, Floats]:
+        values, slopes = section(control_points, heights)
+        if np.isnan(values).any():
+            height = heights[int(np.flatnonzero(np.isnan(values))[0])]
             raise UserError(
                 f"There is no skin at a height of {height:.0f} mm on the section at x = {at:.0f} mm.",
                 "Heights are those of the body as Busk shows it, in millimetres.",
             )
-        return found
+        return values, slopes
 
     read(stages.control.mesh.vertices)
+    return read
+
+
+def _read(stages: Stages, name: str) -> Read:
+    together = heights_of(stages, [name])
+
+    def read(control_points: Points) -> Reading:
+        (value,), (slopes,) = together(control_points)
+        return Reading(float(value), slopes)
+
     return read
 
 

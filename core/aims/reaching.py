@@ -10,16 +10,15 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from scipy.optimize import lsq_linear, minimize
+from scipy.optimize import minimize
 
 from core.aims.answers import PERCENT, Answers, Look
-from core.aims.figure import Goal, Read
-from core.aims.outline import section_of
-from core.aims.readings import reading
+from core.aims.figure import Goal, ReadMany
+from core.aims.readings import Figures
+from core.aims.wanted import Wanted, weights_of
 from core.answer import NoBalanceError
 from core.design import Design
 from core.errors import UserError
@@ -28,12 +27,6 @@ from core.mesh import Floats
 from core.pipeline import Stages
 from core.progress import Progress, quiet
 from core.worn_lines import free_lines
-
-NEAR = 0.05
-"""A figure this near to what was asked for is what was asked for [mm]."""
-
-INSIDE = 5e-3
-"""So far inside the limit of strain lengths stay: a run ends a hair beside its exact answer [1]."""
 
 LOOSEST = 1.0
 """A line is not asked to be longer than at rest: it would push [1]."""
@@ -44,9 +37,9 @@ _TRIES, _GOOD = 12, 1e-3  # steps to less tension, and a part of it that is not 
 _BOLD, _LAST = 8.0, 1e-4  # the longest step tried and the shortest [%]
 _EXACT = 1e-8  # [mm^2]
 _LITTLE = 1e-6  # a step that brings no more than this is the last one [mm^2]
-_LAZY = 1e-3  # of several ways that do the same, the shortest [mm / %]
-_STRICT = 10_000.0  # a limit that is broken by a ten-thousandth counts as a figure 1 mm off
-_BROKEN, _AT_LIMIT = -1e-4, 1e-3  # room to a limit [1]
+_PART = 3e-4  # or no more than this part of what is amiss: of 4 mm that is less than 0.001 mm [1]
+_BESIDE = 0.5  # so near to where another start led, and no better, it leads there as well [%]
+_AT_LIMIT = 1e-3  # room to a limit [1]
 _AT_END = 0.01  # [%]
 _SLACK = 0.03  # of the tension at the start: about as much counts as none
 
@@ -86,11 +79,9 @@ class Found:
 class Search:
     """The free lengths of a design as unknowns, shape (p,) [%], and what is wanted of them.
 
-    ``start`` are the lengths that it has; ``hardest`` is the most that lines may pull with, by name, in the
-    model's unit. Raises UserError if no line is free or nothing is asked.
+    ``start`` are the lengths that it has. ``nearer`` hears of what was found before it is looked for
+    elsewhere. Raises UserError if no line is free or nothing is asked.
     """
-
-    hardest: Mapping[str, float] = MappingProxyType({})
 
     def __init__(
         self,
@@ -98,7 +89,7 @@ class Search:
         goals: Sequence[Goal],
         bounds: Bounds,
         progress: Progress = quiet,
-        reads: Sequence[Read] | None = None,
+        read: ReadMany | None = None,
     ) -> None:
         self.stages, self.progress = stages, progress
         self._groups = free_lines(stages, bounds.kept)
@@ -106,14 +97,15 @@ class Search:
             raise UserError(
                 "No line that moves the body may change.", "Wear one that is not locked, and name a figure."
             )
-        reads = [reading(stages, goal.name) for goal in goals] if reads is None else reads
-        self._answers = Answers(stages, self._groups, reads)
-        self._weights = _weights([goal.name for goal in goals])
-        self.want(goals)
+        read = Figures(stages).of([goal.name for goal in goals]) if read is None else read
+        self._answers = Answers(stages, self._groups, read)
+        self.nearer: Callable[[Found], None] = lambda found: None
         low = [
             max(RATIO_LIMITS[0], *(bounds.shortest.get(name, 0.0) for name in each)) for each in self._groups
         ]
         self._low, self._high = np.array(low) / PERCENT, np.maximum(low, bounds.longest) / PERCENT
+        values, lines = np.array([goal.value for goal in goals]), [line.name for line in stages.model.lines]
+        self._wanted = Wanted(values, weights_of(goals), self._low, self._high, lines)
         set_ = [stages.design.ratio(group[0]) / PERCENT for group in self._groups]
         self.start = np.clip(set_, self._low, self._high)
 
@@ -123,7 +115,11 @@ class Search:
 
     def want(self, goals: Sequence[Goal]) -> None:
         """Look for other values of the same figures from now on."""
-        self._wanted = np.array([goal.value for goal in goals])
+        self._wanted.values = np.array([goal.value for goal in goals])
+
+    def limit(self, hardest: Mapping[str, float]) -> None:
+        """Let named lines pull no harder than so, in the model's unit, from now on."""
+        self._wanted.hardest = dict(hardest)
 
     def at(self, lengths: Floats) -> Look:
         """Return the exact answer at ``lengths``. Raises NoBalanceError, Cancelled."""
@@ -141,10 +137,13 @@ class Search:
     def _near_by(self) -> Floats:
         """Return the nearest from the start or, if that does not reach what is wanted, from elsewhere."""
         best = self.from_here(self.start)
+        known = [best]
         for begin in self._elsewhere():
-            if self._reached(self.at(best)):
+            if self._wanted.is_met(self.at(best)):
                 break
-            best = min(best, self.from_here(begin), key=self._amiss_at)
+            self.nearer(self.found(best))
+            known.append(self.from_here(begin, known))
+            best = min(best, known[-1], key=self._amiss_at)
         return best
 
     def _elsewhere(self) -> Iterator[Floats]:
@@ -152,7 +151,7 @@ class Search:
         rest = np.clip(np.full(len(self.start), 1.0 / PERCENT), self._low, self._high)
         halfway = np.clip(np.full(len(self.start), _HALFWAY / PERCENT), self._low, self._high)
         for begin in (rest, halfway):
-            if self._look(begin) is not None:
+            if not np.array_equal(begin, self.start) and self._look(begin) is not None:
                 yield begin
         if len(rest) > 1:
             alone = np.where(np.eye(len(rest), dtype=bool), halfway, rest)
@@ -161,49 +160,70 @@ class Search:
                 yield min(found, key=self._amiss_at)
 
     def _amiss_at(self, lengths: Floats) -> float:
-        return self._amiss(self.at(lengths))
+        return self._wanted.amiss(self.at(lengths))
 
-    def from_here(self, start: Floats) -> Floats:
+    def from_here(self, start: Floats, known: Sequence[Floats] = ()) -> Floats:
         """Return where steps after Gauss and Newton lead from ``start``, none of them too bold.
 
-        Nothing is looked for elsewhere or from rest. Raises NoBalanceError if nothing balances at the start,
-        Cancelled.
+        Beside one of those ``known`` already they go no further. Nothing is looked for elsewhere or from
+        rest. Raises NoBalanceError if nothing balances at the start, Cancelled.
         """
         here, reach, most = start, _BOLD, len(self) + _STEPS
-        look = self.at(here)
-        while reach > _LAST and len(self) < most and self._amiss(look) > _EXACT:
-            there = np.clip(here + self._towards(here, look, reach), self._low, self._high)
-            if np.abs(there - here).max() < _LAST:
+        look, amiss = self.at(here), self._wanted.amiss
+        while reach > _LAST and len(self) < most and amiss(look) > _EXACT:
+            for other in known:
+                if np.abs(here - other).max() < _BESIDE and amiss(look) >= self._amiss_at(other):
+                    return other
+            little = max(_LITTLE, _PART * amiss(look))
+            there, left = self._wanted.towards(here, look, reach)
+            if np.abs(there - here).max() < _LAST or amiss(look) - left < little:
                 break
-            seen = self._look(there)
-            if seen is not None and self._amiss(seen) < self._amiss(look):
-                little = self._amiss(look) - self._amiss(seen) < _LITTLE
-                here, look, reach = there, seen, min(2.0 * reach, _BOLD)
-                if little:
-                    break
-            else:
+            better = self._better(there, look, reach)
+            if better is None:
                 reach /= 4.0
+                continue
+            last = amiss(look) - amiss(better[1]) < little
+            (here, look), reach = better, min(2.0 * reach, _BOLD)
+            if last:
+                break
         return here
+
+    def _better(self, there: Floats, than: Look, reach: float) -> tuple[Floats, Look] | None:
+        """Return lengths that are nearer to what is wanted ``than`` others, and the look; None if not so.
+
+        A step that breaks a limit, which is bent, is mended by another one from there.
+        """
+        seen = self._look(there)
+        if seen is not None and self._wanted.amiss(seen) >= self._wanted.amiss(than):
+            if not self._wanted.breaks_a_limit(seen):
+                return None
+            there, _ = self._wanted.towards(there, seen, reach)
+            seen = self._look(there)
+        if seen is None or self._wanted.amiss(seen) >= self._wanted.amiss(than):
+            return None
+        return there, seen
 
     def _least_tension(self, start: Floats) -> Floats:
         """Return lengths that reach what ``start`` reaches with less tension; ``start`` if none are found."""
         before = self.at(start)
-        if not self._reached(before) or len(start) <= len(self._wanted):
+        if not self._wanted.is_met(before) or len(start) <= len(self._wanted.values):
             return start
         unit = max(float(np.abs(before.pulls).sum()), 1e-9)
 
         def tension(lengths: Floats) -> Slopes:
             return _tension(self.at(lengths), unit)
 
-        wanted = _constraint("eq", lambda at: (self.at(at).values - self._wanted, self.at(at).by_values))
-        limits = _constraint("ineq", lambda at: [part / PERCENT for part in self._room(self.at(at))])
+        wanted = _constraint(
+            "eq", lambda at: (self.at(at).values - self._wanted.values, self.at(at).by_values)
+        )
+        limits = _constraint("ineq", lambda at: [part / PERCENT for part in self._wanted.room(self.at(at))])
         try:
             found = self._least(tension, start, [wanted, limits])
             after = self.at(found)
         except NoBalanceError:
             return start
         less = _tension(after, unit)[0] < _tension(before, unit)[0]
-        return found if self._reached(after) and less else start
+        return found if self._wanted.is_met(after) and less else start
 
     def found(self, lengths: Floats) -> Found:
         """Return what was found at ``lengths``."""
@@ -216,55 +236,15 @@ class Search:
         at_end = tuple(
             name for group, there in zip(self._groups, ends, strict=True) if there for name in group
         )
-        strain, *pulls = (self._room(look)[0] < _AT_LIMIT).tolist()
-        pulled = tuple(name for name, there in zip(self.hardest, pulls, strict=True) if there)
-        return Found(design, lengths, look, self._reached(look), at_end, pulled, strain)
+        strain, *pulls = (self._wanted.room(look)[0] < _AT_LIMIT).tolist()
+        pulled = tuple(name for name, there in zip(self._wanted.hardest, pulls, strict=True) if there)
+        return Found(design, lengths, look, self._wanted.is_met(look), at_end, pulled, strain)
 
     def _look(self, lengths: Floats) -> Look | None:
         try:
             return self.at(lengths)
         except NoBalanceError:
             return None
-
-    def _room(self, look: Look) -> tuple[Floats, Floats]:
-        """Return the room to strain and to the most tensions, (k,) [1], and its slopes, (k, p)."""
-        names = [line.name for line in self.stages.model.lines]
-        most = [(names.index(name), pull) for name, pull in self.hardest.items()]
-        rows = [1.0 - look.pulls[line] / pull for line, pull in most]
-        slopes = [-look.by_pulls[line] / pull for line, pull in most]
-        return np.array([look.margin - INSIDE, *rows]), np.stack([look.by_margin, *slopes])
-
-    def _reached(self, look: Look) -> bool:
-        near = np.abs(look.values - self._wanted).max() < NEAR
-        return bool(near and self._room(look)[0].min() > _BROKEN)
-
-    def _amiss(self, look: Look) -> float:
-        """Return how far a look is from what is wanted, and how far it breaks limits besides [mm^2]."""
-        away = self._weights * (look.values - self._wanted)
-        broken = _STRICT * np.minimum(self._room(look)[0], 0.0)
-        return float(away @ away + broken @ broken)
-
-    def _towards(self, here: Floats, look: Look, reach: float) -> Floats:
-        """Return the step, no longer than ``reach`` [%], that leaves least amiss if all is linear.
-
-        Room that is left to a limit is an unknown of its own, which may not be negative.
-        """
-        room, by_room = self._room(look)
-        count, limits = len(here), len(room)
-        matrix = np.block(
-            [
-                [self._weights[:, None] * look.by_values, np.zeros((len(self._wanted), limits))],
-                [_LAZY * np.eye(count), np.zeros((count, limits))],
-                [_STRICT * by_room, -_STRICT * np.eye(limits)],
-            ]
-        )
-        away = self._weights * (self._wanted - look.values)
-        right = np.concatenate([away, np.zeros(count), -_STRICT * room])
-        low, high = (np.clip(end - here, -reach, reach) for end in (self._low, self._high))
-        # No line may stand still for lack of room between its ends.
-        low, high = np.minimum(low, -1e-9), np.maximum(high, 1e-9)
-        ends = np.append(low, np.zeros(limits)), np.append(high, np.full(limits, np.inf))
-        return np.asarray(lsq_linear(matrix, right, ends, method="bvls").x[:count])
 
     def _least(
         self, figure: Callable[[Floats], Slopes], start: Floats, constraints: list[dict[str, Any]]
@@ -274,12 +254,6 @@ class Search:
         how |= {"constraints": constraints, "options": {"maxiter": _TRIES, "ftol": _GOOD}}
         found = minimize(figure, start, method="SLSQP", **how)
         return np.asarray(np.clip(found.x, self._low, self._high))
-
-
-def _weights(names: Sequence[str]) -> Floats:
-    """Return what each figure counts for: all heights of one section together as much as another one."""
-    sections = [section_of(name) or name for name in names]
-    return 1.0 / np.sqrt([float(sections.count(section)) for section in sections])
 
 
 def _tension(look: Look, unit: float) -> Slopes:
