@@ -35,6 +35,10 @@ BESIDE = (
 )
 
 
+_UNTOLD = tuple(f"{kind}:asymmetry_volume" for kind in (BEFORE, AFTER))
+"""Figures whose ± is known not to hold: a root goes with its bust point, see docs/even.md."""
+
+
 class Spreading:
     """Finds how far the figures of a design may be off, the ``quick`` part, then the ``whole``.
 
@@ -109,6 +113,8 @@ def _spread(propagation: Propagation, found: list[Effect], sizes: Assumed, faile
         for key, step in effect.figures.items():
             of_figure = doubts.setdefault(key, {})
             of_figure[effect.knob.source] = np.hypot(of_figure.get(effect.knob.source, 0.0), step)
+    for key in _UNTOLD:
+        doubts.pop(key, None)
     for key, sd in _of_roots(propagation, sizes).items():
         doubts.setdefault(key, {})[ROOT] = sd
     skin = sum((effect.skin**2 for effect in found), np.zeros(len(propagation.places)))

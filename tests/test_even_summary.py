@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from app.panels.even_card import EvenSummary
 from app.presenting.even import even_summary, map_note
 from app.wording.samples import sample_design
+from core.advice.mirrored import SkinGap
 from core.design_lines import LineTraits
-from core.evenness import BeforeAfter, Evenness, Volumes, evenness
+from core.evenness import BeforeAfter, Evenness, evenness
+from core.measuring.plus_minus import SOURCES, Doubt, Spread
 from core.own_lines import ready_made
 from core.pipeline import Stages, build
 from core.splitting import split
@@ -29,7 +33,7 @@ def told(person: Stages) -> BeforeAfter:
 
 
 def test_each_figure_names_the_side_that_is_more(person: Stages) -> None:
-    left = Evenness(2.04, 0.3, -0.04, 0.0, Volumes(150.0, 121.0, 20.0, 21.0), None)
+    left = Evenness(2.04, 0.3, -0.04, SkinGap(1.0, 3.0, "left", 0, 41.0, 12.0, 1.0))
     summary = even_summary(BeforeAfter(left, replace(left, higher=-1.2), ()), person)
     views = {view.title: view for view in summary.views}
     assert summary.says == "Bust points: right 1.2 mm higher."
@@ -39,12 +43,32 @@ def test_each_figure_names_the_side_that_is_more(person: Stages) -> None:
     )
     assert views["Bust point higher [mm]"].shares == pytest.approx((0.204, -0.12))
     assert views["Further aside [mm]"].after == "0.0"
-    assert views["Breast larger [ml]"].after == "L 29"
-    assert "± 29 ml by the roots alone" in views["Breast larger [ml]"].tip
-    known = even_summary(BeforeAfter(left, left, ()), person, off=36.2).views
-    assert "An estimate, ± 36 ml." in next(view for view in known if view.title == "Breast larger [ml]").tip
-    assert views["Skin apart, mean [mm]"].after == "–"
+    assert views["Stands out, in all [ml]"].after == "L 29", "what the legend of the map tells, all in all"
+    assert "left 41 ml, right 12 ml" in map_note(BeforeAfter(left, left, ()), True)
     assert views["Skin apart, mean [mm]"].shares == (None, None)
+    none = even_summary(BeforeAfter(left, replace(left, skin=None), ()), person).views
+    assert next(view for view in none if view.title == "Skin apart, mean [mm]").after == "–"
+
+
+def test_a_difference_within_the_error_is_said_to_be_none(person: Stages) -> None:
+    now = Evenness(-2.0, 3.0, 0.0, None)
+    offs = {"after:asymmetry_height": 5.9, "after:asymmetry_forward": 1.2}
+
+    def told(higher: float, out: float) -> EvenSummary:
+        doubts = {key: Doubt({"scan": 0.5 * off}) for key, off in offs.items()}
+        spread = Spread(doubts, np.zeros(0), 0.2, 2.0, SOURCES, {}, "sliding")
+        there = replace(now, higher=higher, further_out=out)
+        return even_summary(BeforeAfter(there, there, ()), person, spread=spread)
+
+    both = told(-2.0, 3.0)
+    assert both.says == "Bust points: right 2.0 ± 5.9 mm higher, left 3.0 ± 1.2 mm further out."
+    assert [(view.off, view.within) for view in both.views[:3]] == [
+        ("± 5.9", True),
+        ("± 1.2", False),
+        ("", False),
+    ]
+    assert "Within the error both are alike." in both.views[0].tip
+    assert told(-2.0, 0.1).says == "Bust points: right 2.0 ± 5.9 mm higher. Within the error they lie alike."
 
 
 def test_of_a_doubtful_run_only_before_is_told(person: Stages, told: BeforeAfter) -> None:

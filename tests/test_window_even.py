@@ -109,18 +109,19 @@ def takes_the_spread_of_the_table(window: MainWindow, monkeypatch: pytest.Monkey
     """One figure has one ±: until all of it is known the card says of what it is."""
     desk = window.even_desk
 
-    def tip() -> str:
+    def off() -> str:
         assert desk.card.summary is not None
-        return next(view.tip for view in desk.card.summary.views if view.title == "Breast larger [ml]")
+        return next(view.off for view in desk.card.summary.views if view.title == "Bust point higher [mm]")
 
-    assert tip().endswith("ml by the roots alone.")
-    known = {"after:asymmetry_volume": 36.2}
+    assert off() == ""
+    known = {"after:asymmetry_height": 36.2}
     with monkeypatch.context() as patch:
         patch.setattr(window.spread_desk, "of", lambda _: SimpleNamespace(whole=True, plus_minus=known.get))
         desk.follow()
-        assert tip().endswith("An estimate, ± 36 ml.")
+        assert off() == "± 36"
+        assert "Within the error they lie alike." in desk.card.says.text()
     desk.follow()
-    assert tip().endswith("ml by the roots alone.")
+    assert off() == ""
 
 
 def leaves_what_is_not_worth_it(window: MainWindow) -> Script:

@@ -26,7 +26,7 @@ TITLES = {
     "higher": "bust point higher",
     "further_out": "bust point further out",
     "further_aside": "bust point further aside",
-    "larger": "breast larger",
+    "in_all": "stands out more, in all",
     "mean": "skin apart, mean",
     "largest": "skin apart, most",
     "left_more": "left stands out more",
@@ -127,8 +127,7 @@ def _plain(even: Even, made: bool) -> Iterator[str]:
     yield f"{'':26}" + "".join(f"{each:>17}" for each in heading)
     for row in rows:
         values = [row.before, row.after, *([made_rows[row.key]] if made_rows else [])]
-        off = f"  ± {row.plus_minus:.0f} by the roots" if row.plus_minus else ""
-        yield f"{TITLES[row.key]:26}" + "".join(f"{_said(row, each):>17}" for each in values) + off
+        yield f"{TITLES[row.key]:26}" + "".join(f"{_said(row, each):>17}" for each in values)
     yield from even.told.notes
     if made:
         yield from _making(even)
@@ -184,9 +183,9 @@ def as_solved(volume: str, turned: Evenness | None) -> str:
     both = f"The last two columns are exact answers.\nSolved as the design is set, {_CONTROLS[volume]}"
     if turned is None:
         return f"{both} it does not come to rest."
-    row = next(row for row in even_rows(turned, turned) if row.key == "larger")
-    larger = "" if row.after is None else f"; breast larger: {_said(row, row.after)}"
-    return f"{both} {_left(turned)} remain{larger}."
+    row = next(row for row in even_rows(turned, turned) if row.key == "in_all")
+    more = "" if row.after is None else f"; {TITLES[row.key]}: {_said(row, row.after)}"
+    return f"{both} {_left(turned)} remain{more}."
 
 
 def _left(told: Evenness) -> str:
@@ -236,8 +235,8 @@ def _figures(even: Even) -> dict[str, Any]:
             "as_solved": None if even.turned is None else {row.key: row.after for row in _turned_rows(even)},
             "because": [] if made.even else _why(made),
         },
-        "definition": "sided rows: positive where the left is higher, further or larger [mm, ml]; skin: "
-        "that of one breast less that of the other, mirrored; left and right stand out more by so many ml",
+        "definition": "sided rows: positive where the left is higher, further or stands out more [mm, ml]; "
+        "skin: that of one breast less that of the other, mirrored; in_all is left_more less right_more",
         "written_to": even.out or None,
         "versions": {"busk": __version__},
     }

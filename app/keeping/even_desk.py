@@ -17,7 +17,7 @@ from core.advice.parting import parted
 from core.design import Design
 from core.evenness import BeforeAfter, evenness
 from core.live import Frame
-from core.measuring.plus_minus import AFTER
+from core.measuring.plus_minus import Spread
 from core.pipeline import Stages
 from core.progress import Progress
 from core.template import read_template
@@ -92,14 +92,14 @@ class EvenDesk(QObject):
             self.card.show_summary(None, faint=False)
             return
         of, told = self._shown
-        summary = even_summary(told, of.stages, doubt_of(of), self._off(of))
+        summary = even_summary(told, of.stages, doubt_of(of), self._sure(of))
         self.card.show_summary(summary, faint=of is not frame)
         self.follow_map()
 
-    def _off(self, frame: Frame) -> float | None:
-        """Return the ± that stands in the table at the difference of the volumes, once all of it is known."""
+    def _sure(self, frame: Frame) -> Spread | None:
+        """Return how far figures may be off, once all of it is known."""
         spread = self._window.spread_desk.of(frame)
-        return spread.plus_minus(f"{AFTER}:asymmetry_volume") if spread and spread.whole else None
+        return spread if spread and spread.whole else None
 
     def follow_map(self) -> None:
         """Tell by the card whether the map lies on the body."""

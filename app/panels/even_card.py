@@ -23,7 +23,8 @@ class EvenView:
     """One figure: its title, the ``before`` and ``after`` as they are written, and what is told of it.
 
     ``shares`` say how far the bar goes before and after, -1 to 1: positive towards the left; None where
-    there is no side or it is not known.
+    there is no side or it is not known. ``off`` is how far it may be off, as it is written; a difference
+    ``within`` that may be none.
     """
 
     title: str
@@ -31,6 +32,8 @@ class EvenView:
     after: str
     tip: str
     shares: tuple[float | None, float | None] = (None, None)
+    off: str = ""
+    within: bool = False
 
 
 @dataclass(frozen=True)
@@ -87,27 +90,30 @@ class _Row:
         self.title = ElidedLabel()
         self.title.setFont(font("body"))
         self.title.setMinimumWidth(60)
-        self.before, self.after = (label("", role, tabular=True) for role in ("body", "name"))
-        set_tag(self.before, "tone", "quiet")
+        roles = "body", "name", "caption"
+        self.before, self.after, self.off = (label("", role, tabular=True) for role in roles)
+        for part in (self.before, self.off):
+            set_tag(part, "tone", "quiet")
         self.bar = EvenBar()
         right = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
         grid.addWidget(self.title, row, 0)
-        for column, part in enumerate((self.before, self.after), start=1):
+        for column, part in enumerate((self.before, self.after, self.off), start=1):
             part.setAlignment(right)
             grid.addWidget(part, row, column)
-        grid.addWidget(self.bar, row, 3)
-        self.parts: tuple[QLabel, ...] = (self.title, self.before, self.after)
+        grid.addWidget(self.bar, row, 4)
+        self.parts: tuple[QLabel, ...] = (self.title, self.before, self.after, self.off)
 
     def show_view(self, view: EvenView, faint: bool, seen: bool) -> None:
         """Show a figure, ``faint`` if it is of a former shape."""
-        for part, text in zip(self.parts, (view.title, view.before, view.after), strict=True):
+        quiet = {self.before, self.off, *([self.after] if view.within else [])}
+        for part, text in zip(self.parts, (view.title, view.before, view.after, view.off), strict=True):
             part.setText(text)
-            set_tag(part, "tone", "faint" if faint else "quiet" if part is self.before else "")
+            set_tag(part, "tone", "faint" if faint else "quiet" if part in quiet else "")
             set_tip(part, view.tip)
             part.setVisible(seen)
         self.bar.show_shares(view.shares, faint)
         self.bar.setVisible(seen)
-        spoken = f"{view.title} {view.before} → {view.after}"
+        spoken = f"{view.title} {view.before} → {view.after} {view.off}".rstrip()
         self.title.setAccessibleName(spoken)
 
     def hide(self) -> None:
@@ -173,6 +179,7 @@ class EvenCard(QWidget):
         return [
             (label(tr("Before"), "caption"), right),
             (label(tr("After"), "caption"), right),
+            (label("", "caption"), right),
             (label(tr("R | L"), "caption"), middle),
         ]
 

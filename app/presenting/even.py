@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from app.panels.even_card import EvenSummary, EvenView
+from app.panels.measure_view import plus_minus
 from app.presenting.lines import line_title, pair_title
 from app.wording.words import joined, listed, number, say, tr
 from core.advice.parting import ENOUGH, moves_one_side, partable
 from core.design import Design
 from core.evenness import BeforeAfter, Evenness, EvenRow, even_rows
+from core.measuring.plus_minus import AFTER, Spread
 from core.pipeline import Stages
 from core.template import read_template
 
@@ -15,17 +19,24 @@ _FULL = {"mm": 10.0, "ml": 60.0}
 """What fills half a bar."""
 
 
-def even_summary(told: BeforeAfter, stages: Stages, doubt: str = "", off: float | None = None) -> EvenSummary:
+_SURE = {"higher": "asymmetry_height", "further_out": "asymmetry_forward"}
+"""The measures whose ± is that of a figure."""
+
+
+def even_summary(
+    told: BeforeAfter, stages: Stages, doubt: str = "", spread: Spread | None = None
+) -> EvenSummary:
     """Return what the card says of a body; with a ``doubt`` there is nothing to be told after.
 
-    ``off`` [ml] is how far the difference of the volumes may be off by all that is not sure, if it is known.
+    ``spread`` tells how far figures may be off, if all of that is known.
     """
     now = told.before if doubt else told.after
     rows = {row.key: row for row in even_rows(told.before, told.after)}
     hint, possible = _hint(stages, now) if not doubt else (doubt, False)
+    offs = _offs(spread)
     return EvenSummary(
-        _sentence(now),
-        tuple(_view(rows[key], bool(doubt), off) for key in _titles()),
+        _sentence(now, offs),
+        tuple(_view(rows[key], bool(doubt), offs.get(key)) for key in _titles()),
         (*map(say, told.notes), *_rests_on()),
         hint,
         possible,
@@ -41,34 +52,43 @@ def map_note(told: BeforeAfter | None, after: bool) -> str:
     return words.format(left=number(skin.left_more, 0), right=number(skin.right_more, 0))
 
 
-def _sentence(now: Evenness) -> str:
+def _offs(spread: Spread | None) -> dict[str, float]:
+    known = {key: spread.plus_minus(f"{AFTER}:{of}") if spread else None for key, of in _SURE.items()}
+    return {key: off for key, off in known.items() if off is not None}
+
+
+def _sentence(now: Evenness, offs: Mapping[str, float]) -> str:
     if now.furthest < ENOUGH:
         return tr("Both bust points lie alike within {mm} mm.").format(mm=number(ENOUGH))
-    parts = []
-    for value, left, right in (
-        (now.higher, tr("left {mm} mm higher"), tr("right {mm} mm higher")),
-        (now.further_out, tr("left {mm} mm further out"), tr("right {mm} mm further out")),
+    parts, within = [], True
+    for key, value, left, right in (
+        ("higher", now.higher, tr("left {mm} mm higher"), tr("right {mm} mm higher")),
+        ("further_out", now.further_out, tr("left {mm} mm further out"), tr("right {mm} mm further out")),
     ):
         if abs(value) >= ENOUGH:
-            parts.append((left if value > 0.0 else right).format(mm=number(abs(value))))
-    return tr("Bust points: {how}.").format(how=listed(parts))
+            off = offs.get(key)
+            mm = number(abs(value)) if off is None else f"{number(abs(value))} {plus_minus(off)}"
+            parts.append((left if value > 0.0 else right).format(mm=mm))
+            within &= off is not None and abs(value) <= off
+    said = tr("Bust points: {how}.").format(how=listed(parts))
+    return joined((said, tr("Within the error they lie alike."))) if within else said
 
 
 def _view(row: EvenRow, doubtful: bool, off: float | None) -> EvenView:
     title, tip = _titles()[row.key]
     after = None if doubtful else row.after
+    within = off is not None and after is not None and abs(after) <= off
     shares = tuple(
         None if not row.sided or value is None else value / _FULL[row.unit] for value in (row.before, after)
     )
-    if row.plus_minus:
-        sure = (
-            tr("An estimate, ± {off} ml by the roots alone.")
-            if off is None
-            else tr("An estimate, ± {off} ml.")
-        )
-        tip = joined((tip, sure.format(off=number(row.plus_minus if off is None else off, 0))))
     return EvenView(
-        f"{title} [{row.unit}]", _written(row, row.before), _written(row, after), tip, (shares[0], shares[1])
+        f"{title} [{row.unit}]",
+        _written(row, row.before),
+        _written(row, after),
+        joined((tip, tr("Within the error both are alike."))) if within else tip,
+        (shares[0], shares[1]),
+        "" if off is None else plus_minus(off),
+        within,
     )
 
 
@@ -88,7 +108,10 @@ def _titles() -> dict[str, tuple[str, str]]:
     return {
         "higher": (tr("Bust point higher"), tr("Which bust point is higher, and by how much.")),
         "further_out": (tr("Further out"), tr("Which bust point is further to the front, and by how much.")),
-        "larger": (tr("Breast larger"), tr("At rest measured; after it with what the skin has gained.")),
+        "in_all": (
+            tr("Stands out, in all"),
+            tr("By how many ml the skin of one breast stands out more than the other one's, mirrored."),
+        ),
         "mean": (
             tr("Skin apart, mean"),
             tr("How far the skin of one breast is from that of the other one, mirrored; mean of both."),

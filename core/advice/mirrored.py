@@ -31,6 +31,11 @@ class SkinGap:
     seen: float
 
     @property
+    def in_all(self) -> float:
+        """By how much the left stands out more than the right, all in all [ml]: by how much it is larger."""
+        return self.left_more - self.right_more
+
+    @property
     def apart(self) -> float:
         """All that lies between the skin and its mirror image [ml]."""
         return self.left_more + self.right_more

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from math import hypot
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -198,7 +197,7 @@ def _sides(subject: Subject) -> Iterator[Measure]:
         return
     curves = tuple(curve for each in volumes for curve in each.curves)
     sure, unit = min(each.confidence for each in volumes), definition_of("asymmetry_volume")[0].unit
-    # Nothing says that two roots are taken wrong alike: each side may be off by itself.
-    off = hypot(*(each.plus_minus for each in volumes))
     note = next((each.note for each in volumes if each.note != UNSEEN_CHEST), UNSEEN_CHEST)
-    yield Measure("asymmetry_volume", values[0] - values[1], unit, curves, sure, True, off, note)
+    # No ± is told: a root hangs on the height of its bust point, and a breast that sits lower was told up to
+    # 92 ml smaller (docs/even.md), far more than what is known to be unsure of both volumes.
+    yield Measure("asymmetry_volume", values[0] - values[1], unit, curves, sure, True, 0.0, note)

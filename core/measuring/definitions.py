@@ -226,8 +226,8 @@ _TABLE = (
         "Left breast larger",
         "ml",
         "",
-        "Ours, an estimate: how much larger the left breast is than the right one; ± takes "
-        "each volume as unsure by itself.",
+        "Ours, an estimate: the volume of the left breast less that of the right one. How far it may be off "
+        "is not known; surer is what Left and right tells of the skins.",
         BOTH,
     ),
 )
