@@ -45,6 +45,7 @@ class SpreadDesk(QObject):
         self._window, self._panel = window, panel
         self.card = SpreadCard(source_sentences(), left_out_sentences())
         panel.feet.addWidget(self.card)
+        panel.sure.clicked.connect(lambda: panel.bring(self.card))
         self._known: dict[Design, Spread] = {}
         self._last: Spread | None = None
         self._trials: Trials | None = None
@@ -151,4 +152,7 @@ class SpreadDesk(QObject):
         given_up = self._given_up is not None and self._given_up is self._window.session.design
         waiting = tr("How far they may be off was not worked out.") if given_up else ""
         waiting = waiting or tr("How far they may be off is worked out once the run rests.")
-        self.card.show_view(spread_view(spread, "" if doubt_of(frame) else waiting, faint))
+        view = spread_view(spread, "" if doubt_of(frame) else waiting, faint)
+        self.card.show_view(view)
+        self._panel.sure.setText(view.short)
+        self._panel.sure.setVisible(bool(view.short))

@@ -5,13 +5,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import QTimer, Signal
+from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QHideEvent, QShowEvent
 from PySide6.QtWidgets import QFrame, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
 
-from app.dress.parts import EmptyState, sentence
+from app.dress.parts import EmptyState, button, sentence
 from app.dress.press_row import press_row
-from app.dress.theme import set_tag
+from app.dress.theme import font, set_tag
 from app.panels.measure_editor import MeasureEditor
 from app.panels.measure_table import MeasureTable
 from app.panels.measure_view import MeasureView
@@ -22,9 +22,10 @@ from app.wording.words import tr
 class ResultPanel(QStackedWidget):
     """The table of measures, or the form for one's own; ``opened`` when it comes to be seen.
 
-    ``marked`` carries the key of the measure to be shown on the body, empty for none; ``framed`` when it
-    is to be looked at. ``adding`` asks for one more, ``changing`` and ``removing`` carry the key of one's
-    own. ``copy_asked`` and ``table_asked`` are for the measures as text, on the clipboard or in a file.
+    ``sure`` stands at the head and leads to what ± means. ``marked`` carries the key of the measure to be
+    shown on the body, empty for none; ``framed`` when it is to be looked at. ``adding`` asks for one more,
+    ``changing`` and ``removing`` carry the key of one's own. ``copy_asked`` and ``table_asked`` are for the
+    measures as text, on the clipboard or in a file.
     """
 
     opened = Signal()
@@ -81,6 +82,10 @@ class ResultPanel(QStackedWidget):
         inside.setProperty("scrolled", "true")
         self._column = QVBoxLayout(inside)
         self._column.setContentsMargins(0, 0, 0, 0)
+        self.sure = button("", "word")
+        self.sure.setFont(font("caption"))
+        self.sure.hide()
+        self._column.addWidget(self.sure, 0, Qt.AlignmentFlag.AlignLeft)
         self._column.addWidget(self.sizes)
         self.cards = QVBoxLayout()
         self._column.addLayout(self.cards)
@@ -181,6 +186,10 @@ class ResultPanel(QStackedWidget):
         place = self._table.place_of(self.mark).translated(self._table.pos())
         self._area.ensureVisible(0, place.bottom(), 0, 0)
         self._area.ensureVisible(0, place.top(), 0, 0)
+
+    def bring(self, card: QWidget) -> None:
+        """Scroll to a card that stands above or below the table."""
+        self._area.verticalScrollBar().setValue(card.y())
 
     def _make_buttons(self) -> QWidget:
         copied = tr("Copy the table, to paste into a spreadsheet or a letter")

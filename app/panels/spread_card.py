@@ -16,12 +16,13 @@ from app.wording.words import tr
 class SpreadView:
     """What stands in the card: what ± means, or why there is none yet; what the other skin ``contact`` makes.
 
-    ``faint`` words are of a former shape.
+    ``faint`` words are of a former shape. ``short`` stands at the head of the measures and leads here.
     """
 
     meaning: str
     contact: str = ""
     faint: bool = False
+    short: str = ""
 
 
 class SpreadCard(QWidget):

@@ -87,12 +87,13 @@ def _shares(
 def spread_view(spread: Spread | None, waiting: str, faint: bool) -> SpreadView:
     """Return what stands below the measures; ``waiting`` says why there is no ± yet."""
     if spread is None:
-        return SpreadView(waiting)
+        return SpreadView(waiting, short=tr("± is not there yet: why") if waiting else "")
     meaning = tr("± is twice the standard deviation: 95 % of all cases, if errors are normal.")
     if not spread.whole:
         more = tr("Landmarks are still being added: these are too small.")
-        return SpreadView(f"{meaning} {more}" if language() == "en" else f"{meaning}{more}", faint=faint)
-    return SpreadView(joined([meaning, *map(say, spread.cautions)]), _contact(spread), faint)
+        return SpreadView(joined([meaning, more]), faint=faint, short=tr("± is still growing: why"))
+    told = tr("± of a former shape: what it means") if faint else tr("± holds 95 % of cases: what it means")
+    return SpreadView(joined([meaning, *map(say, spread.cautions)]), _contact(spread), faint, told)
 
 
 def _contact(spread: Spread) -> str:
