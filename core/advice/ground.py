@@ -12,6 +12,7 @@ from core.exact import solve_exact
 from core.mesh import Floats, Points
 from core.model import ConstrainedModel
 from core.progress import Progress, quiet
+from core.solving.body_volume import BodyChange, gained, solve_body_exact
 from core.solving.elastic_lines import ElasticLines, Fitted, Stretchy, fit_elastics
 from core.solving.newton import Balance, energy_steps
 from core.solving.potential import Potential
@@ -22,6 +23,10 @@ _NEAR_ENOUGH = (
 )
 _ALIKE = 1e-5  # by how much the force of an elastic may be off its curve, in parts
 _FEW_STEPS = 10  # three are the rule; where it takes more a shorter stride does better
+_MORE = (
+    1e-5  # volume that a body may gain or lose, in parts of the control mesh's: lengths are not told to less
+)
+_ROUNDS = 4  # two are the rule
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +34,7 @@ class Found:
     """An answer with the line at ``ratio`` [1]: the ``model`` and its exact ``balance``.
 
     Lines made of elastics pull as their curves say at ``elongations`` [1], by line; ``log_ea`` (e,) are the
-    logarithms of their EA [N].
+    logarithms of their EA [N]. ``excess`` (2,) [mm^3] is what the control mesh has there beyond its volume.
     """
 
     ratio: float
@@ -38,6 +43,7 @@ class Found:
     balance: Balance
     log_ea: Floats
     elongations: Mapping[str, float]
+    excess: Floats
 
     @property
     def points(self) -> Points:
@@ -53,7 +59,8 @@ class Found:
         one, two = self.balance, other.balance
         state = replace(one.state, moved=mix(one.state.moved, two.state.moved))
         balance = replace(one, state=state, multipliers=mix(one.multipliers, two.multipliers))
-        return replace(self, balance=balance, log_ea=mix(self.log_ea, other.log_ea))
+        log_ea, excess = mix(self.log_ea, other.log_ea), mix(self.excess, other.excess)
+        return replace(self, balance=balance, log_ea=log_ea, excess=excess)
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +68,8 @@ class Ground:
     """A ``model`` with ``set_`` ratios, one per line, of which those of the lines ``together`` are tried.
 
     ``elastics`` are those that worn lines are made of, by line: such a line has another stiffness at another
-    length; ``newtons`` [N/mm] is one unit of the model's stiffness. ``progress`` hears each answer.
+    length; ``newtons`` [N/mm] is one unit of the model's stiffness. ``body_change`` is told where the body
+    itself keeps its volume. ``progress`` hears each answer.
     """
 
     model: ConstrainedModel
@@ -71,45 +79,86 @@ class Ground:
     newtons: float
     own_stiffness: Mapping[str, float]
     progress: Progress = quiet
+    body_change: BodyChange | None = None
 
     def from_rest(self, ratio: float) -> Found | None:
         """Return the answer that rest leads to, or None if there is none."""
         ratios = self._with(ratio)
+        solve = partial(self._solved, ratios=ratios)
         if self.elastics:
-            return self._found(ratio, fit_elastics(self._wish(ratios), partial(solve_exact, ratios=ratios)))
-        balance = solve_exact(self.model, ratios)
-        return Found(ratio, ratios, self.model, balance, np.zeros(0), {}) if balance.found else None
+            return self._fitted(ratio, fit_elastics(self._wish(ratios), solve))
+        balance = solve(self.model)
+        return self._found(ratio, self.model, balance, np.zeros(0), {}) if balance.found else None
 
     def near(self, ratio: float, start: Found) -> Found | None:
         """Return the answer if a few steps lead there from ``start``."""
-        ratios, here = self._with(ratio), start.balance
-        if not self.elastics:
-            balance = self._steps(self.model, ratios, here, _NEAR_ENOUGH)
-            if balance is None:
-                return None
-            return Found(ratio, ratios, self.model, balance, start.log_ea, {})
+        ratios, here, excess = self._with(ratio), start.balance, start.excess
+        enough = 0.0 if self.elastics else _NEAR_ENOUGH
 
         def solve(model: ConstrainedModel) -> Balance:
-            nonlocal here
-            balance = self._steps(model, ratios, here)
-            here = balance or replace(here, residual=np.inf)
+            nonlocal here, excess
+            here, excess = self._kept(model, ratios, here, excess, enough)
             return here
 
-        fitted = fit_elastics(self._wish(ratios), solve, start.log_ea, _ALIKE)
-        return self._found(ratio, fitted)
+        if self.elastics:
+            return self._fitted(ratio, fit_elastics(self._wish(ratios), solve, start.log_ea, _ALIKE))
+        balance = solve(self.model)
+        lost = balance.residual >= _NEAR_ENOUGH
+        return None if lost else self._found(ratio, self.model, balance, start.log_ea, {})
 
-    def _found(self, ratio: float, fitted: Fitted) -> Found | None:
+    def _solved(self, model: ConstrainedModel, ratios: tuple[float, ...]) -> Balance:
+        if self.body_change is not None:
+            return solve_body_exact(model, ratios, self.body_change)
+        return solve_exact(model, ratios)
+
+    def _kept(
+        self,
+        model: ConstrainedModel,
+        ratios: tuple[float, ...],
+        start: Balance,
+        excess: Floats,
+        enough: float,
+    ) -> tuple[Balance, Floats]:
+        """Return the balance that a few steps lead to with all volumes kept, and the excess that it needs.
+
+        Where they lead to none its residual is infinite.
+        """
+        last = start
+        for _ in range(_ROUNDS):
+            found = self._steps(Potential(model, ratios, excess), last, enough)
+            if found is None:
+                break
+            if self.body_change is None:
+                return found, excess
+            last, more = found, gained(model, self.body_change, found)
+            if np.abs(more).max() < _MORE * abs(model.volume.rest_volume):
+                return found, excess
+            excess = excess - more
+        return replace(start, residual=np.inf), excess
+
+    def _steps(self, potential: Potential, start: Balance, enough: float) -> Balance | None:
+        model = potential.model
+        slides = model.mechanics.line_contact == "sliding" and len(model.owner) > 0
+        steps = (sliding_steps if slides else energy_steps)(potential, start, _FEW_STEPS)
+        return next((step for step in steps if step.found or step.residual < enough), None)
+
+    def _fitted(self, ratio: float, fitted: Fitted) -> Found | None:
         if not fitted.agreed:
             return None
-        found = fitted.model, fitted.balance, fitted.log_ea, fitted.elongations
-        return Found(ratio, self._with(ratio), *found)
+        return self._found(ratio, fitted.model, fitted.balance, fitted.log_ea, fitted.elongations)
 
-    def _steps(
-        self, model: ConstrainedModel, ratios: tuple[float, ...], start: Balance, enough: float = 0.0
-    ) -> Balance | None:
-        slides = model.mechanics.line_contact == "sliding" and len(model.owner) > 0
-        steps = (sliding_steps if slides else energy_steps)(Potential(model, ratios), start, _FEW_STEPS)
-        return next((step for step in steps if step.found or step.residual < enough), None)
+    def _found(
+        self,
+        ratio: float,
+        model: ConstrainedModel,
+        balance: Balance,
+        log_ea: Floats,
+        elongations: Mapping[str, float],
+    ) -> Found:
+        excess = np.zeros(2)
+        if self.body_change is not None:
+            excess = model.volume.side_volumes(model.tensegric.expand(balance.state.moved)) - model.rest_sides
+        return Found(ratio, self._with(ratio), model, balance, log_ea, elongations, excess)
 
     def _wish(self, ratios: tuple[float, ...]) -> ElasticLines:
         named = {line.name: ratio for line, ratio in zip(self.model.lines, ratios, strict=True)}

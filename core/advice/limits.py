@@ -108,7 +108,8 @@ def limits_of(stages: Stages, name: str, progress: Progress = quiet, *, through:
     moving = {line.name: made[line.name] for line in model.lines if line.constrains and line.name in made}
     newtons = newtons_per_unit(model, design.tissue_stiffness)
     ratios = targets_of(design, tried).ratios
-    ground = Ground(model, ratios, together, made, newtons, design.own_stiffness(), progress)
+    keeps = tried.body_change if design.dense_volume else None
+    ground = Ground(model, ratios, together, made, newtons, design.own_stiffness(), progress, keeps)
     looks = {**looks_at(model, together, design.gain), **looks_in(tried, both, moving)}
     limits = _limits(ground, lines.index(name), looks, through)
     return limits if worn else replace(limits, present=None, beyond=())

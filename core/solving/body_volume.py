@@ -43,12 +43,20 @@ def solve_body_exact(
     for _ in range(_ROUNDS):
         last = near = solve_exact(model, ratios, limit, excess=excess, near=near)
         steps += last.steps
-        gained = change(model.tensegric.expand(last.state.moved))
-        lacking = gained if model.mechanics.volume_of == "each" else np.full(2, gained.sum() / 2.0)
-        if not last.found or np.abs(lacking).max() < PRECISION * abs(model.volume.rest_volume):
+        too_much = gained(model, change, last)
+        if not last.found or np.abs(too_much).max() < PRECISION * abs(model.volume.rest_volume):
             return replace(last, steps=steps)
-        excess = excess - lacking
+        excess = excess - too_much
     return replace(last, steps=steps, residual=np.inf)
+
+
+def gained(model: ConstrainedModel, change: BodyChange, balance: Balance) -> Floats:
+    """Return what the body's left and right have beyond what they are to keep, shape (2,) [mm^3].
+
+    Where only their sum is kept, each side's is half of it.
+    """
+    more = change(model.tensegric.expand(balance.state.moved))
+    return more if model.mechanics.volume_of == "each" else np.full(2, more.sum() / 2.0)
 
 
 def body_kept(rates: Rates, by_excess: Rates, slopes: Floats, *, each: bool) -> Rates:
