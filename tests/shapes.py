@@ -8,15 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
-from core.body import read_scan
-from core.control_mesh import ControlMesh, fit_control_mesh
-from core.landmarks import find_landmarks
+from core import pipeline
+from core.control_mesh import ControlMesh
+from core.design import Design, ScanSource
 from core.lines import line_on
 from core.mechanics import Mechanics
 from core.mesh import Mesh, frozen
 from core.model import ConstrainedModel, assemble
 from core.solver import Record, State, Targets, iterate
-from core.template import read_template
 from core.tensegric import TensegricModel, tensegric_model
 from core.volume import volume_measure
 
@@ -80,9 +79,10 @@ def mirrored(control: ControlMesh) -> tuple[ControlMesh, np.ndarray]:
 
 @cache
 def fitted(sample: str, template: str = "168") -> ControlMesh:
-    """The template on a sample body, fitted once for all tests."""
-    body = read_scan(SAMPLES / f"{sample}.ply")
-    return fit_control_mesh(read_template(template), body, find_landmarks(body))
+    """The template on a sample body, fitted once for all tests, by the stages of a build."""
+    _, body = pipeline.read_body(ScanSource(str(SAMPLES / f"{sample}.ply")))
+    landmarks = pipeline.find(body, ())
+    return pipeline.fit_control_mesh(pipeline.read_template(template), body, landmarks, Design.line_height)
 
 
 def tent(height: float = 3.0) -> tuple[Mesh, np.ndarray]:
