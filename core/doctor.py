@@ -5,6 +5,7 @@ A change is named only after the design was run with it as the window runs it, a
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from itertools import chain
 
@@ -12,11 +13,11 @@ from threadpoolctl import threadpool_limits
 
 from core.advice.fight import Fight, fight_of
 from core.advice.outlook import Outlook, outlook
-from core.advice.remedy import (
-    MOST_LOOKS,
+from core.advice.remedy import Cure, Search
+from core.advice.standing import Standing, rank_of, standing
+from core.advice.ways import (
     Change,
-    Cure,
-    Search,
+    Way,
     line_ways,
     off_changes,
     settings,
@@ -24,7 +25,6 @@ from core.advice.remedy import (
     together_ways,
     with_setting,
 )
-from core.advice.standing import Standing, rank_of, standing
 from core.lines import Line
 from core.pipeline import Stages
 from core.progress import Progress, quiet
@@ -77,8 +77,8 @@ class Diagnosis:
         """Return the same as told of a run that ended by ``verdict``: one that did not begin at rest."""
         if self.complaint == "unreachable" or verdict.told == "settled":
             return self
-        solution = replace(self.standing.solution, verdict=verdict)
-        return replace(self, standing=replace(self.standing, solution=solution, complaint=verdict.told))
+        ran = replace(self.standing.ran, verdict=verdict)
+        return replace(self, standing=replace(self.standing, ran=ran, complaint=verdict.told))
 
     def line(self, name: str) -> Line:
         """Return a line of the design by name."""
@@ -112,19 +112,16 @@ def diagnose(stages: Stages, progress: Progress = quiet) -> Diagnosis:
 
 def _treated(found: Diagnosis, search: Search) -> Diagnosis:
     stages = found.stages
-    cure, others = search.smallest(single_ways(stages))
+    cure, others = search.smallest(single_ways(stages, found.complaint))
     choices = list(settings(stages.design, found.complaint, found.bears))
-    for choice in choices[:1] if found.bears is not None else ():
-        chosen = replace(stages, design=choice.design)
-        cure = cure or search.smallest(with_setting(choice, line_ways(chosen)))[0]
+    gains = [choice for choice in choices if choice.setting[0] == "gain"]
+    cure = cure or search.smallest(chain.from_iterable(_chosen(stages, gains, line_ways)))[0]
     cure = cure or search.first_of(iter(choices))
+    choices = [choice for choice in choices if choice not in gains]
     for ways in (line_ways, together_ways):
         if cure is None and ways is together_ways:
-            search.looks = MOST_LOOKS // 2
             cure, _ = search.smallest(together_ways(stages))
-        for choice in choices:
-            chosen = replace(stages, design=choice.design)
-            cure = cure or search.smallest(with_setting(choice, ways(chosen)))[0]
+        cure = cure or search.smallest(chain.from_iterable(_chosen(stages, choices, ways)))[0]
     cure = cure or search.first_of(off_changes(stages))
     if cure is None and not search.tried:
         for change in choices:
@@ -138,6 +135,14 @@ def _treated(found: Diagnosis, search: Search) -> Diagnosis:
     milder = [each for each in search.tried if rank_of(each.left) < found.standing.rank]
     nearest = min(milder, key=lambda each: (rank_of(each.left), each.change.size), default=None)
     return replace(found, nearest=nearest, locked=locked)
+
+
+def _chosen(
+    stages: Stages, choices: list[Change], ways: Callable[[Stages], Iterator[Way]]
+) -> Iterator[Iterator[Way]]:
+    """Yield the ways to change lines with each of other choices of the model."""
+    for choice in choices:
+        yield with_setting(choice, ways(replace(stages, design=choice.design)))
 
 
 def borne_gain(stages: Stages, progress: Progress = quiet) -> float | None:

@@ -12,8 +12,9 @@ import pytest
 from app.wording.samples import sample_design
 from core.advice.fight import fight_of
 from core.advice.outlook import outlook
-from core.advice.remedy import GAIN_STEP, LENGTH_STEP, Change, Search, settings
+from core.advice.remedy import Search
 from core.advice.standing import gone_on, standing
+from core.advice.ways import GAIN_STEP, LENGTH_STEP, Change, settings
 from core.comparison import Comparison
 from core.design import Design
 from core.design_lines import LineTraits
@@ -180,7 +181,7 @@ def test_another_control_goes_on_from_where_its_own_run_stands() -> None:
     changed = made({"mid-bust": 0.85}, volume="adaptive")
     warm = gone_on(standing(sick), changed)
     assert warm is not None
-    assert warm.told == told_going_on(sick, changed.design) == "overstrained"
+    assert warm.verdict.told == told_going_on(sick, changed.design) == "overstrained"
 
 
 def test_locked_lines_stay_and_are_named() -> None:

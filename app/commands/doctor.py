@@ -10,7 +10,7 @@ from typing import Any
 from app.commands.settings import dressed, made_of
 from core import __version__
 from core.advice.fight import Clash, Fight, Pull
-from core.advice.remedy import Change
+from core.advice.ways import Change
 from core.design import Design
 from core.doctor import Diagnosis, diagnose
 from core.document import Document

@@ -8,7 +8,8 @@ from app.presenting.lines import line_title, row_title
 from app.showing.verdict_chip import state_title
 from app.wording.words import joined, listed, number, tr
 from core.advice.fight import Pull
-from core.advice.remedy import Change, Cure
+from core.advice.remedy import Cure
+from core.advice.ways import Change
 from core.doctor import Diagnosis
 
 _SEEN = 0.05  # mm that a bust point swings by at least where its swing is worth a word

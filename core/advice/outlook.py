@@ -13,13 +13,14 @@ import numpy as np
 
 from core.comparison import shape_of
 from core.exact import solve_exact
-from core.mesh import Floats
+from core.mesh import Floats, Points
 from core.model import ConstrainedModel
 from core.pipeline import Stages, targets_of
 from core.solver import Record, State, Targets, iterate
 from core.solving.body_volume import solve_body_exact
 from core.solving.condition import Condition
-from core.solving.newton import Balance
+from core.solving.newton import Balance, balance_at
+from core.solving.potential import Potential
 from core.volume import Pressure
 
 FADES = 0.975
@@ -30,7 +31,8 @@ PUSH = 0.02
 
 _FAR = 0.1  # of the lengths from which another balance is looked for [1]
 _QUICK, _FROM_REST = 20, 90  # Newton steps from near by, and from rest, after which no balance is hoped for
-_SPAN = 30
+_SPAN, _SHORT_SPAN = 30, 10
+_CLOSE = (0.9, 1.05)  # growths of a short span that tell nothing: its swing is not yet the one that stays
 _ROUNDS = 12
 _NEAR = 1e-7  # volume errors this far apart are the same [1]
 
@@ -51,10 +53,13 @@ class Outlook:
             return 0.0
         return swing_growth(self.model, self.targets, self.balance)
 
-    @property
+    @cached_property
     def stays(self) -> bool:
-        """Whether the run comes to rest there."""
-        return self.growth < FADES
+        """Whether the run comes to rest there: a few turns tell, unless it is close."""
+        if self.targets.control == "exact":
+            return True
+        growth = swing_growth(self.model, self.targets, self.balance, _SHORT_SPAN)
+        return (self.growth if _CLOSE[0] < growth < _CLOSE[1] else growth) < FADES
 
 
 def outlook(stages: Stages, near: Outlook | None = None) -> Outlook | None:
@@ -63,7 +68,24 @@ def outlook(stages: Stages, near: Outlook | None = None) -> Outlook | None:
     From an outlook ``near`` by it is found quickly or held not to be there.
     """
     model, targets = stages.model, targets_of(stages.design, stages)
-    balance = resting(stages, targets, _start(near, model, targets))
+    return _seen(model, targets, resting(stages, targets, _start(near, model, targets)))
+
+
+def outlook_about(stages: Stages, moved: Points) -> Outlook | None:
+    """Return where turns rest that stand about ``moved``, (f, 3) [mm], None if nothing is there.
+
+    Where lines slide there may be more than one balance, and turns come to another than a walk from rest.
+    """
+    model, targets = stages.model, targets_of(stages.design, stages)
+    if targets.control == "exact":
+        return outlook(stages)
+    if not np.isfinite(moved).all():
+        return None
+    start = balance_at(Potential(_together(model), targets.ratios), moved)
+    return _seen(model, targets, resting(stages, targets, start))
+
+
+def _seen(model: ConstrainedModel, targets: Targets, balance: Balance) -> Outlook | None:
     if not balance.found:
         return None
     condition = shape_of(model).condition(model.tensegric.expand(balance.state.moved))
@@ -71,12 +93,17 @@ def outlook(stages: Stages, near: Outlook | None = None) -> Outlook | None:
 
 
 def _start(near: Outlook | None, model: ConstrainedModel, targets: Targets) -> Balance | None:
-    """Return the balance of ``near`` if a search can start there."""
-    if near is None or near.model is not model:
+    """Return the balance of ``near`` if a search can start there; exact answers are found from rest."""
+    if near is None or targets.control == "exact" or apart(near, model, targets) > _FAR:
         return None
-    alike = (near.targets.control == "exact") == (targets.control == "exact")
-    far = np.abs(np.subtract(near.targets.ratios, targets.ratios)).max(initial=0.0)
-    return near.balance if alike and far <= _FAR else None
+    return near.balance
+
+
+def apart(near: Outlook, model: ConstrainedModel, targets: Targets) -> float:
+    """Return how far the lengths of two outlooks are apart [1], inf for those that share no model."""
+    if near.model is not model or near.targets.control == "exact":
+        return np.inf
+    return float(np.abs(np.subtract(near.targets.ratios, targets.ratios)).max(initial=0.0))
 
 
 def resting(stages: Stages, targets: Targets, near: Balance | None = None) -> Balance:
@@ -85,10 +112,14 @@ def resting(stages: Stages, targets: Targets, near: Balance | None = None) -> Ba
     if targets.control == "exact":
         if stages.design.dense_volume:
             return solve_body_exact(model, targets.ratios, stages.body_change, near=near)
-        return solve_exact(model, targets.ratios, _most_steps(near), near=near)
-    # Turns measure both breasts together, whatever the exact answer holds.
+        return solve_exact(model, targets.ratios, _most_steps(near), near=near, turns=False)
+    return _kept(_together(model), targets, near)
+
+
+def _together(model: ConstrainedModel) -> ConstrainedModel:
+    """Return a model as turns measure it: both breasts together, whatever the exact answer holds."""
     both = replace(model.tensegric, mechanics=replace(model.mechanics, volume_of="both"))
-    return _kept(replace(model, tensegric=both), targets, near)
+    return replace(model, tensegric=both)
 
 
 def _kept(model: ConstrainedModel, targets: Targets, near: Balance | None) -> Balance:
@@ -96,19 +127,25 @@ def _kept(model: ConstrainedModel, targets: Targets, near: Balance | None) -> Ba
 
     There the pressure is the gain times what is missing; that is closed in on by secants.
     """
-    here = solve_exact(model, targets.ratios, _most_steps(near), near=near)
-    if targets.control in ("adaptive", "accumulating") or not here.found:
+    keeps = targets.control in ("adaptive", "accumulating")
+    excess = 0.0 if keeps or near is None else _excess(model, near)
+
+    def at(excess: float, steps: int, near: Balance | None) -> Balance:
+        kept = np.full(2, 0.5 * excess * model.volume.rest_volume)
+        return solve_exact(model, targets.ratios, steps, excess=kept, near=near, turns=False)
+
+    here = at(excess, _most_steps(near), near)
+    if keeps or not here.found:
         return here
     gain = targets.gain if targets.control == "conventional" else 0.0
 
     def missing(balance: Balance, excess: float) -> float:
         return float(balance.pressures[0]) / model.pressure_unit + gain * excess
 
-    before, excess, amiss_before = 0.0, 0.0, missing(here, 0.0)
-    excess = -amiss_before / (gain + 0.3)
+    before, amiss_before = excess, missing(here, excess)
+    excess -= amiss_before / (gain + 0.3)
     for _ in range(_ROUNDS):
-        kept = np.full(2, 0.5 * excess * model.volume.rest_volume)
-        here = solve_exact(model, targets.ratios, _QUICK, excess=kept, near=here)
+        here = at(excess, _QUICK, here)
         amiss = missing(here, excess)
         if not here.found or abs(excess - before) < _NEAR or amiss == amiss_before:
             return here
@@ -117,25 +154,33 @@ def _kept(model: ConstrainedModel, targets: Targets, near: Balance | None) -> Ba
     return here
 
 
+def _excess(model: ConstrainedModel, near: Balance) -> float:
+    """Return what the volume has there beyond rest, in parts of it [1]."""
+    return model.volume.volume(model.tensegric.expand(near.state.moved)) / model.volume.rest_volume - 1.0
+
+
 def _most_steps(near: Balance | None) -> int:
     return _FROM_REST if near is None else _QUICK
 
 
-def swing_growth(model: ConstrainedModel, targets: Targets, balance: Balance) -> float:
-    """Return by how much a small swing about ``balance`` grows in a turn [1]; 0 if there is none."""
+def swing_growth(model: ConstrainedModel, targets: Targets, balance: Balance, span: int = _SPAN) -> float:
+    """Return by how much a small swing about ``balance`` grows in a turn [1]; 0 if there is none.
+
+    That is what it does between one ``span`` of turns and the next.
+    """
     outward = model.rest_gradient
     push = outward * (PUSH / np.linalg.norm(outward, axis=1).max())
     pressure = Pressure(float(balance.pressures[0]) / model.pressure_unit)
     error = float(model.volume.volume(model.tensegric.expand(balance.state.moved)))
     error = (model.volume.rest_volume - error) / model.volume.rest_volume
     start = State(balance.state.moved + push, replace(pressure, error=error), 0, balance.tensions)
-    records = [measured for _, measured in iterate(model, lambda: targets, start, turns=2 * _SPAN + 2)]
+    records = [measured for _, measured in iterate(model, lambda: targets, start, turns=2 * span + 2)]
     course = _course(records)
-    if len(course) < 2 * _SPAN + 2 or not np.isfinite(course).all():
+    if len(course) < 2 * span + 2 or not np.isfinite(course).all():
         return np.inf
     bend = course[:-2] - 2.0 * course[1:-1] + course[2:]
-    early, late = np.linalg.norm(bend[:_SPAN]), np.linalg.norm(bend[_SPAN:])
-    return float((late / early) ** (1.0 / _SPAN)) if late > 1e-12 else 0.0
+    early, late = np.linalg.norm(bend[:span]), np.linalg.norm(bend[span:])
+    return float((late / early) ** (1.0 / span)) if late > 1e-12 else 0.0
 
 
 def _course(records: list[Record]) -> Floats:

@@ -1,63 +1,35 @@
 """What ends a fight: the smallest single change, looked for by outlooks and proved by runs (ours).
 
-Changes are counted in steps that a person can set. On each way - a line longer or shorter, the gain lower -
-the first step whose outlook is good is closed in on; then the smallest of all is made and run, and if that
-does not do, a somewhat larger one or the next.
+On each way - a line longer or shorter, the gain lower - the first step whose outlook is good is closed in on;
+then the smallest of all is made and run, and if that does not do, a somewhat larger one or the next. What a
+run came to is kept: from there on the search looks from where runs stand.
 """
 
 from __future__ import annotations
 
 import heapq
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from functools import partial, reduce
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
 from typing import Any
 
-from core.advice.outlook import Outlook, outlook
-from core.advice.standing import Standing, gone_on, rank_of, standing
+from core.advice.outlook import Outlook, apart, outlook, outlook_about
+from core.advice.standing import Ran, Standing, gone_on, rank_of, standing
+from core.advice.ways import Change, Way
 from core.design import Design
 from core.errors import UserError
-from core.lines import RATIO_LIMITS
-from core.pipeline import Stages, build
+from core.pipeline import Stages, build, targets_of
 from core.progress import Progress
 from core.solving.condition import CALM_RANGE, STRAIN_RANGE
-from core.worn_lines import Together, free_lines
 
-LENGTH_STEP = 0.001
-"""Ratio of lengths that a person sets [1]."""
+_LOOKS = 80  # outlooks that a search on one kind of way may take
 
-GAIN_STEP = 0.01
-"""Gain that a person sets, in probe units [1]."""
-
-_LEAST_GAIN = 0.1
-_BELOW = 0.96  # of the gain that a shape bears: there a swing fades within the turns that a run is watched
 _WORTH = 1.5  # times the smallest change that looks good: what is larger is not worth a search
-_TRIES = 6  # runs on one kind of way, and in all: what a search may take
-_MOST_TRIES = 16
-MOST_LOOKS = 140
-"""Outlooks that a search for single changes may take, and half of that the search for what comes after."""
-
-_COARSER = 3  # times as many steps where the outlook was not good
-_MOST_TOGETHER = 95  # %: beyond that nothing is left of the garment
-_FURTHER = 1.08  # a step that a run did not bear out is made larger by so much, then more
-
-
-@dataclass(frozen=True, eq=False)
-class Change:
-    """One change of a design.
-
-    ``kind`` is "length", "gain", "setting", "off" (lines taken off) or "together" (all lines nearer to rest).
-    ``lines`` are those that it is about, ``setting`` the field and its new value, which may come with a
-    length. ``size`` [%] is how far a length moves, of that at rest, or the gain, of what it was: one scale;
-    of a setting it is 0.
-    """
-
-    kind: str
-    design: Design
-    size: float = 0.0
-    lines: tuple[str, ...] = ()
-    setting: tuple[str, Any] = ("", None)
+_TRIES = 8  # runs on one kind of way, and in all: what a search may take
+_MOST_TRIES = 20
+_CLOSER = 3  # runs between a change that did not do and one that did, at most
+_COARSER = 4  # times as many steps where the outlook was not good
+_FURTHER = 0.1  # of a step that a run did not bear out is added to it, and each time three times as much
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,126 +45,69 @@ class Cure:
     left: str = ""
 
 
-@dataclass(frozen=True)
-class Way:
-    """A way of changing a design in up to ``most`` steps; ``at`` returns the change of so many."""
+@dataclass(frozen=True, order=True)
+class _Hope:
+    """A change that looks good: its size and the number of its way, ``steps`` on the ``way``.
 
-    at: Callable[[int], Change]
-    most: int
-
-
-def single_ways(stages: Stages) -> Iterator[Way]:
-    """Yield the ways to change one line, or the gain."""
-    if stages.design.volume == "conventional" and stages.gain > _LEAST_GAIN:
-        first = math.ceil(stages.gain / GAIN_STEP - 1e-6) - 1
-        yield Way(partial(_gain, stages, first), first - round(_LEAST_GAIN / GAIN_STEP) + 1)
-    yield from line_ways(stages)
-
-
-def line_ways(stages: Stages) -> Iterator[Way]:
-    """Yield the ways to make one line longer or shorter; at its rest length it would be off."""
-    for names in free_lines(stages):
-        ratio = stages.design.ratio(names[0])
-        low, high = RATIO_LIMITS
-        top, bottom = (1.0 - LENGTH_STEP, low) if ratio < 1.0 else (high, 1.0 + LENGTH_STEP)
-        for sign, end in ((1, top), (-1, bottom)):
-            grid = math.floor(sign * ratio / LENGTH_STEP + 1e-6)
-            most = math.floor(sign * end / LENGTH_STEP + 1e-6) - grid
-            yield Way(partial(_length, stages.design, names, sign, grid), most)
-
-
-def _gain(stages: Stages, first: int, steps: int) -> Change:
-    gain = round((first - steps + 1) * GAIN_STEP, 6)
-    return Change("gain", replace(stages.design, gain=gain), 100.0 * (1.0 - gain / stages.gain))
-
-
-def _length(design: Design, names: tuple[str, ...], sign: int, grid: int, steps: int) -> Change:
-    ratio = round(sign * (grid + steps) * LENGTH_STEP, 6)
-    return Change(
-        "length", design.with_linked(names[0], ratio), 100.0 * abs(ratio - design.ratio(names[0])), names
-    )
-
-
-def settings(design: Design, complaint: str, bears: float | None = None) -> Iterator[Change]:
-    """Yield other choices of the model that may end a complaint, the least far-reaching first.
-
-    ``bears`` is the gain that the shape bears: where it is known a gain somewhat below it comes first.
+    ``known`` places of runs were known then. ``failed`` runs on that way did not bear out what was seen, the
+    last with ``short`` steps.
     """
-    if bears is not None:
-        gain = round(math.floor(_BELOW * bears / GAIN_STEP) * GAIN_STEP, 6)
-        if _LEAST_GAIN <= gain < (math.inf if design.gain is None else design.gain):
-            yield _set(design, "gain", gain)
-    moving = complaint in ("vibrating", "diverging", "settling")
-    in_step = [_set(design, "line_force", "implicit")]
-    controls = [_set(design, "volume", control) for control in ("adaptive", "exact")[: 1 + moving]]
-    spring = [_set(design, "line_hold", "spring")]
-    order = [*in_step, *controls, *spring] if moving else [*spring, *controls, *in_step]
-    for change in order:
-        if change.design != design:
-            yield change
 
+    size: float
+    number: int
+    way: Way = field(compare=False)
+    steps: int = field(compare=False)
+    known: int = field(compare=False)
+    failed: int = field(default=0, compare=False)
+    short: int = field(default=0, compare=False)
 
-def _set(design: Design, key: str, value: str | float) -> Change:
-    return Change("setting", replace(design, **{key: value}), setting=(key, value))  # type: ignore[arg-type]
-
-
-def with_setting(setting: Change, ways: Iterator[Way]) -> Iterator[Way]:
-    """Yield ways that start from another choice of the model as the changes of both at once."""
-
-    def both(way: Way, steps: int) -> Change:
-        return replace(way.at(steps), setting=setting.setting)
-
-    for way in ways:
-        yield Way(partial(both, way), way.most)
-
-
-def off_changes(stages: Stages) -> Iterator[Change]:
-    """Yield the ways to take one line off."""
-    for names in free_lines(stages):
-        size = 100.0 * abs(stages.design.ratio(names[0]) - 1.0)
-        yield Change("off", stages.design.with_linked(names[0], None), size, names)
-
-
-def together_ways(stages: Stages) -> Iterator[Way]:
-    """Yield the way of all lines nearer to rest, a hundredth of how far they are a step, if there are two."""
-    groups = free_lines(stages)
-    if len(groups) > 1:
-        yield Way(partial(_together, stages.design, groups), _MOST_TOGETHER)
-
-
-def _together(design: Design, groups: Sequence[Together], steps: int) -> Change:
-    size = 0.0
-    for names in groups:
-        before = design.ratio(names[0])
-        after = 1.0 + (1.0 - steps / 100.0) * (before - 1.0)
-        round_ = math.ceil if before < 1.0 else math.floor
-        after = round(round_(after / LENGTH_STEP - (1e-6 if before < 1.0 else -1e-6)) * LENGTH_STEP, 6)
-        size = max(size, 100.0 * abs(after - before))
-        design = design.with_linked(names[0], None if after == 1.0 else after)
-    return Change("together", design, size, reduce(tuple.__add__, groups, ()))
+    @property
+    def change(self) -> Change:
+        """What is hoped to do."""
+        return self.way.at(self.steps)
 
 
 class Search:
-    """Looks for what ends the ``complaint`` of a design that was run, by as many more ``looks`` ahead."""
+    """Looks for what ends the complaint of a design that was run, by as many more ``looks`` ahead."""
 
     def __init__(self, sick: Standing, progress: Progress) -> None:
         self._sick, self._progress = sick, progress
-        self._near: Outlook | None = None
-        self.looks = MOST_LOOKS
+        self._good: Outlook | None = None
+        self._stood: list[Outlook] = []
+        self._built: dict[tuple[Any, ...], Stages] = {}
+        self.looks = _LOOKS
         self.tried: list[Cure] = []
         design = sick.stages.design
         steady = design.volume in ("adaptive", "accumulating", "none") and design.line_hold == "spring"
         self._swings = not steady or design.line_force == "explicit" or sick.complaint == "vibrating"
+        self._learn(sick.stages, sick.ran)
+
+    def _learn(self, stages: Stages, ran: Ran) -> None:
+        """Keep where a run came to: another place than the outlook's where there is more than one."""
+        if ran.verdict.turns and ran.verdict.motion != "diverging" and stages.design.volume != "exact":
+            seen = outlook_about(stages, ran.middle)
+            self._stood += [seen] if seen else []
+
+    def _build(self, design: Design) -> Stages:
+        """Build a changed design; what was made for others of the same model is not made again."""
+        alike = design.mechanics, design.worn()
+        self._built[alike] = build(design, self._built.get(alike, self._sick.stages))
+        return self._built[alike]
+
+    def _near(self, stages: Stages) -> Outlook | None:
+        """Return what to look from: of where runs stood and the last good outlook, the nearest."""
+        model, targets = stages.model, targets_of(stages.design, stages)
+        known = [*reversed(self._stood), *([self._good] if self._good else [])]
+        return min(known, key=lambda each: apart(each, model, targets), default=None)
 
     def _bears(self, stages: Stages) -> bool:
         """Return whether the outlook of a changed design is good."""
-        self._progress("diagnosing", 0.0)
         if _too_far(stages, CALM_RANGE if self._sick.complaint == "strained" else STRAIN_RANGE):
             return False
-        seen = outlook(stages, self._near)
+        seen = outlook(stages, self._near(stages))
         if seen is None or seen.condition.folded or seen.condition.overstrained:
             return False
-        self._near = seen
+        self._good = seen
         if self._sick.complaint == "strained" and seen.condition.strained:
             return False
         return seen.stays if self._swings else True
@@ -201,19 +116,22 @@ class Search:
         if not self.looks:
             return False
         self.looks -= 1
+        self._progress("diagnosing", 0.0)
         try:
-            return self._bears(build(change.design, self._sick.stages))
+            return self._bears(self._build(change.design))
         except UserError:
             return False  # an elastic beyond its curve, for example
 
-    def first_good(self, way: Way, largest: float = math.inf) -> int | None:
-        """Return the fewest steps on a way whose outlook is good, if that gets no worse with more of them.
+    def first_good(self, way: Way, largest: float = math.inf, after: int = 0) -> int | None:
+        """Return the fewest steps beyond ``after`` with which a way's outlook is good, if more are no worse.
 
         Changes of more than the ``largest`` size [%] are not looked for.
         """
-        none, steps = 0, min(1, way.most)
+        none, stride = after, 1
+        steps = min(none + stride, way.most)
         while steps > none and not self._hopeful(way.at(steps)):
-            none, steps = steps, min(_COARSER * steps, way.most)
+            none, stride = steps, _COARSER * stride
+            steps = min(after + stride, way.most)
             if way.at(none + 1 if none < way.most else none).size > largest:
                 return None
         if steps == none:
@@ -226,15 +144,17 @@ class Search:
     def tried_out(self, change: Change) -> Cure:
         """Run a changed design, from rest and on from where the run stands, and keep what came out."""
         self._progress("diagnosing", 0.0)
-        stages = build(change.design, self._sick.stages)
-        after = standing(stages, self._progress)
-        left = after.complaint
+        stages = self._build(change.design)
+        after = standing(stages, self._progress, trial=True)
+        left, ran = after.complaint, after.ran
         if self._well(left):
             warm = gone_on(self._sick, stages, self._progress)
-            told = "" if warm is None or warm.told == "settled" else warm.told
-            left = max(left, told, key=rank_of)
+            told = "" if warm is None or warm.verdict.told == "settled" else warm.verdict.told
+            left, ran = max(left, told, key=rank_of), warm or ran
         cure = Cure(change, after, self._well(left), left)
         self.tried.append(cure)
+        if not cure.ends:
+            self._learn(stages, ran)
         return cure
 
     def _well(self, complaint: str) -> bool:
@@ -242,33 +162,58 @@ class Search:
 
     def smallest(self, ways: Iterator[Way]) -> tuple[Cure | None, list[Change]]:
         """Return the smallest change on any way that a run bears out, and those that looked good besides."""
-        hopes: list[tuple[float, int, int, Way]] = []
-        for number, way in enumerate(ways):
-            smallest = min((hope[0] for hope in hopes), default=math.inf)
-            steps = self.first_good(way, _WORTH * smallest)
-            if steps is not None:
-                hopes.append((way.at(steps).size, number, steps, way))
-        heapq.heapify(hopes)
-        others = {number: way.at(steps) for _, number, steps, way in hopes}
-        further = dict.fromkeys(others, 1.0)
-        for _ in range(_TRIES):
-            if not hopes or len(self.tried) >= _MOST_TRIES:
-                break
-            _, number, steps, way = heapq.heappop(hopes)
-            others.pop(number, None)
-            cure = self.tried_out(way.at(steps))
+        self.looks = _LOOKS
+        hopes, runs = self._hopes(ways), 0
+        while hopes and runs < _TRIES and len(self.tried) < _MOST_TRIES:
+            hope = heapq.heappop(hopes)
+            if hope.known < len(self._stood):  # since then a run came to another place
+                self._further(hopes, hope, hope.steps - 1)
+                continue
+            runs += 1
+            cure = self.tried_out(hope.change)
             if cure.ends:
-                return cure, sorted(others.values(), key=lambda change: change.size)
-            further[number] *= _FURTHER
-            if steps < way.most:
-                steps = min(max(steps + 1, math.ceil(steps * further[number])), way.most)
-                heapq.heappush(hopes, (way.at(steps).size, number, steps, way))
+                return self._closed_in(hope, cure), [each.change for each in sorted(hopes)]
+            failed = replace(hope, failed=hope.failed + 1, short=hope.steps)
+            more = max(3**hope.failed, math.ceil(hope.steps * (_FURTHER**failed.failed - 1.0)))
+            self._further(hopes, failed, min(hope.steps + more, hope.way.most) - 1)
         return None, []
 
+    def _closed_in(self, hope: _Hope, cure: Cure) -> Cure:
+        """Return a smaller change that ends it too, between one that did not and one that did."""
+        short, steps = hope.short or hope.steps, hope.steps
+        for _ in range(_CLOSER):
+            middle = (short + steps) // 2
+            if middle - short < _FURTHER * steps:
+                break
+            closer = self.tried_out(hope.way.at(middle))
+            short, steps, cure = (short, middle, closer) if closer.ends else (middle, steps, cure)
+        return cure
+
+    def _hopes(self, ways: Iterator[Way]) -> list[_Hope]:
+        hopes: list[_Hope] = []
+        for number, way in enumerate(ways):
+            smallest = min((hope.size for hope in hopes), default=math.inf)
+            steps = self.first_good(way, _WORTH * smallest)
+            if steps is not None:
+                hopes.append(_Hope(way.at(steps).size, number, way, steps, len(self._stood)))
+        heapq.heapify(hopes)
+        return hopes
+
+    def _further(self, hopes: list[_Hope], hope: _Hope, after: int) -> None:
+        """Put a way back with the fewest steps beyond ``after`` whose outlook is good, if there are any."""
+        steps = self.first_good(hope.way, after=after)
+        if steps is not None:
+            known = len(self._stood)
+            heapq.heappush(hopes, replace(hope, size=hope.way.at(steps).size, steps=steps, known=known))
+
     def first_of(self, changes: Iterator[Change]) -> Cure | None:
-        """Return the first of some changes that a run bears out."""
+        """Return the first of some changes that a run bears out.
+
+        Where lines slide as springs a run tells more than an outlook: it is made to know where it comes to.
+        """
         for change in changes:
-            if self._hopeful(change) and (cure := self.tried_out(change)).ends:
+            loose = change.design.line_contact == "sliding" and change.design.line_hold == "spring"
+            if (self._hopeful(change) or loose) and (cure := self.tried_out(change)).ends:
                 return cure
         return None
 
