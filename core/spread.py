@@ -29,10 +29,6 @@ SLIDING = (
     "Lines that slide answer less evenly than the ± says: sampled, the lift was off by more than twice as "
     "much on one body."
 )
-BESIDE = (
-    "The ± and the other skin contact are those of the exact answer, which holds the volume; with this "
-    "volume control the body comes to rest beside it."
-)
 
 
 _UNTOLD = tuple(f"{kind}:asymmetry_volume" for kind in (BEFORE, AFTER))
@@ -92,8 +88,6 @@ def cautions(design: Design) -> Iterator[str]:
     """Yield where the ± of a design says less than it seems to."""
     if design.worn() and design.line_contact == "sliding":
         yield SLIDING
-    if design.worn() and design.volume in ("none", "conventional"):
-        yield BESIDE
 
 
 def _other_contact(trials: Trials) -> tuple[str, Mapping[str, float]]:

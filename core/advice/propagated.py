@@ -23,7 +23,6 @@ from core.advice.told_figures import (
     skin_normals,
 )
 from core.advice.trials import Trials
-from core.answer import volume_keeper
 from core.errors import UserError
 from core.measuring.plus_minus import ELASTIC, LANDMARKS, LINE, SCAN, TAPE, TISSUE
 from core.mesh import Floats, Points
@@ -53,8 +52,7 @@ class Propagation:
         stages = trials.base
         self.ratios = np.array(targets_of(stages.design, stages).ratios)
         self.points = trials.points
-        self.answer = trials.answer
-        self._kept = volume_keeper(stages, self.answer)
+        self.answer, self._kept = trials.resting.answer, trials.resting.kept
         self.places = deform(stages.binding, self.points)
         self.normals = skin_normals(stages, self.points)
         self.tensions = line_tensions(stages, self.points)

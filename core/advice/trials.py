@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from core.advice.knobs import Turned
+from core.advice.resting_answer import Resting, push_of, resting_answer
 from core.advice.told_figures import (
     Figures,
     Rested,
@@ -17,14 +18,12 @@ from core.advice.told_figures import (
     rested_figures,
     steps_of,
 )
-from core.answer import answer_of
 from core.measures import reshaped, subject_at_rest
 from core.measuring.subject import subject_of
 from core.mesh import Points
 from core.pipeline import Stages, build, find
 from core.placing import PlacedMark
 from core.sewing.tensions import line_tensions
-from core.solving.sensitivity import Answer
 from core.tffd import deform
 
 _KEPT = ("read scan", "find landmarks", "read template", "fit control mesh")
@@ -69,7 +68,7 @@ class Trials:
             self._known[placed] = replace(self.base, design=stages.design, memo=slim), rest
         if turned.skin:
             rest = rested(stages, self.steps, rest.subject, turned.skin)
-        points = answer_of(stages).place.points
+        points = resting_answer(stages, self._push).answer.place.points
         ratios = {line.name: self.base.design.ratio(line.name) for line in stages.model.lines}
         figures = {
             **measured_figures(stages, self.steps, rest, points, turned.skin),
@@ -91,7 +90,7 @@ class Trials:
 
     @cached_property
     def figures(self) -> Figures:
-        """The figures of lines and bust points in the exact answer. Raises NoAnswerError."""
+        """The figures of lines and bust points where the run rests. Raises NoBalanceError."""
         return {} if self.bare else figures_of(self.base, self.points)
 
     @cached_property
@@ -101,13 +100,18 @@ class Trials:
 
     @cached_property
     def points(self) -> Points:
-        """The control points of the exact answer, shape (n, 3) [mm]. Raises NoBalanceError."""
-        return self.answer.place.points
+        """The control points where the run rests, shape (n, 3) [mm]. Raises NoBalanceError."""
+        return self.resting.answer.place.points
 
     @cached_property
-    def answer(self) -> Answer:
-        """The exact answer of the design. Raises NoBalanceError."""
-        return answer_of(self.base)
+    def resting(self) -> Resting:
+        """The balance that the run of the design comes to. Raises NoBalanceError."""
+        return resting_answer(self.base, self._push)
+
+    @cached_property
+    def _push(self) -> float:
+        """How the control answers missing volume: alike whatever is turned."""
+        return push_of(self.base)
 
     @cached_property
     def steps(self) -> Steps:

@@ -62,7 +62,7 @@ class Spread:
     What is told after the ± is ``sds`` standard deviations. ``sources`` are those that are in; the landmarks
     come last. ``other`` tells the figures if lines had the ``contact`` that the design has not: a choice of
     the model, and no part of the ±. ``failed`` counts what was tried and had no answer. ``figures`` are
-    those of the exact answer, which all of this is told of; ``bare`` is a body that wears no line.
+    those where the run comes to rest, which all of this is told of; ``bare`` is a body that wears no line.
     ``cautions`` are sentences on where this ± says less than it seems to.
     """
 
