@@ -84,8 +84,8 @@ def most_off(
             found.append((curve.places[at], curve.normals[at], float(off[at])))
     if not found:
         return None
-    place, way, off = max(found, key=lambda each: each[2])
-    return place, way, f"{plus_minus(off)} mm"
+    place, way, most = max(found, key=lambda each: each[2])
+    return place, way, f"{plus_minus(most)} mm"
 
 
 def _round(curve: Curve, off: Floats) -> Floats:

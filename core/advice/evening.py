@@ -114,18 +114,25 @@ def make_even(
 
 
 def _best(stages: Stages, names: tuple[str, ...], asked: Callable[[tuple[Goal, ...]], Reply]) -> Evened:
-    """Return what brings the most among those that keep less and less; if any is even, among these."""
+    """Return what brings the most among those that keep more and less; if any is even, among these."""
     here = run(stages).control_points
     told, found = evenness(stages, here), []
     were, goals = _kept(stages, here), even_goals(stages, here)
-    for count in range(len(goals), len(EVEN) - 1, -1):
+
+    def tried(count: int) -> bool:
         reply = asked(goals[:count])
         there = build(reply.design, stages)
         points = run(there).control_points
         kept = {name: (were[name], value) for name, value in _kept(there, points).items()}
         after = evenness(there, points).after
         found.append(Evened(reply, goals[:count], told.before, told.after, after, kept, names))
-        if reply.reachable:
-            break
-    # Of several that bring as much, to what cannot be seen, the first keeps the most.
-    return max(found, key=lambda each: (each.even, round((each.gained - each.lost) / _UNSEEN)))
+        return reply.reachable
+
+    # What evenness alone does not reach it does not reach with more to keep either: that is not looked for.
+    if not tried(len(goals)) and tried(len(EVEN)):
+        tried(len(EVEN) + 1)
+    # Of several that bring as much, to what cannot be seen, the one that keeps the most.
+    return max(
+        found,
+        key=lambda each: (each.even, round((each.gained - each.lost) / _UNSEEN), len(each.goals)),
+    )
