@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from app.cli import main
+from core.answer import balance_of
 from core.cutting import cut_list
 from core.design_elastics import Elastic
 from core.design_lines import WornLine
@@ -90,6 +91,16 @@ def test_the_command_cuts_for_the_shape_that_is_there(mannequin, capsys):
     assert bare["cut_mm"] is None
     assert row["reached_front_mm"] == pytest.approx(bare["reached_front_mm"], rel=1e-4)
     assert row["cut_mm"] < 0.8 * row["reached_whole_mm"]
+
+
+def test_lines_of_elastic_reach_the_same_where_the_body_keeps_its_volume(built):
+    """Of the answer at the control mesh's volume the line reaches another length."""
+    stages = worn_at(built("mannequin"), [("mid-bust", 0.96)], dense_volume=True)
+    reached = []
+    for each in (stages, build(made_as_worn(stages, {"mid-bust": STRAP}), stages)):
+        points = each.model.tensegric.expand(balance_of(each).state.moved)
+        reached += [line.length(points) for line in each.model.lines if line.name == "mid-bust"]
+    assert reached[1] == pytest.approx(reached[0], rel=2e-5)
 
 
 @pytest.mark.parametrize("contact", ["glued", "sliding"])

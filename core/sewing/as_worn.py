@@ -7,14 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from core.answer import NoBalanceError
+from core.answer import NoBalanceError, balance_of
 from core.design import Design
 from core.design_elastics import Elastic
 from core.errors import LineError
-from core.exact import solve_exact
 from core.lines import RATIO_LIMITS, Line
 from core.mesh import Floats, Points
-from core.pipeline import Stages, build, targets_of
+from core.pipeline import Stages, build
 from core.sewing.tensions import line_tensions
 from core.solving.newtons import newtons_per_unit
 
@@ -37,7 +36,7 @@ def made_as_worn(stages: Stages, elastics: Mapping[str, Elastic | None]) -> Desi
 
 def reached_points(stages: Stages) -> Points:
     """Return the control points of the exact answer, (n, 3) [mm]. Raises LineError if nothing balances."""
-    balance = solve_exact(stages.model, targets_of(stages.design, stages).ratios)
+    balance = balance_of(stages)
     if not balance.found:
         raise NoBalanceError(stages.design)
     return stages.model.tensegric.expand(balance.state.moved)
@@ -114,6 +113,6 @@ def _at(design: Design, ratios: Mapping[str, float]) -> Design:
 def _reached(design: Design, stages: Stages, lines: Mapping[str, Line]) -> Floats:
     """Return the logarithms of the lengths that lines reach over those at rest, in the exact answer."""
     built = build(design, stages)
-    balance = solve_exact(built.model, targets_of(design, built).ratios)
+    balance = balance_of(built)
     points = built.model.tensegric.expand(balance.state.moved)
     return np.log([line.length(points) / line.rest_length for line in lines.values()])
