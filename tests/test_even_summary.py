@@ -37,17 +37,17 @@ def test_each_figure_names_the_side_that_is_more(person: Stages) -> None:
     summary = even_summary(BeforeAfter(left, replace(left, higher=-1.2), ()), person)
     views = {view.title: view for view in summary.views}
     assert summary.says == "Bust points: right 1.2 mm higher."
-    assert (views["Bust point higher [mm]"].before, views["Bust point higher [mm]"].after) == (
+    assert (views["Higher [mm]"].before, views["Higher [mm]"].after) == (
         "L 2.0",
         "R 1.2",
     )
-    assert views["Bust point higher [mm]"].shares == pytest.approx((0.204, -0.12))
+    assert views["Higher [mm]"].shares == pytest.approx((0.204, -0.12))
     assert views["Further aside [mm]"].after == "0.0"
-    assert views["Stands out, in all [ml]"].after == "L 29", "what the legend of the map tells, all in all"
+    assert views["Stands out [ml]"].after == "L 29", "what the legend of the map tells, all in all"
     assert "left 41 ml, right 12 ml" in map_note(BeforeAfter(left, left, ()), True)
-    assert views["Skin apart, mean [mm]"].shares == (None, None)
+    assert views["Skin apart [mm]"].shares == (None, None)
     none = even_summary(BeforeAfter(left, replace(left, skin=None), ()), person).views
-    assert next(view for view in none if view.title == "Skin apart, mean [mm]").after == "–"
+    assert next(view for view in none if view.title == "Skin apart [mm]").after == "–"
 
 
 def test_a_difference_within_the_error_is_said_to_be_none(person: Stages) -> None:

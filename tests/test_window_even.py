@@ -111,7 +111,7 @@ def takes_the_spread_of_the_table(window: MainWindow, monkeypatch: pytest.Monkey
 
     def off() -> str:
         assert desk.card.summary is not None
-        return next(view.off for view in desk.card.summary.views if view.title == "Bust point higher [mm]")
+        return next(view.off for view in desk.card.summary.views if view.title == "Higher [mm]")
 
     assert off() == ""
     known = {"after:asymmetry_height": 36.2}

@@ -91,7 +91,9 @@ def forward_words(forward: float, off: float | None = None) -> str:
 
 
 def _sized(move: float, off: float | None) -> str:
-    return number(abs(move)) if off is None else f"{number(abs(move))} {plus_minus(off)}"
+    # What belongs together is not parted at the end of a line.
+    told = [number(abs(move)), *([] if off is None else [plus_minus(off)])]
+    return " ".join(told).replace(" ", "\N{NO-BREAK SPACE}")
 
 
 def sides_words(move: BustMove) -> tuple[str, str]:

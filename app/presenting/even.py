@@ -106,18 +106,18 @@ def _written(row: EvenRow, value: float | None) -> str:
 def _titles() -> dict[str, tuple[str, str]]:
     """Return what each figure is called, and what it is; the most telling first."""
     return {
-        "higher": (tr("Bust point higher"), tr("Which bust point is higher, and by how much.")),
+        "higher": (tr("Higher"), tr("Which bust point is higher, and by how much.")),
         "further_out": (tr("Further out"), tr("Which bust point is further to the front, and by how much.")),
         "in_all": (
-            tr("Stands out, in all"),
+            tr("Stands out"),
             tr("By how many ml the skin of one breast stands out more than the other one's, mirrored."),
         ),
         "mean": (
-            tr("Skin apart, mean"),
+            tr("Skin apart"),
             tr("How far the skin of one breast is from that of the other one, mirrored; mean of both."),
         ),
         "further_aside": (tr("Further aside"), tr("Which bust point is further from the mirror.")),
-        "largest": (tr("Skin apart, most"), tr("Where one side stands out most beyond the mirrored other.")),
+        "largest": (tr("Apart, most"), tr("Where one side stands out most beyond the mirrored other.")),
         "left_more": (tr("Left stands out"), tr("What lies between the skins where it is the left.")),
         "right_more": (tr("Right stands out"), tr("What lies between the skins where it is the right.")),
     }

@@ -12,7 +12,7 @@ BAND_INK, EDGE_INK = 0.28, 0.65
 """How strong the band and its edges are, in parts of the curve's own ink."""
 
 _EDGE = 0.8  # [px]
-_AWAY = 9.0  # from the curve to the words [px]
+_AWAY = 13.0  # from the curve to the words [px]
 _HIGH = 16.0
 
 
