@@ -19,6 +19,7 @@ from core.advice.ways import (
     Change,
     Way,
     line_ways,
+    lower_gains,
     off_changes,
     settings,
     single_ways,
@@ -111,17 +112,17 @@ def diagnose(stages: Stages, progress: Progress = quiet) -> Diagnosis:
 
 
 def _treated(found: Diagnosis, search: Search) -> Diagnosis:
-    stages = found.stages
+    stages, swings = found.stages, found.complaint in ("vibrating", "diverging")
+    tame = swings and stages.design.volume == "conventional"
+    gains = list(lower_gains(stages, found.bears)) if tame else []
+    choices = list(settings(stages.design, found.complaint))
     cure, others = search.smallest(single_ways(stages, found.complaint))
-    choices = list(settings(stages.design, found.complaint, found.bears))
-    gains = [choice for choice in choices if choice.setting[0] == "gain"]
-    cure = cure or search.smallest(chain.from_iterable(_chosen(stages, gains, line_ways)))[0]
+    cure = cure or search.smallest(_chosen(stages, gains, line_ways))[0]
     cure = cure or search.first_of(iter(choices))
-    choices = [choice for choice in choices if choice not in gains]
-    for ways in (line_ways, together_ways):
-        if cure is None and ways is together_ways:
-            cure, _ = search.smallest(together_ways(stages))
-        cure = cure or search.smallest(chain.from_iterable(_chosen(stages, choices, ways)))[0]
+    cure = cure or search.smallest(_chosen(stages, choices, line_ways))[0]
+    cure = cure or search.smallest(together_ways(stages))[0]
+    cure = cure or search.smallest(_chosen(stages, gains, together_ways))[0]
+    cure = cure or search.smallest(_chosen(stages, choices, together_ways))[0]
     cure = cure or search.first_of(off_changes(stages))
     if cure is None and not search.tried:
         for change in choices:
@@ -137,12 +138,10 @@ def _treated(found: Diagnosis, search: Search) -> Diagnosis:
     return replace(found, nearest=nearest, locked=locked)
 
 
-def _chosen(
-    stages: Stages, choices: list[Change], ways: Callable[[Stages], Iterator[Way]]
-) -> Iterator[Iterator[Way]]:
+def _chosen(stages: Stages, choices: list[Change], ways: Callable[[Stages], Iterator[Way]]) -> Iterator[Way]:
     """Yield the ways to change lines with each of other choices of the model."""
     for choice in choices:
-        yield with_setting(choice, ways(replace(stages, design=choice.design)))
+        yield from with_setting(choice, ways(replace(stages, design=choice.design)))
 
 
 def borne_gain(stages: Stages, progress: Progress = quiet) -> float | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from functools import cache, partial
 from typing import Any
@@ -14,7 +15,7 @@ from core.advice.fight import fight_of
 from core.advice.outlook import outlook
 from core.advice.remedy import Search
 from core.advice.standing import gone_on, standing
-from core.advice.ways import GAIN_STEP, LENGTH_STEP, Change, settings
+from core.advice.ways import GAIN_STEP, LENGTH_STEP, Change, lower_gains, settings
 from core.comparison import Comparison
 from core.design import Design
 from core.design_lines import LineTraits
@@ -218,12 +219,18 @@ def test_the_nearest_is_told_with_what_is_left_of_it() -> None:
     assert (tried.ends, tried.left) == (False, "overstrained")
 
 
-def test_a_gain_that_the_shape_bears_is_tried_before_the_control_is_taken_away() -> None:
-    design = made({"mid-bust": 0.9}, volume="conventional", gain=2.5).design
-    changes = [change.setting for change in settings(design, "vibrating", 1.59)]
-    assert changes == [("gain", 1.52), ("volume", "adaptive"), ("volume", "exact")]
-    assert [change.setting[0] for change in settings(design, "vibrating")] == ["volume", "volume"]
-    assert next(settings(replace(design, gain=1.4), "vibrating", 1.59)).setting[0] == "volume"
+def test_lower_gains_are_tried_before_the_control_is_taken_away() -> None:
+    stages = made({"mid-bust": 0.9}, volume="conventional", gain=2.5)
+    limit = 0.88 * stages.gain_limit
+    low = math.floor(0.96 * limit / GAIN_STEP) * GAIN_STEP
+    gains = [change.design.gain for change in lower_gains(stages, 1.59)]
+    assert gains == [1.52, pytest.approx(low)]
+    assert [change.design.gain for change in lower_gains(stages, None)] == [pytest.approx(low)]
+    assert list(lower_gains(made({"mid-bust": 0.9}, volume="conventional", gain=1.0), 1.59)) == []
+    assert [change.setting for change in settings(stages.design, "vibrating")] == [
+        ("volume", "adaptive"),
+        ("volume", "exact"),
+    ]
 
 
 def test_a_choice_that_its_lengths_do_not_need_is_left_out() -> None:

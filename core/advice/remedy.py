@@ -36,13 +36,16 @@ _FURTHER = 0.1  # of a step that a run did not bear out is added to it, and each
 class Cure:
     """A change, and how the design stands with it: run from rest, and on from where it was.
 
-    ``left`` is the worse of what is wrong then, empty if nothing is.
+    ``left`` is the worse of what is wrong then, empty if nothing is. Of a change that is two,
+    ``choice_ends`` is what would be wrong without the other choice, ``lengths_end`` without the lengths.
     """
 
     change: Change
     standing: Standing
     ends: bool
     left: str = ""
+    choice_ends: str = ""
+    lengths_end: str = ""
 
 
 @dataclass(frozen=True, order=True)
@@ -218,14 +221,26 @@ class Search:
         return None
 
     def plainer(self, cure: Cure) -> Cure:
-        """Return a cure without the other choice that comes with its lengths, if a run bears that out too."""
+        """Return one part of a double change if a run bears it out alone, else both with what each ends."""
         change, key = cure.change, cure.change.setting[0]
         if change.kind == "setting" or not key:
             return cure
-        as_before = {key: getattr(self._sick.stages.design, key)}
-        without = replace(change, design=replace(change.design, **as_before), setting=("", None))
-        tried = self.tried_out(without)
-        return tried if tried.ends else cure
+        before, after = self._sick.stages.design, change.design
+        as_before = {key: getattr(before, key)}
+        lengths = self._once(replace(change, design=replace(after, **as_before), setting=("", None)))
+        if lengths.ends:
+            return lengths
+        alone = Change("setting", replace(after, lines=before.lines), setting=change.setting)
+        if key == "gain":
+            gain = alone.design.gain or 0.0
+            alone = Change("gain", alone.design, 100.0 * (1.0 - gain / self._sick.stages.gain))
+        choice = self._once(alone)
+        return choice if choice.ends else replace(cure, choice_ends=lengths.left, lengths_end=choice.left)
+
+    def _once(self, change: Change) -> Cure:
+        """Run a change unless its design was run already."""
+        known = (cure for cure in self.tried if cure.change.design == change.design)
+        return next(known, None) or self.tried_out(change)
 
 
 def _too_far(stages: Stages, bounds: tuple[float, float]) -> bool:

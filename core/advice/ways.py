@@ -19,8 +19,9 @@ LENGTH_STEP = 0.001
 GAIN_STEP = 0.01
 """Gain that a person sets, in probe units [1]."""
 
-_LEAST_GAIN = 0.1
+_LEAST_SHARE = 0.5  # of the gain that was set: with less it keeps hardly any volume
 _BELOW = 0.96  # of the gain that a shape bears: there a swing fades within the turns that a run is watched
+_BORNE = 0.88  # of the gain limit at rest: what shapes mostly bear
 _MOST_TOGETHER = 95  # %: beyond that nothing is left of the garment
 
 
@@ -52,9 +53,9 @@ class Way:
 def single_ways(stages: Stages, complaint: str) -> Iterator[Way]:
     """Yield the ways to change one line, or the gain, which helps no lengths without a balance."""
     turns = stages.design.volume == "conventional" and complaint != "unreachable"
-    if turns and stages.gain > _LEAST_GAIN:
+    if turns:
         first = math.ceil(stages.gain / GAIN_STEP - 1e-6) - 1
-        yield Way(partial(_gain, stages, first), first - round(_LEAST_GAIN / GAIN_STEP) + 1)
+        yield Way(partial(_gain, stages, first), first - math.ceil(_least_gain(stages) / GAIN_STEP) + 1)
     yield from line_ways(stages)
 
 
@@ -70,6 +71,10 @@ def line_ways(stages: Stages) -> Iterator[Way]:
             yield Way(partial(_length, stages.design, names, sign, grid), most)
 
 
+def _least_gain(stages: Stages) -> float:
+    return _LEAST_SHARE * stages.gain
+
+
 def _gain(stages: Stages, first: int, steps: int) -> Change:
     gain = round((first - steps + 1) * GAIN_STEP, 6)
     return Change("gain", replace(stages.design, gain=gain), 100.0 * (1.0 - gain / stages.gain))
@@ -82,15 +87,22 @@ def _length(design: Design, names: tuple[str, ...], sign: int, grid: int, steps:
     )
 
 
-def settings(design: Design, complaint: str, bears: float | None = None) -> Iterator[Change]:
-    """Yield other choices of the model that may end a complaint, the least far-reaching first.
+def lower_gains(stages: Stages, bears: float | None) -> Iterator[Change]:
+    """Yield lower gains, for other changes beside them: so the control that was chosen can stay.
 
-    ``bears`` is the gain that the shape bears: where it is known a gain somewhat below it comes first.
+    Somewhat below what the shape ``bears``, where that is known, and below what shapes mostly bear: with
+    lines nearer to rest a shape may bear less.
     """
-    if bears is not None:
-        gain = round(math.floor(_BELOW * bears / GAIN_STEP) * GAIN_STEP, 6)
-        if _LEAST_GAIN <= gain < (math.inf if design.gain is None else design.gain):
-            yield _set(design, "gain", gain)
+    lowest = math.inf
+    for borne in (bears, _BORNE * stages.gain_limit):
+        gain = 0.0 if borne is None else round(math.floor(_BELOW * borne / GAIN_STEP) * GAIN_STEP, 6)
+        if _least_gain(stages) <= gain < min(stages.gain, lowest):
+            lowest = gain
+            yield _set(stages.design, "gain", gain)
+
+
+def settings(design: Design, complaint: str) -> Iterator[Change]:
+    """Yield other choices of the model that may end a complaint, the least far-reaching first."""
     moving = complaint in ("vibrating", "diverging", "settling")
     in_step = [_set(design, "line_force", "implicit")]
     controls = [_set(design, "volume", control) for control in ("adaptive", "exact")[: 1 + moving]]
