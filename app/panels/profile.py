@@ -224,17 +224,20 @@ class CurveKeys(QWidget):
         inks = {"before": tokens.ghost_curve, "after": tokens.accent, "other": tokens.warn_mark}
         inks["band"] = tokens.accent
         x, y = 2.0, self.height() / 2.0
-        for role in self._roles:
+        wide = [painter.fontMetrics().horizontalAdvance(self._words[role]) for role in self._roles]
+        roomy = sum(wide) + 37.0 * len(wide) - 12.0 < self.width()
+        long, gap = (18.0, 14.0) if roomy else (12.0, 7.0)
+        for role, advance in zip(self._roles, wide, strict=True):
             pen = QPen(QColor(inks[role]), 2.0)
             if role == "before":
                 pen.setDashPattern([3.0, 2.0])
             if role == "band":
                 swatch = QPainterPath()
-                swatch.addRect(QRectF(x, y - 4.0, 18.0, 8.0))
+                swatch.addRect(QRectF(x, y - 4.0, long, 8.0))
                 paint_band(painter, swatch, QColor(inks[role]), faint=False)
             else:
                 painter.setPen(pen)
-                painter.drawLine(QPointF(x, y), QPointF(x + 18.0, y))
+                painter.drawLine(QPointF(x, y), QPointF(x + long, y))
             painter.setPen(QColor(tokens.text_quiet))
-            painter.drawText(QPointF(x + 23.0, y + 4.0), self._words[role])
-            x += 23.0 + painter.fontMetrics().horizontalAdvance(self._words[role]) + 14.0
+            painter.drawText(QPointF(x + long + 5.0, y + 4.0), self._words[role])
+            x += long + 5.0 + advance + gap
