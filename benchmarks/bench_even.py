@@ -31,6 +31,7 @@ from core.design import ScanSource
 from core.errors import UserError
 from core.evenness import Evenness, evenness
 from core.export import write_mesh
+from core.measures import measures
 from core.mesh import Mesh
 from core.moving import volume_change
 from core.own_lines import ready_made
@@ -60,6 +61,8 @@ class Altered:
     volume: float
     told: Evenness
     was: Evenness
+    breasts: float
+    breasts_were: float
 
     def misses(self) -> tuple[float, float, float, float]:
         """Return by how much height, way out, ml of the skin and ml of the breasts are read wrong."""
@@ -67,17 +70,19 @@ class Altered:
             self.told.higher - self.was.higher - self.higher,
             self.told.further_out - self.was.further_out - self.out,
             _ml(self.told) - _ml(self.was) - self.volume,
-            _breasts(self.told) - _breasts(self.was) - self.volume,
+            self.breasts - self.breasts_were - self.volume,
         )
 
 
 def _ml(told: Evenness) -> float:
     assert told.skin is not None
-    return told.skin.left_more - told.skin.right_more
+    return told.skin.in_all
 
 
-def _breasts(told: Evenness) -> float:
-    return np.nan if told.volumes is None else told.volumes.more
+def _breasts(stages: Stages) -> float:
+    """Return by how much the left breast is larger within its root [ml], if that is known."""
+    found = measures(stages.body.calm, stages.landmarks)["asymmetry_volume"].value
+    return np.nan if found is None else found
 
 
 def at_rest(stages: Stages) -> Evenness:
@@ -96,13 +101,14 @@ def altered(stages: Stages, kind: str, amount: float, side: str, folder: Path) -
     path = folder / "altered.ply"
     write_mesh(path, Mesh(places, mesh.faces))
     scan = ScanSource(str(path), unit="mm", up="+z", front="-y")
-    told = at_rest(build(replace(stages.design, scan=scan)))
+    again = build(replace(stages.design, scan=scan))
     nearest = int(np.argmin(((mesh.vertices - bust) ** 2).sum(axis=1)))
     moved = places[nearest] - mesh.vertices[nearest]
     volume = volume_change(mesh, places) / 1000.0
     name = f"{stages.design.scan.name}, {side} {kind} {amount:+g} mm"
     higher, out = sign * float(moved[2]), -sign * float(moved[1])
-    return Altered(name, kind, higher, out, sign * volume, told, at_rest(stages))
+    both = again, stages
+    return Altered(name, kind, higher, out, sign * volume, *map(at_rest, both), *map(_breasts, both))
 
 
 def read_back(on: list[Stages]) -> list[Altered]:
