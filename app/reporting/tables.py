@@ -21,7 +21,7 @@ Edges = tuple[float, float, float]
 HALF = 88.0
 """The width of a column where two stand beside each other [mm]."""
 
-_ROW, _CUT_ROW = 4.6, 5.6
+_ROW, _CUT_ROW = 4.4, 5.6
 _FEW = 3  # footnotes that stand below each other
 _EDGES = (78.0, 92.0, 105.0, 116.0, 130.0, 144.0, 151.5, 161.5)  # right ends of the figures of a cut
 _ELASTIC, _LIGHT, _WORD = 35.0, 164.5, 168.0
@@ -208,7 +208,7 @@ def _measure(row: MeasureRow, edges: Edges) -> Block:
     high = _ROW + _SECOND * (len(lines) - 1)
 
     def paint(paper: Paper, x: float, y: float) -> None:
-        base = y + 3.3
+        base = y + 3.2
         for place, line in enumerate(lines):
             paper.text(x, base + place * _SECOND, line, kind, ink=LIGHT.text)
         paper.text(x + text_width(lines[-1], kind) + 1.6, base + (len(lines) - 1) * _SECOND, unit, "caption")

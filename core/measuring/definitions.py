@@ -226,8 +226,8 @@ _TABLE = (
         "Left breast larger",
         "ml",
         "",
-        "Ours, an estimate: the volume of the left breast less that of the right one. How far it may be off "
-        "is not known; surer is what Left and right tells of the skins.",
+        "Ours, an estimate: the volume of the left breast less that of the right one. How far off is "
+        "not known; what Left and right tells is surer.",
         BOTH,
     ),
 )
