@@ -90,6 +90,11 @@ class Diagnosis:
         name, before = change.lines[0], self.stages.design
         return (change.design.ratio(name) - before.ratio(name)) * self.line(name).rest_length
 
+    def moves_mm(self, change: Change) -> float:
+        """Return how far a change moves the length of any line at most [mm]."""
+        before, after = self.stages.design, change.design
+        return max(abs(after.ratio(n) - before.ratio(n)) * self.line(n).rest_length for n in change.lines)
+
 
 def diagnose(stages: Stages, progress: Progress = quiet) -> Diagnosis:
     """Return what is wrong with the design of ``stages``, and the smallest change that ends it.

@@ -10,6 +10,7 @@ from typing import Any
 from app.commands.settings import dressed, made_of
 from core import __version__
 from core.advice.fight import Clash, Fight, Pull
+from core.advice.remedy import Cure
 from core.advice.ways import Change
 from core.design import Design
 from core.doctor import Diagnosis, diagnose
@@ -36,6 +37,26 @@ CHOICES = {
     ("line_hold", "spring"): "let lines spring back",
 }
 """What other choices of the model do."""
+
+
+TROUBLES = {
+    "vibrating": "the swing",
+    "diverging": "the running away",
+    "settling": "the long settling",
+    "folded": "the fold",
+    "overstrained": "the strain",
+    "strained": "the strain",
+    "unreachable": "the lack of a balance",
+}
+"""Each complaint as a thing that a part of a change can end."""
+
+PARTS = {
+    "gain": "the gain",
+    "volume": "the control",
+    "line_force": "the force in step",
+    "line_hold": "the spring",
+}
+"""Other choices of the model as parts of a change."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,12 +152,15 @@ def _table(found: Diagnosis) -> Iterator[str]:
         sides = f"   left {pull.sides[0]:.1f} N, right {pull.sides[1]:.1f} N" if pull.sides else ""
         yield f"  {_name(pull):24}{pull.newtons:8.1f} N{pull.to_volume:8.0f} degrees{sides}"
     yield f"  {'the skin itself':24}{fight.skin:8.1f} N"
+    yield "  (forces at all points added up; what a line pulls with along itself: busk cut)"
 
 
 def _remedy(examined: Examined) -> Iterator[str]:
     found = examined.diagnosis
     if found.cure is not None:
         yield f"To end it: {change_words(found, found.cure.change)}."
+        if found.cure.choice_ends:
+            yield _parts(found.cure)
         yield f"Run with that, from rest and on from here: {found.cure.standing.verdict.told}."
         for other in found.others:
             yield f"By its outlook, not run, this would do too: {change_words(found, other)}."
@@ -148,6 +172,15 @@ def _remedy(examined: Examined) -> Iterator[str]:
         yield f"The nearest: {change_words(found, found.nearest.change)}; it is then {found.nearest.left}."
     if found.locked:
         yield f"Locked, and so left as they are: {', '.join(found.locked)}."
+
+
+def _parts(cure: Cure) -> str:
+    """Return which part of a double change ends what."""
+    one, other = TROUBLES[cure.choice_ends], TROUBLES[cure.lengths_end]
+    if one == other:
+        return f"Neither part is enough alone: it would still be {cure.choice_ends}."
+    lengths = "the lengths" if cure.change.kind == "together" else "the length"
+    return f"{PARTS[cure.change.setting[0]].capitalize()} ends {one}, {lengths} {other}."
 
 
 def change_words(found: Diagnosis, change: Change) -> str:
@@ -165,7 +198,8 @@ def change_words(found: Diagnosis, change: Change) -> str:
         parts.append(f"{verb} {names} by {abs(longer):.1f} mm, to {percent:.1f} %")
     if change.kind == "together":
         lengths = (f"{name} to {100.0 * change.design.ratio(name):.1f} %" for name in change.lines)
-        parts.append(f"bring all lines nearer to rest: {', '.join(lengths)}")
+        nearer = f"bring all lines up to {found.moves_mm(change):.0f} mm nearer to rest"
+        parts.append(f"{nearer}: {', '.join(lengths)}")
     if change.kind == "off":
         parts.append(f"take {' and '.join(change.lines)} off")
     return ", and ".join(parts)
@@ -188,7 +222,8 @@ def _figures(examined: Examined) -> dict[str, Any]:
         "locked": list(found.locked),
         "written_to": examined.out or None,
         "definition": "forces on the free points where the run rests, or at the last balance on the way "
-        "there; angles between what they do to the skin; newtons rest on the assumed stiffness of tissue; "
+        "there, their sizes at all points added up; angles between what they do to the skin; newtons rest "
+        "on the assumed stiffness of tissue; "
         "size_percent: of the length at rest, or of the gain",
         "versions": {"busk": __version__},
     }
@@ -218,6 +253,8 @@ def _treatment(found: Diagnosis) -> dict[str, Any]:
     return {
         "cure": None if cure is None else _change(found, cure.change),
         "state_with_cure": None if cure is None else cure.standing.verdict.told,
+        "ended_by_choice": (cure and cure.choice_ends) or None,
+        "ended_by_lengths": (cure and cure.lengths_end) or None,
         "others_not_run": [_change(found, other) for other in found.others],
         "nearest": None if nearest is None else _change(found, nearest.change),
         "state_with_nearest": None if nearest is None else nearest.left,

@@ -100,7 +100,8 @@ def change_words(found: Diagnosis, change: Change) -> str:
             what = tr("Set {line} to {percent} %")
         what = what.format(**values)
     elif change.kind == "together":
-        what = tr("Bring all lines nearer to 100 %")
+        what = tr("Bring all lines up to {mm} mm nearer to 100 %")
+        what = what.format(mm=number(found.moves_mm(change), 0))
     elif change.kind == "off":
         what = tr("Take {line} off").format(line=row_title(change.lines[0], design))
     return listed((choice, what[:1].lower() + what[1:])) if choice and what else choice or what
@@ -146,6 +147,7 @@ def _forces(found: Diagnosis) -> Iterator[str]:
         yield "  " + _force(found, pull)
     if fight.pulls:
         yield "  " + tr("The skin itself: {newtons} N").format(newtons=number(fight.skin))
+        yield "  " + tr("Forces at all points added up: what a line pulls with along itself is in Garment.")
     if fight.worst is None:
         yield tr("No two of them stand out as pulling against each other.")
         return
@@ -171,6 +173,8 @@ def _changes(found: Diagnosis) -> Iterator[str]:
     if found.cure is not None:
         words = tr("{change}: run from rest and on from here, it ends as “{state}”")
         yield words.format(change=change_words(found, found.cure.change), state=_state(found.cure))
+        if found.cure.choice_ends:
+            yield "  " + _parts(found.cure)
         if found.cure.change.kind == "together":
             after = found.cure.change.design
             yield from (
@@ -187,6 +191,35 @@ def _changes(found: Diagnosis) -> Iterator[str]:
         words = tr("Nearest: {change}; it ends as “{state}”")
         said = change_words(found, found.nearest.change)
         yield words.format(change=said, state=state_title(found.nearest.left))
+
+
+def _parts(cure: Cure) -> str:
+    """Return which part of a double change ends what; ``cure`` knows how each did alone."""
+    if _trouble(cure.choice_ends) == _trouble(cure.lengths_end):
+        words = tr("Neither is enough alone: it would still end as “{state}”")
+        return words.format(state=state_title(cure.choice_ends))
+    choice = {
+        "gain": tr("The gain"),
+        "volume": tr("The control"),
+        "line_force": tr("The force in step"),
+        "line_hold": tr("Springing back"),
+    }[cure.change.setting[0]]
+    length = tr("the lengths") if cure.change.kind == "together" else tr("the length")
+    words = tr("{choice} ends {one}, {length} {other}")
+    troubles = {"one": _trouble(cure.choice_ends), "other": _trouble(cure.lengths_end)}
+    return words.format(choice=choice, length=length, **troubles)
+
+
+def _trouble(complaint: str) -> str:
+    """Return what is wrong as a thing that something can end."""
+    words = {
+        "vibrating": tr("the swing"),
+        "diverging": tr("the running away"),
+        "settling": tr("the long settling"),
+        "folded": tr("the fold"),
+        "unreachable": tr("the lack of a balance"),
+    }
+    return words.get(complaint, tr("the strain"))
 
 
 def _state(cure: Cure) -> str:

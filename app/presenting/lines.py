@@ -76,13 +76,18 @@ def row_title(name: str, design: Design) -> str:
 
 
 def titled(said: str, design: Design | None) -> str:
-    """Return what the core says with the titles that the designer gave in place of names."""
-    own = [each.name for each in design.traits if each.title] if design is not None else []
-    for name in sorted(own, key=len, reverse=True):
+    """Return what the core says with the titles that the designer gave in place of names.
+
+    A line of the template that a sentence begins with is called as in the list, too.
+    """
+    if design is None:
+        return said
+    own = {each.name for each in design.traits if each.title}
+    for name in sorted(own | set(LINE_COLOURS), key=len, reverse=True):
         title = line_title(name, design).replace("\\", r"\\")
         whole = rf"{re.escape(name)}(?![\w-])"
         said = re.sub(f"^{whole}", title[:1].upper() + title[1:], said)
-        said = re.sub(rf"(?<![\w-]){whole}", title, said)
+        said = re.sub(rf"(?<![\w-]){whole}", title, said) if name in own else said
     return said
 
 
