@@ -244,3 +244,5 @@ def test_a_sentence_names_a_line_by_the_title_that_it_was_given() -> None:
     told = "Lift tape, left cannot be held; the line lift tape, left is locked, strap left-over is not."
     assert titled(said, design) == told
     assert titled(said, None) == said
+    held = "full-bust cannot be held at 50.0 % of its rest length."
+    assert titled(held, design) == "Full bust cannot be held at 50.0 % of its rest length."

@@ -67,3 +67,24 @@ def test_only_what_a_notice_is_about_takes_it_away(qtbot: QtBot) -> None:
     bar.withdraw("files")
     bar.withdraw("refused")
     assert bar.notice() is None
+
+
+def test_a_wide_button_stands_under_the_words_and_a_short_one_beside_them(qtbot: QtBot) -> None:
+    bar = NoticeBar()
+    qtbot.addWidget(bar)
+    bar.resize(700, 90)
+    for words, width, below in (
+        ("Lower the gain, " * 3, 700, True),
+        ("Undo", 700, False),
+        ("Undo", 300, False),
+    ):
+        bar.show_notice("warn", "It swings.", actions=[(words, print)], details="Figures")
+        bar.resize(width, 90)
+        QApplication.processEvents()
+        (one,) = bar._buttons
+        assert (one.y() > bar.unfold.y() + 10) == below
+        assert one.width() >= one.sizeHint().width()
+        bar.resize(4 * width, 90)
+        QApplication.processEvents()
+        assert one.y() <= bar.unfold.y() + 10, "where there is room it stands beside them"
+        bar.close_notice()

@@ -199,9 +199,17 @@ def test_a_length_next_to_rest_is_found_in_a_few_steps(hold):
 def test_turns_find_what_the_walk_does_not():
     """Two lines cross on the sphere: the walk from rest breaks off, and leaves enough for the last resort."""
     choice = Mechanics("prestressed", line_contact="sliding")
-    balance = solve_exact(sphere_model(["horizontal", "vertical"], choice).model, (0.9, 0.95))
+    model = sphere_model(["horizontal", "vertical"], choice).model
+    balance = solve_exact(model, (0.9, 0.95))
     assert balance.found
     assert balance.steps <= NEWTON_LIMIT
+    assert not solve_exact(model, (0.9, 0.95), turns=False).found
+
+
+def test_at_rest_a_walk_stands_in_its_answer():
+    model = small(SLIDING, worn=WORN)
+    balance = solve_exact(model, (1.0, 1.0, 1.0), turns=False)
+    assert (balance.found, balance.steps) == (True, 0)
 
 
 def test_where_turns_run_away_too_the_end_of_the_walk_stays():

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from html import escape
 
 from PySide6.QtCore import Qt, QTimer, Signal
-from PySide6.QtGui import QColor, QPainter, QPaintEvent
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
 from app.dress.parts import IconLabel, ToolButton, button
@@ -27,6 +27,7 @@ REFUSED, FILES = "refused", "files"
 """What notices of failures are about: an edit or a scan that was refused, a file that was not written."""
 
 _LEAVES_AFTER_MS = 8000
+_MOST_ROOM = 0.4  # of the width that buttons take beside the words
 _BUTTON_KINDS = ("primary", "secondary", "quiet")
 
 
@@ -143,7 +144,10 @@ class NoticeBar(QWidget):
         row.addWidget(self._words, 1)
         row.addWidget(self.more)
         self._buttons: list[QPushButton] = []
-        self._row = row
+        self._row, self._below = row, QHBoxLayout()
+        self._below.setContentsMargins(29, 0, 0, 0)  # under the words
+        self._below.addStretch(1)
+        column.addLayout(self._below)
         self.unfold = button(tr("Details"), "quiet")
         self.unfold.setCheckable(True)
         self.unfold.toggled.connect(self._show_details)
@@ -182,14 +186,29 @@ class NoticeBar(QWidget):
 
     def _set_buttons(self, actions: tuple[Action, ...]) -> None:
         for old in self._buttons:
-            self._row.removeWidget(old)
+            for row in (self._row, self._below):
+                row.removeWidget(old)
             old.deleteLater()
         self._buttons = []
         for (text, act), kind in zip(actions, _BUTTON_KINDS, strict=False):
             each = button(text, kind)
             each.clicked.connect(lambda _=False, chosen=act: self._act(chosen))
-            self._row.insertWidget(self._row.count() - 2, each)
             self._buttons.append(each)
+        self._place_buttons()
+
+    def _place_buttons(self) -> None:
+        """Put the buttons beside the words, or under them where those would be squeezed into a column."""
+        wide = sum(each.sizeHint().width() for each in self._buttons) > _MOST_ROOM * self.width()
+        row, other = (self._below, self._row) if wide else (self._row, self._below)
+        first = 0 if wide else self._row.count() - 2 - sum(self._row.indexOf(b) >= 0 for b in self._buttons)
+        for place, each in enumerate(self._buttons):
+            other.removeWidget(each)
+            row.removeWidget(each)
+            row.insertWidget(first + place, each)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._place_buttons()
 
     def _act(self, act: Callable[[], None]) -> None:
         self.close_notice()

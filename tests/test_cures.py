@@ -1,0 +1,120 @@
+"""What a cure rests on: places that runs come to, runs that are given up, and what each part of it ends."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.presenting.doctor import change_words, details
+from app.wording.samples import sample_design
+from core.advice.outlook import outlook, outlook_about
+from core.advice.standing import gone_on, standing
+from core.comparison import Comparison
+from core.doctor import Diagnosis, diagnose
+from core.own_lines import ready_made
+from core.pipeline import Stages, build, targets_of
+from core.settled import settled_frame
+from core.template import read_template
+
+
+@cache
+def body(sample: str) -> Stages:
+    return build(replace(sample_design(sample), lines=()))
+
+
+def made(sample: str, lines: dict[str, float], **settings: Any) -> Stages:
+    design = replace(body(sample).design, **settings)
+    if "strap left" in lines:
+        design = replace(design, own_lines=ready_made(read_template(design.template))["straps"])
+    for name, ratio in lines.items():
+        design = design.with_line(name, ratio)
+    return build(design, body(sample))
+
+
+@cache
+def twice_sick() -> Diagnosis:
+    """It swings because of the gain, and folds because of the lengths."""
+    return diagnose(made("mannequin", {"mid-bust": 0.62, "full-bust": 0.7}, volume="conventional", gain=1.9))
+
+
+def test_what_slides_is_looked_at_where_its_run_stands() -> None:
+    stages = made(
+        "person",
+        {"mid-bust": 0.734, "strap left": 1.082, "strap right": 1.082},
+        line_contact="sliding",
+        volume="conventional",
+        gain=1.88,
+    )
+    found = diagnose(stages)
+    assert found.complaint == "vibrating"
+    assert found.cure is not None
+    design = found.cure.change.design
+    assert found.cure.change.size < 3.0
+    assert settled_frame(design, stages).verdict.told in ("settled", "strained")
+
+
+def test_turns_that_stand_somewhere_are_found_to_rest_there() -> None:
+    stages = made("mannequin", {"mid-bust": 0.9}, volume="conventional", gain=1.2)
+    ran = standing(stages).ran
+    seen, from_rest = outlook_about(stages, ran.middle), outlook(stages)
+    assert seen is not None and from_rest is not None  # noqa: PT018
+    assert np.abs(seen.balance.state.moved - from_rest.balance.state.moved).max() < 1e-6
+    assert outlook_about(stages, np.full_like(ran.middle, np.nan)) is None
+
+
+@pytest.mark.parametrize(("gain", "motion"), [(1.7, "vibrating"), (1.5, "settled")])
+def test_a_trial_is_given_up_once_it_is_plain_that_it_swings(gain: float, motion: str) -> None:
+    stages = made("mannequin", {"mid-bust": 0.95}, volume="conventional", gain=gain)
+    whole, trial = standing(stages), standing(stages, trial=True)
+    assert whole.complaint == trial.complaint
+    assert (whole.verdict.motion, trial.verdict.motion) == (motion, motion)
+    if motion == "vibrating":
+        assert trial.verdict.turns < whole.verdict.turns / 2
+    else:
+        assert trial.verdict.turns == whole.verdict.turns
+
+
+def test_held_lines_go_on_with_the_tensions_that_they_have() -> None:
+    """As the window does: with none they would pull anew, and come to rest another way."""
+    stages = made("mannequin", {"mid-bust": 0.9}, line_hold="held", volume="adaptive")
+    after = build(stages.design.with_line("mid-bust", 0.93), stages)
+    comparison = Comparison(stages.model, targets_of(stages.design, stages))
+    for lengths in (None, after):
+        if lengths is not None:
+            comparison.retarget(after.model, targets_of(after.design, after), fresh=True)
+        while not comparison.resting:
+            comparison.advance()
+    ran = gone_on(standing(stages), after)
+    assert ran is not None and comparison.main is not None  # noqa: PT018
+    assert ran.verdict.turns == comparison.main.verdict.turns
+    assert np.abs(ran.state.moved - comparison.main.state.moved).max() < 1e-9
+
+
+def test_of_a_double_change_it_is_known_what_each_part_ends() -> None:
+    found = twice_sick()
+    assert found.cure is not None
+    assert found.cure.change.setting[0] == "gain"
+    assert found.stages.design.volume == found.cure.change.design.volume == "conventional"
+    assert (found.cure.choice_ends, found.cure.lengths_end) == ("vibrating", "folded")
+    assert "The gain ends the swing, the length the fold" in details(found)
+    alike = replace(found, cure=replace(found.cure, lengths_end="vibrating"))
+    assert "Neither is enough alone: it would still end as “Vibrating”" in details(alike)
+
+
+def test_all_lines_together_are_told_with_how_far_they_go() -> None:
+    found = twice_sick()
+    assert found.cure is not None
+    before, lines = found.stages.design, ("mid-bust", "full-bust")
+    after = before.with_line("mid-bust", 0.72).with_line("full-bust", 0.75)
+    change = replace(found.cure.change, kind="together", design=after, lines=lines, setting=("", None))
+    most = 0.1 * found.line("mid-bust").rest_length
+    assert found.moves_mm(change) == pytest.approx(most)
+    assert change_words(found, change) == f"Bring all lines up to {most:.0f} mm nearer to 100 %"
+
+
+def test_forces_are_told_as_sums_over_points() -> None:
+    assert "Forces at all points added up" in details(twice_sick())
