@@ -90,7 +90,8 @@ def ask(
 class Asking:
     """One design that is asked again and again: what one answer needed is there for the next.
 
-    ``bounds`` and ``most_kpa`` are those of ``ask``.
+    ``bounds`` and ``most_kpa`` are those of ``ask``. ``nearer`` hears of the nearest design so far while an
+    answer is looked for elsewhere, in the thread that asks.
     """
 
     def __init__(self, stages: Stages, bounds: Bounds | None = None, most_kpa: float | None = None) -> None:
@@ -108,6 +109,7 @@ class Asking:
         self._figures = Figures(stages)  # they hang on the body, not on its lines
         self._goals: Sequence[Goal] = ()
         self._progress: Progress = quiet
+        self.nearer: Callable[[Design], object] = lambda design: None
         self._search: Search | None = None
         self._hardest: dict[str, float] = {}
         self._pressure: dict[str, float] = {}
@@ -206,6 +208,7 @@ class Asking:
         read = self._figures.of([goal.name for goal in self._goals])
         search = Search(stages, self._goals, self._bounds, self._progress, read)
         search.limit(self._hardest)
+        search.nearer = lambda found: self.nearer(found.design)
         self._used.append((search, 0))
         return search
 

@@ -56,6 +56,10 @@ class BodyWatch:
 
     def apexes(self, control_points: Points) -> Points:
         """Return y and z of the left and the right apex, shape (2, 2) [mm]."""
+        return self.apex_places(control_points)[:, 1:]
+
+    def apex_places(self, control_points: Points) -> Points:
+        """Return where the left and the right apex are, shape (2, 3) [mm]."""
         places = self._places(control_points)
         return np.stack([_apex(places[side]) for side in (self._left, self._right)])
 
@@ -73,7 +77,7 @@ class BodyWatch:
     def __call__(self, control_points: Points) -> Marks:
         """Return the marks for control points, shape (n, 3) [mm]."""
         places = self._places(control_points)
-        apex = np.mean([_apex(places[self._left]), _apex(places[self._right])], axis=0)
+        apex = np.mean([_apex(places[self._left])[1:], _apex(places[self._right])[1:]], axis=0)
         (left_y, left_z), (right_y, right_z) = (places[:2] + self._away)[:, 1:].tolist()
         apex_out, outs = self._back - float(apex[0]), (self._back - left_y, self._back - right_y)
         return Marks(left_z, right_z, float(apex[1]), apex_out, *outs)
@@ -94,9 +98,9 @@ def _foremost(rest: Points, on_side: Flags) -> Indices:
 
 
 def _apex(places: Points) -> Points:
-    """Return y and z of the apex, shape (2,) [mm]: a mean that favours what lies foremost."""
+    """Return the apex, shape (3,) [mm]: a mean that favours what lies foremost."""
     weight = np.exp((places[:, 1].min() - places[:, 1]) / _SHARPNESS)
-    return np.asarray(weight @ places[:, 1:] / weight.sum())
+    return np.asarray(weight @ places / weight.sum())
 
 
 def _apex_slopes(places: Points, by: Floats) -> Floats:

@@ -6,7 +6,15 @@ from dataclasses import replace
 
 import pytest
 
-from app.presenting.asking import answer_words, change_words, figure_title, kept_words, step_words
+from app.presenting.asking import (
+    answer_words,
+    change_words,
+    figure_title,
+    is_met,
+    kept_words,
+    off_words,
+    step_words,
+)
 from app.wording.samples import sample_design
 from app.wording.words import speaking
 from core.aims.figure import Goal
@@ -37,9 +45,9 @@ GOALS = (Goal("lift", 5.0),)
         (
             {"at_end": ("full-bust", "mid-bust")},
             "Not reachable: nearest is Bust point up +2.0 mm, because Mid-bust may not be shorter, and "
-            "Full bust may not be longer.",
+            "Full bust may not be longer: a longer line would have to push.",
             "到達できません。最も近いのは BPの上昇 +2.0 mm。理由：バスト下部はこれ以上短くできません、"
-            "バスト上部はこれ以上長くできません。",
+            "バスト上部はこれ以上長くできません（長いラインは押すことになります）。",
         ),
         (
             {"pressing": ("mid-bust",), "strained": True},
@@ -89,3 +97,15 @@ def test_every_figure_has_a_title_of_its_own_in_both_languages() -> None:
     assert len(titles) == len(NAMES)
     with speaking("ja"):
         assert not titles & {figure_title(name) for name in NAMES}
+
+
+def test_a_profile_that_is_nearly_met_is_reached_within_so_much() -> None:
+    goals = [Goal(profile_name("left", height), 200.0) for height in (340.0, 350.0)]
+    names = [goal.name for goal in goals]
+    near = reply(reached=dict(zip(names, (200.2, 199.6), strict=True)))
+    assert answer_words(near, goals) == "Reached within 0.4 mm."
+    assert off_words(goals, near.reached, "profile left") == "off by 0.3 mm, at most 0.4"
+    assert is_met(near, goals)
+    assert not is_met(near, [*goals[:1], Goal(names[1], 201.0)])
+    both = replace(near, reached={**near.reached, "lift": 4.0})
+    assert not is_met(both, [*goals, Goal("lift", 4.2)]), "a figure is met within less"

@@ -149,7 +149,7 @@ def _plain(asked: Asked) -> Iterator[str]:
         wanted, got = (f"{value:{sign}.1f} mm" for value in (goal.value, reply.reached[goal.name]))
         yield f"{goal.name:{wide}}{wanted:>12}{got:>12}"
     for section, off in profiles_off(asked.goals, reply.reached).items():
-        mean, most = np.sqrt((off**2).mean()), np.abs(off).max()
+        mean, most = np.abs(off).mean(), np.abs(off).max()
         yield f"{section}: {len(off)} heights, off by {mean:.1f} mm in the mean, {most:.1f} mm at most."
     for line in asked.stages.model.lines:
         if line.name in reply.design.worn():

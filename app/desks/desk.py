@@ -140,7 +140,9 @@ class Desk(QObject):
         """Say when the project was saved."""
         remember_file(path)
         self._window.notices.withdraw(FILES)
-        self._window.status.set_saved(tr("Saved {time}").format(time=time.strftime("%H:%M")))
+        without = self._window.ask_desk.around.tries_on
+        said = tr("Saved {time} without what is asked for") if without else tr("Saved {time}")
+        self._window.status.set_saved(said.format(time=time.strftime("%H:%M")))
         self.show_title()
 
     def show_title(self) -> None:

@@ -204,7 +204,7 @@ class ReportDesk(QObject):
         words = ""
         if stale:
             made, rests = tr("The sheet is being made."), tr("The sheet is made as soon as the run rests.")
-            words = self._refused or (made if window.is_settled() else window.ask_desk.first(rests))
+            words = self._refused or (made if window.is_settled() else window.ask_desk.around.first(rests))
         self.page.show_choices(design.customer if design else "", self._language)
         self.page.show_pages(self.pages, words, stale=stale)
 

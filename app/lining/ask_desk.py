@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, QTimer
 
 from app.dress.spoken import announce
+from app.lining.ask_around import AskAround
+from app.lining.ask_drawing import AskDrawing
 from app.lining.ask_handles import AskHandles
 from app.lining.ask_menu import AskMenu
 from app.lining.ask_views import show_answer, wish_views
@@ -23,6 +25,7 @@ from core.frame import Frame
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
+    from core.aims.drawn import Drawn
 
 _RESTS = 150  # stillness of a hand after which the best lengths are looked for [ms]
 _SLOW = 400  # an answer that takes longer is worth a word [ms]
@@ -45,13 +48,15 @@ class AskDesk(QObject):
         self.work = AskWork(window.jobs, self)
         self.work.answered.connect(self._take)
         self.work.refused.connect(self._refuse)
+        self.work.nearer.connect(self._show_nearer)
         self._rest = QTimer(self, interval=_RESTS, singleShot=True)
-        self._rest.timeout.connect(self._ask)
+        self._rest.timeout.connect(self.ask)
         self._slow = QTimer(self, interval=_SLOW, singleShot=True)
         self._slow.timeout.connect(self._show)
         self.card = AskCard(window.view)
         window.view.place(self.card, "bottom")
         self.handles = AskHandles(window, self)
+        self.drawing, self.around = AskDrawing(window, self), AskAround(window, self)
         self.menu = AskMenu(window, self)
         self._connect()
 
@@ -65,7 +70,7 @@ class AskDesk(QObject):
         card.entered.connect(self.wish)
         card.removed.connect(self.drop)
         card.add_asked.connect(self.menu.show)
-        card.helped.connect(window.preset_desk.show_menu)
+        card.hand_chosen.connect(self.drawing.choose)
         card.applied.connect(self.apply)
         card.left.connect(self.leave)
         session.design_changed.connect(self._follow_design)
@@ -104,38 +109,45 @@ class AskDesk(QObject):
         self._prepared = None if prepare is None else (prepare, said)
         self._prepare()
         self.card.show()
-        self._ask()
+        self.drawing.choose("bust")
         self.card.take_focus(next(iter(self.wishes), ""))
 
     def wish(self, key: str, value: float) -> None:
         """Wish for a figure [mm], or set the limit of pressure [kPa]."""
         self._wishes.set(key, value)
-        self._ask()
+        self.ask()
 
     def add(self, name: str) -> None:
         """Show a figure as it is, so that it can be wished otherwise."""
         self.wishes.setdefault(name, None)
-        self._ask()
+        self.ask()
         self.card.take_focus(name)
 
-    def wish_curve(self, section: str, goals: tuple[Goal, ...]) -> None:
-        """Wish for the profile of a section."""
-        self._wishes.curves[section] = goals
-        self._ask()
+    def wish_curve(self, section: str, goals: tuple[Goal, ...], profile: Drawn) -> None:
+        """Wish for the profile of a section, from the next question on."""
+        self._wishes.curves[section], self._wishes.drawn[section] = goals, profile
 
     def drop(self, key: str) -> None:
         """Wish for a figure, or a profile, no longer."""
         self._wishes.drop(key)
-        self._ask()
+        if self.handles.kind == "profile" and not self.drawn:
+            self.drawing.choose("bust")
+        else:
+            self.ask()
 
     def wish_by_hand(self, wishes: dict[str, float | None], *, at_rest: bool) -> None:
         """Take wishes that a hand has dragged to; while it is on its way the answers are quick ones."""
         self._wishes.figures = wishes
         self._rest.start()
         if at_rest:
-            self._ask()
+            self.ask()
         else:
-            self._ask(hurried=True)
+            self.ask(hurried=True)
+
+    @property
+    def drawn(self) -> dict[str, Drawn]:
+        """The profiles that are drawn, by section."""
+        return self._wishes.drawn
 
     @property
     def wishes(self) -> dict[str, float | None]:
@@ -153,12 +165,6 @@ class AskDesk(QObject):
         if frame is None or answer is None or answer.reply is None or not self.is_open:
             return False
         return frame.stages.design is answer.reply.design and not frame.at_work
-
-    def first(self, waits: str) -> str:
-        """Return what has to be done before a sheet can be made; ``waits`` if nothing is asked for."""
-        if not self.is_tried_on:
-            return waits
-        return tr("The sheet is of what is applied: apply what is asked for, or cancel it, first.")
 
     # -- how it ends
 
@@ -189,6 +195,7 @@ class AskDesk(QObject):
         self._prepared = self._design = None
         self.card.hide()
         self.handles.put_away()
+        self._window.lines_desk.show_rows()  # their lengths may be those that were tried on
 
     # -- questions and answers
 
@@ -199,7 +206,8 @@ class AskDesk(QObject):
             design = self._prepared[0](design)
         self._design = design
 
-    def _ask(self, *, hurried: bool = False) -> None:
+    def ask(self, *, hurried: bool = False) -> None:
+        """Have what is wished now answered; ``hurried`` while a hand is on its way."""
         frame, design = self._session.frame, self._design
         if not self.is_open or frame is None or design is None:
             return
@@ -220,7 +228,7 @@ class AskDesk(QObject):
             return
         self.answer = answer
         if not answer.question.goals and self.goals():  # only now it is known what is to stay
-            self._ask()
+            self.ask()
             return
         if answer.reply is not None and answer.reply.design != self._session.design:
             self._session.preview(answer.reply.design)
@@ -232,6 +240,11 @@ class AskDesk(QObject):
             announce(self.card, self.card.answer.text())
             if self._apply_due:
                 self.apply()
+
+    def _show_nearer(self, question: Question, design: Design) -> None:
+        """Show the nearest so far on the body, while it is looked for elsewhere."""
+        if self.is_open and question.design is self._design and self.work.is_at(question):
+            self._session.preview(design)
 
     def _refuse(self, problem: Exception) -> None:
         self._apply_due = False
@@ -251,7 +264,7 @@ class AskDesk(QObject):
         if self.is_open:
             self.answer = None
             self._prepare()
-            self._ask()
+            self.ask()
 
     # -- what is shown
 
@@ -261,12 +274,12 @@ class AskDesk(QObject):
             return
         missing = self._missing(frame, design)
         moving = {line.name for line in frame.stages.model.lines if line.constrains}
-        self.card.show_help(bool(missing), lines=not moving & design.worn())
+        self.card.show_help(bool(missing), locked=bool(moving & design.worn()))
         if missing:
             self.card.show_wishes([], missing)
             self.card.show_answer()
         else:
-            hint = tr("Type what it is to be, or drag the handle at the bust point.")
+            hint = self.drawing.hint()
             views = wish_views(design, self._wishes, self.answer)
             self.card.show_wishes(list(views), "" if self.goals() else hint)
             apart = self._prepared[1] if self._prepared is not None else ""

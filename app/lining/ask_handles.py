@@ -1,4 +1,4 @@
-"""The handles at the bust points: what is wished for by hand while the result is asked for."""
+"""The handles on the body: what is wished for by hand while the result is asked for."""
 
 from __future__ import annotations
 
@@ -8,8 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtCore import QObject
 
+from app.lining.ask_profile import AskProfile
 from app.presenting.bust import bust_move
 from app.showing.bust_handle import BustHandle
+from app.wording.words import tr
+from core.aims.drawn import Drawn
 from core.frame import Frame
 from core.mesh import Floats
 
@@ -18,22 +21,35 @@ if TYPE_CHECKING:
     from app.main_window import MainWindow
 
 SIDES = ("left", "right")
+KINDS = {"bust": ("lift", "out"), "apex": ("apex lift", "apex out")}
+"""What the handles wish for, up and out, by what they are dragged at."""
+
 _CLEAR = 12  # between the card and a handle [px]
 _ASIDE = 0.25  # of the way of a hand: less to the side of it is not meant [1]
 _STILL = 0.05  # no way at all; Shift drags in small steps [mm]
+_NAMES = {"left": lambda: tr("Left handle"), "right": lambda: tr("Right handle")}
 _FARTHEST = 80.0  # a bust point is not dragged further from where it is at rest [mm]
 
 
 class AskHandles(QObject):
-    """One handle a side in the main view; linked they wish for the mean of both, else for each side."""
+    """One handle a side in the main view; linked they wish for the mean of both, else for each side.
+
+    ``kind`` is what they are dragged at: "bust" points, "apex", the foremost places, or "profile": then there
+    are those of the drawn profiles instead.
+    """
 
     def __init__(self, window: MainWindow, desk: AskDesk) -> None:
         super().__init__(desk)
         self._window, self._desk = window, desk
+        self.kind = "bust"
         self.by_side: dict[str, BustHandle] = {}
-        self._before: dict[str, float | None] | None = None
+        self.profile = AskProfile(window.view.viewport, self)
+        self._before: tuple[dict[str, float | None], dict[str, Drawn]] | None = None
         self._height = 0  # of the card, when the picture was moved for it
         self._pulled: dict[str, float] = {}  # how far the hand has gone each way since it closed [mm]
+        self.profile.taken.connect(self._take)
+        self.profile.pulled.connect(self._draw)
+        self.profile.dropped.connect(self._drop)
 
     @property
     def carries(self) -> bool:
@@ -45,9 +61,12 @@ class AskHandles(QObject):
         before, self._before = self._before, None
         if before is None:
             return False
-        for handle in self.by_side.values():
+        for handle in (*self.by_side.values(), *self.profile.all()):
             handle.open_hand()
-        self._desk.wish_by_hand(before, at_rest=True)
+        figures, drawn = before
+        for section, profile in drawn.items():
+            self._desk.drawing.draw(section, profile)
+        self._desk.wish_by_hand(figures, at_rest=True)
         self._window.job_desk.show()
         return True
 
@@ -56,24 +75,32 @@ class AskHandles(QObject):
         self._before, self._height = None, 0
         for handle in self.by_side.values():
             handle.put_away()
+        self.profile.put_away()
 
     def follow(self) -> None:
         """Stand where the bust points are wished on the shown body."""
         frame, view = self._window.session.frame, self._window.view
         if frame is None or not self._desk.is_open or not view.after or not self._desk.asks:
-            if self.by_side:
-                self.put_away()
+            self.put_away()
             return
+        if self.kind == "profile":
+            for handle in self.by_side.values():
+                handle.put_away()
+            self.profile.follow(frame, self._desk.drawn)
+            return
+        self.profile.put_away()
         if not self.by_side:
             self._make()
-        for row, side in enumerate(SIDES):
-            foot = frame.stages.watch.bust_points(frame.control_points)[row]
+        watch = frame.stages.watch
+        feet = (watch.apex_places if self.kind == "apex" else watch.bust_points)(frame.control_points)
+        for side, foot in zip(SIDES, feet, strict=True):
             self.by_side[side].show_at(foot + self._missing(frame, side), foot)
 
     def clear(self) -> None:
         """Move the picture up if the card has grown over handles: they could not be taken."""
         viewport, card = self._window.view.viewport, self._desk.card
-        seen = [handle for handle in self.by_side.values() if handle.isVisible()]
+        handles = (*self.by_side.values(), *self.profile.all())
+        seen = [handle for handle in handles if handle.isVisible()]
         if not seen or self.carries or card.height() <= self._height:
             return
         self._height = card.height()
@@ -84,7 +111,7 @@ class AskHandles(QObject):
 
     def _make(self) -> None:
         for side in SIDES:
-            handle = BustHandle(self._window.view.viewport, side)
+            handle = BustHandle(self._window.view.viewport, side, _NAMES[side]())
             handle.taken.connect(self._take)
             handle.pulled.connect(partial(self._pull, side))
             handle.dropped.connect(self._drop)
@@ -102,14 +129,21 @@ class AskHandles(QObject):
                 ),
                 0.0,
             )
-            for what in ("lift", "out")
+            for what in KINDS[self.kind]
         )
         return np.array([0.0, -out, up])
 
     def _take(self) -> None:
         if self._before is None:
-            self._before, self._pulled = dict(self._desk.wishes), {"lift": 0.0, "out": 0.0}
+            self._before = dict(self._desk.wishes), dict(self._desk.drawn)
+            self._pulled = dict.fromkeys(KINDS.get(self.kind, ()), 0.0)
             self._window.job_desk.show()
+
+    def _draw(self, section: str, handle: int, up: float, out: float) -> None:
+        """Go on with the curve of a section by a step of the hand at one of its handles [mm]."""
+        if self._before is not None:
+            self._desk.drawing.draw(section, self._desk.drawn[section].pulled(handle, up, out))
+            self._desk.wish_by_hand(dict(self._desk.wishes), at_rest=False)
 
     def _pull(self, side: str, up: float, out: float) -> None:
         """Go on with the wishes by a step of the hand [mm]."""
@@ -117,7 +151,7 @@ class AskHandles(QObject):
         if frame is None or self._before is None:
             return
         wishes, linked = dict(self._desk.wishes), self._desk.card.link.isChecked()
-        for what, step in (("lift", up), ("out", out)):
+        for what, step in zip(KINDS[self.kind], (up, out), strict=True):
             name = what if linked else f"{what} {side}"
             self._pulled[what] += step
             if wishes.get(name) is not None or self._is_meant(what):
@@ -142,8 +176,13 @@ class AskHandles(QObject):
 
 
 def _now(frame: Frame, name: str) -> float:
-    """Return what a figure of the bust points is on the shown body [mm]."""
-    what, _, side = name.partition(" ")
+    """Return what a figure of the bust points or the foremost places is on the shown body [mm]."""
+    upward, side = "lift" in name, next((each for each in SIDES if name.endswith(each)), "")
+    if name.startswith("apex "):
+        places = (frame.control_points, frame.stages.control.mesh.vertices)
+        after, before = (frame.stages.watch.apexes(points) for points in places)
+        steps = (after - before)[:, 1] if upward else (before - after)[:, 0]
+        return float(steps[SIDES.index(side)] if side else steps.mean())
     move = bust_move(frame)
     step = {"": move.mean, "left": move.left, "right": move.right}[side]
-    return step.up if what == "lift" else step.forward
+    return step.up if upward else step.forward

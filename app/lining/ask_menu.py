@@ -14,7 +14,6 @@ from app.presenting.asking import figure_title, profile_title
 from app.wording.words import tr
 from core.aims.even import EVEN
 from core.aims.girth import GIRTH
-from core.errors import UserError
 
 if TYPE_CHECKING:
     from app.lining.ask_desk import AskDesk
@@ -46,6 +45,8 @@ class AskMenu(QObject):
         self._offer(self.menu.addMenu(tr("Left against right")), EVEN.names)
         self.menu.addSeparator()
         for side in ("left", "right"):
+            if f"profile {side}" not in self._desk.drawn:
+                self.menu.addAction(profile_title(side), partial(self._desk.drawing.begin, side))
             words = tr("{profile} from a table…").format(profile=profile_title(side))
             self.menu.addAction(words, partial(self.ask_profile, side))
 
@@ -53,21 +54,7 @@ class AskMenu(QObject):
         """Ask for a table, and wish for the profile in it."""
         path = ask_table(self._window, tr("Profile from a table"))
         if path:
-            self.take_profile(side, path)
-
-    def take_profile(self, side: str, path: str) -> None:
-        """Wish for the profile in a table through the bust point of a side."""
-        from core.aims.curve_file import profile_goals, read_profile  # noqa: PLC0415 (few ever ask)
-
-        frame = self._window.session.frame
-        if frame is None:
-            return
-        try:
-            goals = profile_goals(frame.stages, side, read_profile(path))
-        except UserError as problem:
-            self._window.desk.show_failure(problem)
-        else:
-            self._desk.wish_curve(f"profile {side}", goals)
+            self._desk.drawing.take_table(side, path)
 
     def _offer(self, menu: QMenu, names: tuple[str, ...]) -> None:
         for name in names:

@@ -11,8 +11,11 @@ from app.presenting.asking import (
     answer_words,
     change_words,
     figure_title,
+    is_met,
     is_signed,
     kept_words,
+    off_words,
+    profile_title,
     values_words,
 )
 from app.wording.words import joined, listed, number, tr
@@ -32,7 +35,7 @@ def show_answer(
         card.show_answer(note=note, can_apply=bool(busy and goals))
     else:
         reply, asked = answer.reply, answer.question.goals
-        met = reply.reachable or (wishes.only_limit is not None and reply.agreed)
+        met = is_met(reply, asked) or (wishes.only_limit is not None and reply.agreed)
         said = answer_words(reply, asked, wishes.only_limit)
         card.show_answer(
             said, "ok" if met else "warn", listed(change_words(design, reply)), note, can_apply=True
@@ -47,8 +50,9 @@ def wish_views(design: Design, wishes: Wishes, answer: Answer | None) -> Iterato
         shown, words = come.get(name, 0.0) if value is None else value, values_words(now, name)
         yield WishView(name, figure_title(name), shown, words, signed=is_signed(name), set_=value is not None)
     for section, goals in wishes.curves.items():
-        words = tr("heights: {count}").format(count=len(goals))
-        yield WishView(section, figure_title(goals[0].name), None, words)
+        reply = answer.reply if answer is not None else None
+        words = off_words(answer.question.goals, reply.reached, section) if answer and reply else ""
+        yield WishView(section, profile_title(section.split()[1]), None, words, set_=bool(goals))
     if design.worn_elastics() and design.line_hold == "spring":
         yield _pressure(wishes.limit, answer)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from core.aims.drawn import Drawn
 from core.aims.figure import Goal
 from core.aims.outline import section_of
 
@@ -19,14 +20,15 @@ _SOFTEST, _HARDEST = 0.2, 50.0  # limits that can be set [kPa]
 
 @dataclass
 class Wishes:
-    """Figures by name [mm], profiles by section, and a ``limit`` [kPa].
+    """Figures by name [mm], profiles by section, what of them is ``drawn``, and a ``limit`` [kPa].
 
-    A figure without a value is shown as it is, and not asked for. Without a limit none is broken but where
-    the red light begins, straps aside.
+    A figure without a value is shown as it is, and not asked for, nor is a profile without goals. Without a
+    limit none is broken but where the red light begins, straps aside.
     """
 
     figures: dict[str, float | None] = field(default_factory=dict)
     curves: dict[str, tuple[Goal, ...]] = field(default_factory=dict)
+    drawn: dict[str, Drawn] = field(default_factory=dict)
     limit: float | None = None
 
     @classmethod
@@ -55,6 +57,7 @@ class Wishes:
         """Wish for a figure, a profile or a limit no longer."""
         self.figures.pop(key, None)
         self.curves.pop(key, None)
+        self.drawn.pop(key, None)
         self.limit = None if key == PRESSURE else self.limit
 
     @property

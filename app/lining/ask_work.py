@@ -65,10 +65,14 @@ class _Known:
 
 
 class AskWork(QObject):
-    """Answers one question at a time. ``answered`` carries an Answer, ``refused`` why there is none."""
+    """Answers one question at a time. ``answered`` carries an Answer, ``refused`` why there is none.
+
+    ``nearer`` carries a question and the nearest design so far, while it is looked for elsewhere.
+    """
 
     answered = Signal(object)
     refused = Signal(object)
+    nearer = Signal(object, object)
 
     def __init__(self, jobs: Jobs, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -83,6 +87,10 @@ class AskWork(QObject):
     def at_work(self) -> bool:
         """Whether the newest question is not answered yet."""
         return self._wanted is not None
+
+    def is_at(self, question: Question) -> bool:
+        """Tell whether a question is the newest, and being answered."""
+        return self._at is question and self._wanted is question
 
     def ask(self, question: Question) -> None:
         """Answer this from now on; what is in a hurry is not broken off, as it soon ends."""
@@ -127,6 +135,7 @@ class AskWork(QObject):
             if missing or not known.now:
                 now, known.presses = known.asking.now(missing)
                 known.now |= now
+            known.asking.nearer = partial(self.nearer.emit, question)
             answer = known.asking.hurried if question.hurried else known.asking.reply
             reply = answer(question.goals, progress) if question.goals else None
             then = known.asking.figures(question.figures, reply.points) if reply is not None else {}

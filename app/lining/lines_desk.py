@@ -45,6 +45,8 @@ class LinesDesk(QObject):
             hidden = self._window.view.hidden_lines
             views = line_views(frame.stages.design, frame, hidden, self.leeways(frame))
             pressed = self._window.pressure_desk.of_elastics(frame)
+            tried, design = self._window.ask_desk.around.is_tried_on, frame.stages.design
+            views = [replace(view, tried=tried(view.names, design)) for view in views]
             self._window.lines.set_lines([pressed_view(view, pressed) for view in views])
 
     def commit_length(self, name: str, ratio: float) -> None:

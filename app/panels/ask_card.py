@@ -7,19 +7,20 @@ from dataclasses import dataclass
 from functools import partial
 
 from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
-from app.dress.parts import IconLabel, OverCard, ToolButton, button, sentence
+from app.dress.parts import IconLabel, OverCard, Segment, ToolButton, button, sentence
 from app.dress.theme import label, set_tag
 from app.panels.figure_field import FigureField
 from app.wording.words import tr
 
-WIDTH = 640
+WIDTH = 664
 """Width of what the card holds [px]."""
 
 _COLUMNS = 2
-_BETWEEN = 28  # columns [px]
-_WAS = 50  # of what it was [px]
+_BETWEEN = 20  # columns [px]
+_WAS = 44  # of what it was [px]
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,16 @@ class WishView:
     kept: bool = False
 
 
+class _WishField(FigureField):
+    """A field that leaves Esc to the card unless something was typed."""
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt names its events
+        if event.key() == Qt.Key.Key_Escape and not self.isModified():
+            event.ignore()
+        else:
+            super().keyPressEvent(event)
+
+
 class _Wish(QWidget):
     """A wish in a row: title, field, what it is now, and the cross that takes it away."""
 
@@ -49,7 +60,7 @@ class _Wish(QWidget):
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(6)
         self.title = label(view.title, "body")
-        self.field = FigureField(view.unit, view.title, signed=view.signed, widest="+1000.0")
+        self.field = _WishField(view.unit, view.title, signed=view.signed, widest="+1000.0")
         set_tag(self.field, "ring", True)
         self.field.setVisible(view.value is not None)
         self.now = label("", "caption")
@@ -72,13 +83,15 @@ class AskCard(OverCard):
     """Takes wishes and shows what comes of them.
 
     ``entered`` carries a wish's key and its value, ``removed`` its key; ``add_asked`` wants the menu under
-    ``add``. ``linked`` says whether the handles move both sides. ``applied`` and ``left`` end it; ``helped``
-    is the button that shows when nothing can be asked.
+    ``add``. ``hand_chosen`` carries what the handles drag: "bust", "apex" or "profile"; ``linked`` whether
+    they move both sides. ``applied`` and ``left`` end it; ``helped`` is the button that shows when nothing
+    can be asked.
     """
 
     entered = Signal(str, float)
     removed = Signal(str)
     add_asked = Signal()
+    hand_chosen = Signal(str)
     linked = Signal(bool)
     applied = Signal()
     left = Signal()
@@ -111,6 +124,11 @@ class AskCard(OverCard):
         head.addWidget(IconLabel("target", "accent", 18))
         head.addWidget(label(tr("Ask for the result"), "heading"))
         head.addStretch(1)
+        hands = [("bust", tr("Bust point")), ("apex", tr("Foremost place")), ("profile", tr("Profile"))]
+        self.hand = Segment(hands, small=True)
+        self.hand.setAccessibleName(tr("What is dragged on the body"))
+        self.hand.chosen.connect(self.hand_chosen)
+        head.addWidget(self.hand)
         self.link = ToolButton("link", tr("Drag left and right together"), size=16, room=28)
         self.link.setCheckable(True)
         self.link.setChecked(True)
@@ -169,11 +187,17 @@ class AskCard(OverCard):
         self.apply.setEnabled(can_apply)
         self._fit()
 
-    def show_help(self, shown: bool, lines: bool = True) -> None:
-        """Take Apply away while something is missing; ``lines`` tells that it is these, and leads to them."""
-        self.help_.setVisible(shown and lines)
+    def show_hand(self, kind: str) -> None:
+        """Show what the handles drag; a profile is that of one side."""
+        self.hand.set_choice(kind)
+        self.link.setEnabled(kind != "profile")
+
+    def show_help(self, shown: bool, locked: bool = False) -> None:
+        """Take Apply away while lines are missing, or all ``locked``; the button leads out of that."""
+        self.help_.setText(tr("Unlock them") if locked else tr("Choose lines"))
+        self.help_.setVisible(shown)
         self.apply.setVisible(not shown)
-        for part in (self.add, self.link):
+        for part in (self.add, self.link, self.hand):
             part.setVisible(not shown)
 
     def take_focus(self, key: str) -> None:
@@ -194,7 +218,7 @@ class AskCard(OverCard):
             row.field.entered.connect(partial(self.entered.emit, wish.key))
             row.remove.clicked.connect(partial(self._remove, wish.key))
             self.wishes[wish.key] = row
-            wide = row.sizeHint().width() + _WAS > (WIDTH - _BETWEEN) // _COLUMNS
+            wide = wish.value is None or row.sizeHint().width() + _WAS > (WIDTH - _BETWEEN) // _COLUMNS
             at += at % _COLUMNS if wide else 0  # a long title is not cut: it takes a line of its own
             self._grid.addWidget(row, at // _COLUMNS, at % _COLUMNS, 1, _COLUMNS if wide else 1)
             at += _COLUMNS if wide else 1
@@ -204,6 +228,11 @@ class AskCard(OverCard):
 
     def _fit(self) -> None:
         parts: list[QLabel] = [self._hint, self.answer, self.changes, self.note]
+        buttons = [each for each in (self.help_, self.apply, self.cancel) if not each.isHidden()]
+        beside = sum(each.sizeHint().width() + 4 for each in buttons) + 16
         for part in parts:
+            # A sentence that wraps is as high as it is at the width that it really gets.
+            width = WIDTH - (0 if part is self._hint else beside)
+            part.setMinimumHeight(part.heightForWidth(width) if part.text() else 0)
             part.updateGeometry()
         self.adjustSize()

@@ -70,9 +70,8 @@ class LineRow(QFrame):
         for each in (self.slider, self.percent, self.millimetres):
             each.setVisible(view.constrained)
             each.setEnabled(view.settable)
-            set_tip(
-                each, locked_tip() if view.locked else elastic_tip() if view.elastic else self._tips[each]
-            )
+            set_tag(each, "tried", "yes" if view.tried else "")
+            set_tip(each, _tip(view) or self._tips[each])
         if has is self and view.settable:
             self.slider.setFocus(Qt.FocusReason.OtherFocusReason)
         self._measure.setVisible(not view.constrained)
@@ -260,7 +259,8 @@ class LineRow(QFrame):
         in_hand = self._hovered or self._open
         self._both.setVisible(bool(self.view.sides) and not in_hand)
         self._link.setVisible(bool(self.view.apart) and not self._open)
-        self._eye.setVisible(in_hand or not self.view.visible)
+        crowded = bool(self.view.apart) and not self._open
+        self._eye.setVisible((in_hand and not crowded) or not self.view.visible)
         self._lock.setVisible((in_hand and self.view.constrained) or self.view.locked)
         self.details.setVisible(self._open)
 
@@ -273,6 +273,13 @@ def _still_words(view: LineView) -> str:
     if view.own:
         return tr("On points that do not move: measured only.")
     return tr("On the rib cage: measured, it does not move.")
+
+
+def _tip(view: LineView) -> str:
+    """Return what is said on hovering over a line's length instead of the usual."""
+    if view.tried:
+        return tr("Tried on by what is asked for: taken with Apply.")
+    return locked_tip() if view.locked else elastic_tip() if view.elastic else ""
 
 
 def elastic_tip() -> str:

@@ -24,6 +24,7 @@ class LineView:
     ``reached_mm`` is None before a run. A line that is not ``constrained`` is only measured; an ``own`` one
     can be removed and led elsewhere. ``partner`` names its line of the other side, if there is one; the row
     of a linked pair has both ``sides``, and means of their lengths. ``own_title`` is empty for the usual one.
+    One that is ``tried`` has a length that is only shown, and was not taken.
     One that ``splits`` goes across both sides and can be split into a left and a right line.
     ``apart`` is the side, "left" or "right", of a line that is set apart from its partner; ``pair_title``
     what both are called together.
@@ -59,6 +60,7 @@ class LineView:
     pressed: str = ""
     tone: str = ""
     splits: bool = False
+    tried: bool = False
 
     @property
     def names(self) -> tuple[str, ...]:

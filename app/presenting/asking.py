@@ -14,13 +14,16 @@ from core.aims.figure import Goal
 from core.aims.girth import GIRTH
 from core.aims.outline import profiles_off, section_of
 from core.design import Design
+from core.mesh import Floats
 
 if TYPE_CHECKING:
     from core.request import Reply
 
 _MET = 0.05  # [mm]
+_LIKE = 0.5  # of a profile [mm]
 _ABOUT = 1.015  # of a limit that counts as kept
-_SAME = 5e-4  # ratios that read the same [1]
+SAME = 5e-4
+"""Ratios that are this near to each other read the same [1]."""
 
 
 def figure_title(name: str) -> str:
@@ -78,6 +81,9 @@ def answer_words(reply: Reply, goals: Sequence[Goal], limit: float | None = None
         return said.format(kpa=number(most), figures=listed(_come(reply, goals)))
     if reply.reachable:
         return tr("Reached.")
+    if is_met(reply, goals):
+        most = max(float(np.abs(off).max()) for off in profiles_off(goals, reply.reached).values())
+        return tr("Reached within {mm} mm.").format(mm=number(most))
     nearest = listed(_nearest(reply, goals))
     if not reply.agreed:
         said = tr("Nearest so far: {nearest}. Lengths, elastics and pressures did not come to agree.")
@@ -102,8 +108,28 @@ def _nearest(reply: Reply, goals: Sequence[Goal]) -> Iterable[str]:
         yield figure_words(goal.name, reply.reached[goal.name])
     for section, off in profiles_off(goals, reply.reached).items():
         said = tr("{profile} off by {mean} mm in the mean, {most} mm at most")
-        mean, most = number(float(np.sqrt((off**2).mean()))), number(float(np.abs(off).max()))
+        mean, most = _mean_and_most(off)
         yield said.format(profile=figure_title(section + " 0"), mean=mean, most=most)
+
+
+def off_words(goals: Sequence[Goal], reached: Mapping[str, float], section: str) -> str:
+    """Return how far what is ``reached`` is off the profile of a section: mean and largest distance."""
+    off = profiles_off(goals, reached).get(section)
+    if off is None:
+        return ""
+    mean, most = _mean_and_most(off)
+    return tr("off by {mean} mm, at most {most}").format(mean=mean, most=most)
+
+
+def is_met(reply: Reply, goals: Sequence[Goal]) -> bool:
+    """Tell whether an answer is what was asked for, a profile within what a tailor can tell."""
+    near = {goal.name: abs(reply.reached[goal.name] - goal.value) for goal in goals}
+    within = all(off <= (_LIKE if section_of(name) else _MET) for name, off in near.items())
+    return reply.reachable or (reply.agreed and not reply.pressing and within)
+
+
+def _mean_and_most(off: Floats) -> tuple[str, str]:
+    return number(float(np.abs(off).mean())), number(float(np.abs(off).max()))
 
 
 def _reasons(reply: Reply) -> list[str]:
@@ -114,7 +140,7 @@ def _reasons(reply: Reply) -> list[str]:
         said.format(lines=_titles(names, reply.design), kpa=kpa)
         for names, said in (
             (short, tr("{lines} may not be shorter")),
-            (long, tr("{lines} may not be longer")),
+            (long, tr("{lines} may not be longer: a longer line would have to push")),
             (reply.pressing, tr("{lines} may not press more than {kpa} kPa")),
         )
         if names
@@ -129,7 +155,7 @@ def change_words(before: Design, reply: Reply) -> list[str]:
     after, said = reply.design, []
     for title, name in _rows(sorted(after.worn()), after):
         one, other = before.ratio(name), after.ratio(name)
-        if abs(one - other) >= _SAME:
+        if abs(one - other) >= SAME:
             words = tr("{line} {before} → {after} %")
             values = {"before": number(100.0 * one), "after": number(100.0 * other)}
             said.append(words.format(line=title, **values))

@@ -1,4 +1,4 @@
-"""The handle of a bust point in a 3D view: it is dragged to where the bust point is wished."""
+"""A handle on the breast in a 3D view: it is dragged to where the skin is wished."""
 
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
@@ -13,8 +13,8 @@ from app.showing.viewport import Viewport
 from app.wording.words import tr
 from core.mesh import Floats
 
-SIZE = 48
-"""Width and height of the handle with its arrows [px]."""
+SIZE, SMALL = 48, 26
+"""Width and height of a handle with its arrows, and of one without [px]."""
 
 FINE = 0.1
 """What is left of a drag while Shift is held [1]."""
@@ -28,7 +28,9 @@ _FACING = {"left": np.array([0.42, -0.91, 0.0]), "right": np.array([-0.42, -0.91
 
 
 class BustHandle(QWidget):
-    """A knob where a bust point is wished, with a thread to where it is.
+    """A knob where a place of the breast on a ``side`` is wished, with a thread to where it is.
+
+    ``name`` is heard. A ``small`` one has neither arrows nor thread.
 
     ``taken`` and ``dropped`` when a hand closes and opens; ``pulled`` carries each step up and out [mm]: of
     the two ways those that do not point at the eye. Arrow keys are such steps too, between ``taken`` and
@@ -39,26 +41,26 @@ class BustHandle(QWidget):
     pulled = Signal(float, float)
     dropped = Signal()
 
-    def __init__(self, viewport: Viewport, side: str) -> None:
+    def __init__(self, viewport: Viewport, side: str, name: str, *, small: bool = False) -> None:
         self._canvas = viewport.overlay.parentWidget()
         super().__init__(self._canvas)
-        self._viewport, self.side = viewport, side
+        self._viewport, self.side, self._small = viewport, side, small
         self._place, self._foot = np.zeros(3), np.zeros(3)
         self._ways = np.zeros((2, 2))  # of one mm up and out over the picture, as columns [px]
         self._last: QPointF | None = None
         self._hovered = self._wanted = False
-        self._thread = _Thread(self._canvas)
-        self.setFixedSize(SIZE, SIZE)
+        self._thread = None if small else _Thread(self._canvas)
+        self._size = SMALL if small else SIZE
+        self.setFixedSize(self._size, self._size)
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        names = {"left": tr("Handle of the left bust point"), "right": tr("Handle of the right bust point")}
-        self.setAccessibleName(names[side])
-        self.setToolTip(tr("Drag to where the bust point is to be; Shift: finer, Esc: back. Arrows: 1 mm"))
+        self.setAccessibleName(name)
+        self.setToolTip(tr("Drag to where it is to be; Shift: finer, Esc: back. Arrows: 1 mm"))
         viewport.view_changed.connect(self._stand)
         viewport.installEventFilter(self)
         self.hide()
 
     def show_at(self, place: Floats, foot: Floats) -> None:
-        """Stand at ``place`` (3,) [mm], with the bust point at ``foot`` (3,) [mm] now."""
+        """Stand at ``place`` (3,) [mm], with what it moves at ``foot`` (3,) [mm] now."""
         self._place, self._foot, self._wanted = place, foot, True
         self._stand()
 
@@ -79,7 +81,8 @@ class BustHandle(QWidget):
 
     def _stand(self) -> None:
         shown = self._wanted and self._viewport.shows_body and self._faces()
-        self._thread.setVisible(shown)
+        if self._thread is not None:
+            self._thread.setVisible(shown)
         if not shown:
             if self.isVisible():
                 self.hide()
@@ -90,17 +93,17 @@ class BustHandle(QWidget):
         full = max(float(np.linalg.norm(across - spot)), 1e-6)
         ways = np.stack([up - spot, out - spot], axis=1)
         self._ways = np.where(np.linalg.norm(ways, axis=0) >= _FLATTEST * full, ways, 0.0)
-        self.move(*(round(each) - SIZE // 2 for each in spot))
-        foot = view.to_picture(self._foot[None], *room)[0, :2]
-        self._thread.show_between(QPointF(*foot), QPointF(*spot))
+        self.move(*(round(each) - self._size // 2 for each in spot))
+        if self._thread is not None:
+            foot = view.to_picture(self._foot[None], *room)[0, :2]
+            self._thread.show_between(QPointF(*foot), QPointF(*spot))
         self._show_cursor()
         self.show()
         self.raise_()
         self.update()
 
     def _faces(self) -> bool:
-        """Tell whether this breast is seen, and not only what lies behind it."""
-        return bool(self._viewport.scene.view.axes[2] @ _FACING[self.side] > 0.0)
+        return faces(self._viewport, self.side)
 
     def _steps(self, over: Floats) -> tuple[float, float]:
         """Return the steps up and out [mm] of a step over the picture, (2,) [px]."""
@@ -141,7 +144,8 @@ class BustHandle(QWidget):
         self.update()
 
     def hideEvent(self, event: QHideEvent) -> None:
-        self._thread.hide()
+        if self._thread is not None:
+            self._thread.hide()
         if self._last is not None:  # the hand will open over something else
             self._last = None
             self.dropped.emit()
@@ -178,22 +182,22 @@ class BustHandle(QWidget):
     def paintEvent(self, event: QPaintEvent) -> None:
         tokens, painter = tokens_of(self), QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.translate(SIZE / 2.0, SIZE / 2.0)
+        painter.translate(self._size / 2.0, self._size / 2.0)
         lively = self._hovered or self.hasFocus() or self._last is not None
         halo = QColor(tokens.accent)
         halo.setAlpha(90 if lively else 45)
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(halo)
-        painter.drawEllipse(QPointF(), 14.0, 14.0)
+        painter.drawEllipse(QPointF(), *(2 * [12.0 if self._small else 14.0]))
         for way in self._ways.T:
-            if way.any():
+            if way.any() and not self._small:
                 self._arrows(painter, float(np.arctan2(way[1], way[0])), tokens.accent, tokens.raised)
         painter.setPen(QPen(QColor(tokens.accent), 2.4 if lively else 1.8))
         painter.setBrush(QColor(tokens.raised))
-        painter.drawEllipse(QPointF(), 7.5, 7.5)
+        painter.drawEllipse(QPointF(), *(2 * [6.0 if self._small else 7.5]))
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(QColor(tokens.accent))
-        painter.drawEllipse(QPointF(), 3.0, 3.0)
+        painter.drawEllipse(QPointF(), *(2 * [2.5 if self._small else 3.0]))
 
     def _arrows(self, painter: QPainter, angle: float, ink: str, rim: str) -> None:
         """Paint an arrow each way; a rim keeps them apart from any skin behind them."""
@@ -207,6 +211,11 @@ class BustHandle(QWidget):
                 painter.setPen(pen)
                 painter.drawPolyline([QPointF(17.0, -4.0), QPointF(21.0, 0.0), QPointF(17.0, 4.0)])
             painter.restore()
+
+
+def faces(viewport: Viewport, side: str) -> bool:
+    """Tell whether the breast of a side is seen, and not only what lies behind it."""
+    return bool(viewport.scene.view.axes[2] @ _FACING[side] > 0.0)
 
 
 class _Thread(QWidget):

@@ -10,8 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from core.aims.figure import Goal
-from core.aims.outline import profile_name
-from core.aims.readings import reading
+from core.aims.outline import profile_name, skin_of
 from core.errors import UserError
 from core.mesh import Floats
 from core.pipeline import Stages
@@ -61,7 +60,7 @@ def profile_goals(stages: Stages, section: str, curve: Floats) -> tuple[Goal, ..
     heights = stages.control.mesh.vertices[~stages.control.fixed, 2]
     low, high = float(heights.min()), float(heights.max())
     inside = curve[(curve[:, 0] >= low) & (curve[:, 0] <= high)]
-    inside = inside[inside[:, 0] > _overhang(stages, section, inside)]
+    inside = inside[inside[:, 0] > overhang(stages, section, inside)]
     if not len(inside):
         raise UserError(
             f"No height of the profile lies where the body can be reshaped, {low:.0f} to {high:.0f} mm.",
@@ -71,19 +70,37 @@ def profile_goals(stages: Stages, section: str, curve: Floats) -> tuple[Goal, ..
     return tuple(Goal(profile_name(section, height), out) for height, out in chosen.tolist())
 
 
-def _overhang(stages: Stages, section: str, curve: Floats) -> float:
+def overhang(stages: Stages, section: str, curve: Floats) -> float:
     """Return the height [mm] below which a breast hangs over, at rest or as wished; -inf if it does not.
 
-    From there down the foremost place jumps from the breast to the chest: no slope leads over that.
+    The ``curve`` (k, 2) [mm] is what is wished: heights, upwards, and how far out. From there down the
+    foremost place jumps from the breast to the chest: no slope leads over that.
     """
     points, top = stages.control.mesh.vertices, stages.rest_marks
     below = curve[curve[:, 0] < min(top.nipple_left_z, top.nipple_right_z)]
-    rest = [reading(stages, profile_name(section, height))(points).value for height in below[:, 0]]
+    rest, _ = skin_of(stages, section, below[:, 0])(points)
     found = -np.inf
-    for outs in (below[:, 1], np.array(rest)):
+    for outs in (below[:, 1], rest):
         steep = np.abs(np.diff(outs)) > _STEEP * np.diff(below[:, 0])
         found = max(found, *below[1:, 0][steep], -np.inf)
     return found
+
+
+def foremost(curve: Floats, step: float) -> Floats:
+    """Return how far a ``curve`` (k, 2) [mm] of heights and outs stands out at heights a ``step`` apart."""
+    return _foremost(curve[:-1], curve[1:], step)
+
+
+def _foremost(a: Floats, b: Floats, step: float) -> Floats:
+    """Return the largest out, with its height, (r, 2) [mm], of pieces from ``a`` to ``b``, (k, 2)."""
+    low, high = min(a[:, 0].min(), b[:, 0].min()), max(a[:, 0].max(), b[:, 0].max())
+    found = []
+    for height in np.arange(np.ceil(low / step) * step, high, step):
+        crossing = (a[:, 0] <= height) != (b[:, 0] <= height)
+        if crossing.any():
+            start, way = a[crossing], (b - a)[crossing]
+            found.append((height, (start[:, 1] + (height - start[:, 0]) / way[:, 0] * way[:, 1]).max()))
+    return np.array(found).reshape(-1, 2)
 
 
 def _outline(path: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> Floats:
@@ -97,13 +114,7 @@ def _outline(path: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> F
     if not joined.any():
         raise UserError(f"{path} has no curve in it.", "Export the section once more.")
     a, b = (np.stack([z[each], -y[each]], axis=1)[joined] for each in (slice(None, -1), slice(1, None)))
-    found = []
-    for height in np.arange(np.ceil(z.min() / _STEP) * _STEP, z.max(), _STEP):
-        crossing = (a[:, 0] <= height) != (b[:, 0] <= height)
-        if crossing.any():
-            start, way = a[crossing], (b - a)[crossing]
-            found.append((height, (start[:, 1] + (height - start[:, 0]) / way[:, 0] * way[:, 1]).max()))
-    return _in_order(path, np.array(found))
+    return _in_order(path, _foremost(a, b, _STEP))
 
 
 def _number(path: str, row: Sequence[str], column: int) -> float:

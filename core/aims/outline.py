@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 from scipy import sparse
@@ -139,6 +139,11 @@ def _parts(corners: Floats, places: Floats) -> Floats:
 @lru_cache(maxsize=2)  # all heights of a profile are read off the same one
 def _section(mesh: Mesh, binding: Binding, at: float) -> _Section:
     return _Section(mesh, binding, at)
+
+
+def skin_of(stages: Stages, section: str, heights: Floats) -> ReadMany:
+    """Return what reads how far the skin stands out at ``heights`` (k,) [mm]; nan where there is none."""
+    return partial(_section(stages.body.mesh, stages.binding, section_at(stages, section)), heights=heights)
 
 
 def heights_of(stages: Stages, names: Sequence[str]) -> ReadMany:

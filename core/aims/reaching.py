@@ -99,7 +99,7 @@ class Search:
             )
         read = Figures(stages).of([goal.name for goal in goals]) if read is None else read
         self._answers = Answers(stages, self._groups, read)
-        self.nearer: Callable[[Found], None] = lambda found: None
+        self.nearer: Callable[[Found], object] = lambda found: None
         low = [
             max(RATIO_LIMITS[0], *(bounds.shortest.get(name, 0.0) for name in each)) for each in self._groups
         ]

@@ -1,0 +1,127 @@
+"""What is dragged on the body while the result is asked for, and profiles that are drawn there."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtCore import QObject
+
+from app.lining.ask_handles import KINDS
+from app.seeing.framing import box_of
+from app.wording.words import tr
+from core.errors import UserError
+
+if TYPE_CHECKING:
+    from app.lining.ask_desk import AskDesk
+    from app.main_window import MainWindow
+    from core.aims.drawn import Drawn
+
+_BESIDE = 20.0  # what is seen above and below a profile [mm]
+_LEVEL = 0.05  # part of the way to the side from which on it is looked at from there [1]
+
+
+class AskDrawing(QObject):
+    """Chooses by ``choose`` what the handles drag; profiles begin with the skin as it is shown."""
+
+    def __init__(self, window: MainWindow, desk: AskDesk) -> None:
+        super().__init__(desk)
+        self._window, self._desk = window, desk
+
+    def choose(self, kind: str) -> None:
+        """Let the handles be those of the "bust" points, of the foremost places ("apex"), or of a "profile".
+
+        The figures that they drag are shown; those of the others go unless they are asked for.
+        """
+        desk = self._desk
+        if kind == "profile" and not desk.drawn:
+            self.begin(self._side())
+            return
+        if kind in KINDS:
+            for name in (name for names in KINDS.values() for name in names):
+                if desk.wishes.get(name) is None and name not in KINDS[kind]:
+                    desk.wishes.pop(name, None)
+            for name in KINDS[kind]:
+                if not any(each.startswith(name) for each in desk.wishes):
+                    desk.wishes[name] = None
+        self._turn_to(kind)
+
+    def begin(self, side: str) -> None:
+        """Draw the profile through the bust point of a side, as it is now, to be dragged."""
+        from core.aims.drawn import drawn  # noqa: PLC0415 (few ever ask)
+
+        frame, answer = self._window.session.frame, self._desk.answer
+        if frame is None:
+            return
+        reply = answer.reply if answer is not None else None
+        try:
+            profile = drawn(frame.stages, side, frame.control_points if reply is None else reply.points)
+        except UserError as problem:
+            self._window.desk.show_failure(problem)
+        else:
+            self._take(profile)
+
+    def take_table(self, side: str, path: str) -> None:
+        """Wish for the profile in a table through the bust point of a side."""
+        from core.aims.curve_file import read_profile  # noqa: PLC0415 (few ever ask)
+        from core.aims.drawn import from_table  # noqa: PLC0415
+
+        frame = self._window.session.frame
+        if frame is None:
+            return
+        try:
+            profile = from_table(frame.stages, side, read_profile(path))
+            profile.goals(frame.stages)
+        except UserError as problem:
+            self._window.desk.show_failure(problem)
+        else:
+            self._take(profile)
+
+    def draw(self, section: str, profile: Drawn) -> None:
+        """Wish for a profile as it is drawn; where it cannot be, the one before stays."""
+        frame = self._window.session.frame
+        if frame is None:
+            return
+        try:
+            goals = profile.goals(frame.stages)
+        except UserError:
+            return
+        self._desk.wish_curve(section, goals, profile)
+
+    def hint(self) -> str:
+        """Return what to do with the handles."""
+        hints = {
+            "bust": tr("Type what it is to be, or drag the handle at the bust point."),
+            "apex": tr("Type what it is to be, or drag the handle at the foremost place."),
+            "profile": tr("Drag the curve on the body by its handles to where the skin is to be."),
+        }
+        return hints[self._desk.handles.kind]
+
+    def _take(self, profile: Drawn) -> None:
+        self.draw(f"profile {profile.section}", profile)
+        self._look_at(profile)
+        self._turn_to("profile")
+
+    def _turn_to(self, kind: str) -> None:
+        self._desk.handles.kind = kind
+        self._desk.card.show_hand(kind)
+        self._desk.ask()
+
+    def _side(self) -> str:
+        return "right" if self._window.view.viewport.view.axes[2][0] < -_LEVEL else "left"
+
+    def _look_at(self, profile: Drawn) -> None:
+        """Look at a profile from its side, and over the card."""
+        from core.aims.drawn import in_space  # noqa: PLC0415
+
+        view, viewport, frame = self._window.view, self._window.view.viewport, self._window.session.frame
+        if frame is None:
+            return
+        room, card = max(viewport.height(), 1), view.floating.seen(self._desk.card).top()
+        covered = min(max(view.height() - card, 0), room // 2 + 1)
+        box = box_of(in_space(frame.stages, profile.section, profile.curve))
+        # As large as the part of the picture allows that the card leaves.
+        middle, half = box[2].mean(), 0.5 * (np.ptp(box[2]) + 2.0 * _BESIDE) * room / (room - covered)
+        box[2] = middle - half, middle + half
+        framed = viewport.view.named(profile.section).framing(box, viewport.width() / room)
+        viewport.glide_to(framed.pan(0.0, -0.5 * covered, room))

@@ -1,0 +1,75 @@
+"""Profiles that are drawn on the body while the result is asked for."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Signal
+
+from app.showing.bust_handle import BustHandle
+from app.showing.wish_curve import WishCurve
+from app.wording.words import tr
+from core.aims.drawn import Drawn, in_space, outline
+from core.frame import Frame
+
+if TYPE_CHECKING:
+    from app.showing.viewport import Viewport
+
+
+class AskProfile(QObject):
+    """One curve a section with its handles in a view.
+
+    ``taken`` and ``dropped`` when a hand closes and opens; ``pulled`` carries the section, the number of the
+    handle, and each step up and out [mm].
+    """
+
+    taken = Signal()
+    pulled = Signal(str, int, float, float)
+    dropped = Signal()
+
+    def __init__(self, viewport: Viewport, parent: QObject) -> None:
+        super().__init__(parent)
+        self._viewport = viewport
+        self._curves: dict[str, WishCurve] = {}
+        self.handles: dict[str, list[BustHandle]] = {}
+
+    def put_away(self) -> None:
+        """Show none any longer."""
+        for curve in self._curves.values():
+            curve.put_away()
+        for handle in self.all():
+            handle.put_away()
+
+    def all(self) -> list[BustHandle]:
+        """Return all handles, from below."""
+        return [handle for each in self.handles.values() for handle in each]
+
+    def follow(self, frame: Frame, drawn: dict[str, Drawn]) -> None:
+        """Show these profiles, by section, on the body of a frame."""
+        for gone in [each for each in self.handles if each not in drawn]:
+            self._curves.pop(gone).deleteLater()
+            for handle in self.handles.pop(gone):
+                handle.put_away()
+                handle.deleteLater()
+        for section, profile in drawn.items():
+            if len(self.handles.get(section, ())) != len(profile.handles):
+                self._make(section, profile)
+            stages = frame.stages
+            wished = in_space(stages, profile.section, profile.curve)
+            self._curves[section].show_curves(wished, outline(stages, profile, frame.control_points))
+            spots = in_space(stages, profile.section, profile.spots)
+            for handle, spot in zip(self.handles[section], spots, strict=True):
+                handle.show_at(spot, spot)
+
+    def _make(self, section: str, profile: Drawn) -> None:
+        side = profile.section
+        self._curves[section] = WishCurve(self._viewport, side)
+        self.handles[section] = []
+        for number in range(len(profile.handles)):
+            name = tr("Handle {number} of the profile, from below").format(number=number + 1)
+            handle = BustHandle(self._viewport, side, name, small=True)
+            handle.taken.connect(self.taken)
+            handle.pulled.connect(partial(self.pulled.emit, section, number))
+            handle.dropped.connect(self.dropped)
+            self.handles[section].append(handle)

@@ -1,0 +1,122 @@
+"""A profile that is drawn: the skin's outline as it stands, pulled by a few handles (ours)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from core.aims.curve_file import foremost, overhang, profile_goals
+from core.aims.figure import Goal
+from core.aims.outline import section_at, skin_of
+from core.mesh import Floats, Indices, Points
+from core.pipeline import Stages
+
+STEP = 5.0
+"""Heights at which a drawn profile is asked for [mm]."""
+
+FARTHEST = 60.0
+"""How far a handle goes each way from where it was [mm]."""
+
+_FINE = 2.5  # heights at which the outline is read [mm]
+_ENOUGH = 8  # rows of a table on which handles are of use
+_APART = 20.0  # about as far are handles from each other [mm]
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """The profile of a section, "left" or "right" or its x [mm], with ``handles`` (h,) on it.
+
+    ``base`` (k, 2) [mm] are heights, upwards, and how far the skin stood out there; ``handles`` are places
+    along it and ``steps`` (h, 2) [mm] how far each was pulled up and out. Both ends stay where the control
+    mesh is fixed; where a breast hangs over, the lower end is a handle. One that is ``given`` by a table is
+    asked for as it is; else nothing is as long as no handle was pulled.
+    """
+
+    section: str
+    base: Floats
+    handles: Indices
+    steps: Floats
+    given: bool = False
+
+    @property
+    def curve(self) -> Floats:
+        """The curve as it is pulled, heights and how far out, (k, 2) [mm]."""
+        return self.base + self._shares @ self.steps
+
+    @property
+    def spots(self) -> Floats:
+        """Where the handles stand, heights and how far out, (h, 2) [mm]."""
+        return self.base[self.handles] + self.steps
+
+    def pulled(self, handle: int, up: float, out: float) -> Drawn:
+        """Return it with one handle pulled further [mm]."""
+        steps = self.steps.copy()
+        steps[handle] = np.clip(steps[handle] + [up, out], -FARTHEST, FARTHEST)
+        return replace(self, steps=steps)
+
+    def goals(self, stages: Stages) -> tuple[Goal, ...]:
+        """Return what is asked for. Raises UserError if it lies nowhere where the body can be reshaped."""
+        if not self.steps.any():
+            return profile_goals(stages, self.section, self.base) if self.given else ()
+        return profile_goals(stages, self.section, foremost(self.curve, STEP))
+
+    @property
+    def _shares(self) -> Floats:
+        """How much of each handle's step each place of the curve takes, (k, h): smooth in between."""
+        along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(self.base, axis=0), axis=1))])
+        knots = along[np.unique(np.concatenate([[0, len(along) - 1], self.handles]))]
+        piece = np.clip(np.searchsorted(knots, along, side="right") - 1, 0, len(knots) - 2)
+        part = (along - knots[piece]) / (knots[piece + 1] - knots[piece])
+        part = part * part * (3.0 - 2.0 * part)
+        shares = np.zeros((len(along), len(knots)))
+        rows = np.arange(len(along))
+        shares[rows, piece], shares[rows, piece + 1] = 1.0 - part, part
+        return shares[:, np.searchsorted(knots, along[self.handles])]
+
+
+def drawn(stages: Stages, section: str, control_points: Points) -> Drawn:
+    """Return the profile of a section as it is at control points, (n, 3) [mm], with handles, none pulled."""
+    heights = stages.control.mesh.vertices[~stages.control.fixed, 2]
+    grid = np.arange(heights.min(), heights.max(), _FINE)
+    base = np.stack([grid, skin_of(stages, section, grid)(control_points)[0]], axis=1)
+    base = base[np.isfinite(base[:, 1])]
+    hangs = overhang(stages, section, base)
+    base = base[base[:, 0] > hangs]
+    return Drawn(section, base, handles := _handles(base, np.isfinite(hangs)), np.zeros((len(handles), 2)))
+
+
+def from_table(stages: Stages, section: str, curve: Floats) -> Drawn:
+    """Return the profile of a ``curve`` (k, 2) [mm] of heights and outs, with handles if it is long."""
+    heights = stages.control.mesh.vertices[~stages.control.fixed, 2]
+    inside = curve[(curve[:, 0] >= heights.min()) & (curve[:, 0] <= heights.max())]
+    long = len(inside) >= _ENOUGH
+    handles = _handles(inside, False) if long else np.zeros(0, dtype=np.int64)
+    return Drawn(section, inside if long else curve, handles, np.zeros((len(handles), 2)), given=True)
+
+
+def outline(stages: Stages, profile: Drawn, control_points: Points) -> Points:
+    """Return the skin's outline at the heights of a profile, (k, 3) [mm], at control points (n, 3) [mm]."""
+    heights = profile.base[:, 0]
+    outs, _ = skin_of(stages, profile.section, heights)(control_points)
+    there = np.isfinite(outs)
+    return in_space(stages, profile.section, np.stack([heights[there], outs[there]], axis=1))
+
+
+def in_space(stages: Stages, section: str, curve: Floats) -> Points:
+    """Return heights and how far out, (k, 2) [mm], of a section as places, (k, 3) [mm]."""
+    at = np.full(len(curve), section_at(stages, section))
+    return np.stack([at, -curve[:, 1], curve[:, 0]], axis=1)
+
+
+def _handles(base: Floats, hangs: bool) -> Indices:
+    """Return where handles stand: at the foremost place, between it and the ends, and at one that hangs."""
+    heights = base[:, 0]
+    middle = heights[int(base[1:-1, 1].argmax()) + 1]
+    above = max(round((heights[-1] - middle) / _APART), 2)  # pieces
+    below = max(round((middle - heights[0]) / _APART), 2 - hangs)
+    wanted = list(np.linspace(heights[0], middle, below + 1)[1:])
+    wanted += list(np.linspace(middle, heights[-1], above + 1)[1:-1])
+    if hangs:
+        wanted.append(heights[0])
+    return np.unique([int(np.abs(heights - height).argmin()) for height in wanted])

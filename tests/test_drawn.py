@@ -1,0 +1,88 @@
+"""A profile that is drawn: the skin as it is, pulled by handles, smooth in between."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.wording.samples import sample_design
+from core.aims.drawn import FARTHEST, Drawn, drawn, from_table, outline
+from core.aims.outline import profile_name
+from core.aims.readings import reading
+from core.pipeline import Stages, build
+
+
+def body(name: str) -> Stages:
+    return build(replace(sample_design(name), volume="exact").with_line("mid-bust", 0.97))
+
+
+@pytest.fixture(scope="module")
+def stages() -> Stages:
+    return body("mannequin")
+
+
+@pytest.fixture(scope="module")
+def profile(stages: Stages) -> Drawn:
+    return drawn(stages, "left", stages.control.mesh.vertices)
+
+
+def test_it_begins_with_the_skin_and_asks_for_nothing(stages: Stages, profile: Drawn) -> None:
+    points = stages.control.mesh.vertices
+    for height, out in profile.base[::8].tolist():
+        assert out == pytest.approx(reading(stages, profile_name("left", height))(points).value, abs=1e-3)
+    assert profile.curve == pytest.approx(profile.base)
+    assert profile.goals(stages) == ()
+    assert 3 <= len(profile.handles) <= 6
+    foremost = profile.base[:, 1].argmax()
+    assert foremost in profile.handles
+    places = outline(stages, profile, points)
+    assert places[:, 2] == pytest.approx(profile.base[:, 0])
+    assert -places[:, 1] == pytest.approx(profile.base[:, 1])
+    assert np.ptp(places[:, 0]) == 0.0
+
+
+def test_a_pulled_handle_takes_the_curve_along_as_far_as_the_next(stages: Stages, profile: Drawn) -> None:
+    pulled = profile.pulled(1, 4.0, -3.0)
+    before, here, after = profile.handles[:3]
+    assert pulled.spots[1] == pytest.approx(profile.base[here] + [4.0, -3.0])
+    assert pulled.curve[here] == pytest.approx(pulled.spots[1])
+    moved = pulled.curve - profile.base
+    assert np.abs(moved[: before + 1]).max() == 0.0
+    assert np.abs(moved[after:]).max() == 0.0
+    steps = np.abs(np.diff(moved[:, 0]))
+    assert steps.max() < 3.0 * 4.0 / min(here - before, after - here), "no jump, only a slope"
+    assert steps[[before, here - 1, here, after - 1]].max() < 0.5 * steps.max(), "level at every handle"
+    # What is asked for is that curve, every 5 mm.
+    goals = pulled.goals(stages)
+    heights, outs = np.array([(float(goal.name.split()[2]), goal.value) for goal in goals]).T
+    assert np.diff(heights) == pytest.approx(5.0)
+    assert outs == pytest.approx(np.interp(heights, *pulled.curve.T), abs=1e-6)
+
+
+def test_a_handle_goes_only_so_far_and_the_ends_stay(profile: Drawn) -> None:
+    far = profile
+    for _ in range(3):
+        far = far.pulled(0, 0.0, 40.0)
+    assert far.steps[0].tolist() == [0.0, FARTHEST]
+    assert far.curve[[0, -1]] == pytest.approx(profile.base[[0, -1]])
+    assert profile.steps.max() == 0.0, "the one before is as it was"
+
+
+def test_where_a_breast_hangs_over_the_lower_end_is_a_handle() -> None:
+    stages = body("person")
+    profile = drawn(stages, "left", stages.control.mesh.vertices)
+    assert profile.handles[0] == 0
+    assert profile.base[0, 0] > stages.control.mesh.vertices[~stages.control.fixed, 2].min() + 2.0
+    assert profile.pulled(0, 0.0, 5.0).curve[0, 1] == pytest.approx(profile.base[0, 1] + 5.0)
+
+
+def test_a_table_is_asked_for_as_it_is_and_can_be_dragged_on(stages: Stages, profile: Drawn) -> None:
+    table = profile.base[::2] + np.array([0.0, 1.0])
+    given = from_table(stages, "left", table)
+    goals = given.goals(stages)
+    assert [goal.value for goal in goals] == pytest.approx(table[:, 1].tolist())
+    pulled = given.pulled(1, 0.0, 4.0)
+    assert max(goal.value for goal in pulled.goals(stages)) > max(goal.value for goal in goals) + 3.0
+    assert len(from_table(stages, "left", table[:3]).handles) == 0
