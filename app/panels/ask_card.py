@@ -15,7 +15,7 @@ from app.dress.theme import label, set_tag
 from app.panels.figure_field import FigureField
 from app.wording.words import tr
 
-WIDTH = 664
+WIDTH = 674
 """Width of what the card holds [px]."""
 
 _COLUMNS = 2

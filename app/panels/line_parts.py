@@ -79,6 +79,10 @@ class SideMark(QWidget):
         painter.drawText(self.rect(), Qt.AlignmentFlag.AlignCenter, self._letter)
 
 
+LEAST = 32
+"""Room that a title keeps where there is little [px]."""
+
+
 class LineTitle(ElidedLabel):
     """The name of a line, where there is no room for it its beginning; ``renamed`` when another was typed.
 
@@ -92,7 +96,7 @@ class LineTitle(ElidedLabel):
         super().__init__()
         self.setFont(font("name"))
         self.setProperty("role", "name")
-        self.setMinimumWidth(40)
+        self.setMinimumWidth(LEAST)
         self.setSizePolicy(QSizePolicy.Policy.Maximum, QSizePolicy.Policy.Preferred)
         self._editor = _Editor(self)
         self._editor.hide()

@@ -12,7 +12,7 @@ from app.dress.spoken import speak_value
 from app.dress.theme import label, set_tag, set_tip, tokens_of
 from app.panels.length_slider import LengthSlider
 from app.panels.line_details import LineDetails
-from app.panels.line_parts import LineChip, LineTitle, SideMark
+from app.panels.line_parts import LEAST, LineChip, LineTitle, SideMark
 from app.panels.line_view import LineView
 from app.panels.number_field import NumberField
 from app.wording.words import number, tr
@@ -61,6 +61,7 @@ class LineRow(QFrame):
         set_tip(self.title, f"{view.title}\n{tr('Double click or F2: another name')}")
         set_tag(self.title, "tone", "" if view.visible else "faint")
         self._side.show_side(view.apart)
+        self.title.setMinimumWidth(LEAST - 22 if view.apart else LEAST)  # its mark takes no more room
         self._chip.show_line(view.color, view.width_mm, view.visible)
         self._show_slider(view)
         self._show_lengths(self._set_ratio())
