@@ -210,3 +210,19 @@ def test_a_hurried_answer_goes_on_from_the_last_one(rest: Stages, made: bool) ->
 def test_what_is_not_made_of_elastic_is_not_looked_at_for_pressure(rest: Stages) -> None:
     reply = ask(rest, [Goal("out", -2.0)])
     assert (dict(reply.pressure), reply.unseen) == ({}, ("full-bust", "mid-bust"))
+
+
+@pytest.mark.parametrize("contact", CONTACTS)
+def test_a_profile_that_cannot_be_met_is_answered_soon(rest: Stages, contact: str) -> None:
+    start, heights = wearing(rest, 1.0, 1.0, line_contact=contact), np.arange(320.0, 396.0, 5.0)
+    bumps = 5.0 * np.exp(-(((heights - 365.0) / 25.0) ** 2))
+    names = [profile_name("left", height) for height in heights]
+    goals = [Goal(name, figure(rest, name) - bump) for name, bump in zip(names, bumps.tolist(), strict=True)]
+    asking, seen = Asking(start), []
+    asking.nearer = seen.append
+    reply = asking.reply(goals)
+    assert not reply.reachable
+    assert reply.answers <= 14
+    # The nearest is told before it is looked for elsewhere.
+    assert [design.worn() for design in seen[:1]] == [reply.design.worn()]
+    assert abs(seen[0].ratio("mid-bust") - reply.design.ratio("mid-bust")) < 0.005

@@ -132,7 +132,11 @@ class Search:
         Raises NoBalanceError if there is no balance at the start, Cancelled.
         """
         lengths = self._least_tension(self._near_by())
-        return lengths if self._answers.checked(lengths) else self._least_tension(self._near_by())
+        met = self._wanted.is_met(self.at(lengths))
+        if self._answers.checked(lengths):
+            return lengths
+        near = self.from_here(lengths)  # what rest leads to is mostly not far away, nor is the least tension
+        return near if self._wanted.is_met(self.at(near)) >= met else self._least_tension(self._near_by())
 
     def _near_by(self) -> Floats:
         """Return the nearest from the start or, if that does not reach what is wanted, from elsewhere."""
