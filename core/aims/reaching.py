@@ -31,7 +31,7 @@ from core.worn_lines import free_lines
 LOOSEST = 1.0
 """A line is not asked to be longer than at rest: it would push [1]."""
 
-_STEPS = 40  # answers after which a search is given up
+_STEPS, _ELSEWHERE = 40, 20  # answers after which a search is given up, from the start and from elsewhere
 _HALFWAY = 0.9  # ratio at which a search begins anew
 _TRIES, _GOOD = 12, 1e-3  # steps to less tension, and a part of it that is not worth another
 _BOLD, _LAST = 8.0, 1e-4  # the longest step tried and the shortest [%]
@@ -172,7 +172,7 @@ class Search:
         Beside one of those ``known`` already they go no further. Nothing is looked for elsewhere or from
         rest. Raises NoBalanceError if nothing balances at the start, Cancelled.
         """
-        here, reach, most = start, _BOLD, len(self) + _STEPS
+        here, reach, most = start, _BOLD, len(self) + (_ELSEWHERE if known else _STEPS)
         look, amiss = self.at(here), self._wanted.amiss
         while reach > _LAST and len(self) < most and amiss(look) > _EXACT:
             for other in known:
