@@ -72,6 +72,7 @@ SCREENS: tuple[tuple[str, Callable[[], Design], Scene], ...] = (
     *((name, _person, step(name)) for name in ("landmarks", "lines", "result")),
     ("ask", _person, scenes.asking),
     ("wish", bra, scenes.wishing),
+    ("drawn-profile", bra, scenes.drawing_a_profile),
     ("path", _mannequin, scenes.drawing),
     ("garment", made_of_elastics, tab("garment")),
     ("wipe", bra, scenes.wiped),

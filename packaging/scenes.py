@@ -241,6 +241,22 @@ def wishing(window: MainWindow) -> None:
     wait_for(lambda: window.session.frame.stages.design == wanted)
 
 
+def drawing_a_profile(window: MainWindow) -> None:
+    """Ask for a fuller profile, drawn on the body, and wait for the answer."""
+    wait_for(window.is_settled)
+    desk = window.ask_desk
+    desk.begin()
+    wait_for(lambda: desk.answer is not None and not desk.work.at_work)
+    desk.drawing.begin("left")
+    profile = desk.drawn["profile left"]
+    foremost = int(profile.spots[:, 1].argmax())
+    desk.drawing.draw("profile left", profile.pulled(foremost, 2.0, 2.5).pulled(foremost + 1, 1.0, 2.0))
+    desk.ask()
+    wait_for(lambda: desk.answer.reply is not None and not desk.work.at_work)
+    wanted = desk.answer.reply.design
+    wait_for(lambda: window.session.frame.stages.design == wanted)
+
+
 def reported(window: MainWindow) -> None:
     """Show the sheet to work from."""
     window.report_desk.open()

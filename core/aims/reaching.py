@@ -186,7 +186,9 @@ class Search:
             if better is None:
                 reach /= 4.0
                 continue
-            last = amiss(look) - amiss(better[1]) < little
+            gain = amiss(look) - amiss(better[1])
+            # Near enough, and no longer quickly nearer.
+            last = gain < little or (gain < 0.5 * amiss(look) and self._wanted.is_met(better[1]))
             (here, look), reach = better, min(2.0 * reach, _BOLD)
             if last:
                 break
