@@ -13,7 +13,8 @@ from window_tools import Script, run_main, settled
 
 import app.lining.limits_desk
 from app.main_window import MainWindow
-from app.panels.leeway_words import hint, placed, refusal, sentence, tone_at
+from app.panels.leeway_key import LeewayKey
+from app.panels.leeway_words import hint, key, placed, refusal, tone_at
 from app.panels.length_groove import _zones, wall_of
 from app.panels.length_slider import LengthSlider
 from core.leeway import Leeway, Reason, Zone
@@ -67,9 +68,32 @@ def test_what_the_other_lines_do_is_told_as_theirs() -> None:
     assert placed(Reason("vibrating", 0.88, 0.92)) == "would vibrate from 88.0 to 92.0 %"
 
 
-def test_an_opened_row_says_all_of_it_in_one_line() -> None:
-    assert plain(sentence(LEEWAY)) == "Slack above 98.1 % · strained below 93.9 % · folds below 86.0 %"
-    assert sentence(Leeway("waist", (Zone("green", 0.5, 1.3),))) == "No limit down to half its length."
+def test_an_opened_row_has_a_key_to_its_zones(qtbot: QtBot) -> None:
+    assert {tone: plain(words) for tone, words in key(LEEWAY).items()} == {
+        "green": "Without trouble from 93.9 to 98.1 %",
+        "amber": "Strained below 93.9 %",
+        "red": "Folds below 86.0 %",
+        "slack": "Slack above 98.1 %",
+    }
+    free = Leeway("waist", (Zone("green", 0.5, 1.3),))
+    assert key(free) == {"green": "Without trouble at any length"}
+    shown = LeewayKey()
+    qtbot.addWidget(shown)
+    for leeway, ratio, lit in (
+        (LEEWAY, 0.9, ("amber", "warn")),
+        (LEEWAY, 0.8, ("red", "bad")),
+        (free, 0.9, ()),
+    ):
+        shown.show_leeway(leeway, ratio, stale=False)
+        seen = [tone for tone, (_, words) in shown.rows.items() if not words.isHidden()]
+        assert seen == list(key(leeway)), "a zone that the line does not have needs no words"
+        tones = {tone: words.property("tone") for tone, (_, words) in shown.rows.items()}
+        assert [(tone, value) for tone, value in tones.items() if value] == ([lit] if lit else [])
+    shown.show_leeway(LEEWAY, 0.9, stale=True)
+    assert {words.property("tone") for _, words in shown.rows.values()} == {"faint"}
+
+
+def test_what_a_line_stands_in_and_why_a_hand_is_held_is_told() -> None:
     assert [tone_at(LEEWAY, ratio) for ratio in (0.8, 0.9, 0.95, 1.1)] == ["bad", "warn", "", ""]
     assert refusal(LEEWAY) == "Not this short: folds below 86.0 %."
     assert (refusal(None), tone_at(None, 0.9)) == ("", "")
@@ -143,7 +167,7 @@ def test_zones_follow_an_edit_while_the_model_still_settles(monkeypatch: pytest.
         order.clear()
         seen.clear()
         window.session.change({"line_stiffness": 40.0}, "stiffer")
-        said = row.details._limit
+        _, said = row.details._key.rows["green"]
         yield lambda: row.view.stale
         assert said.property("tone") == "faint"
         seen.set()

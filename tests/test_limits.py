@@ -9,7 +9,7 @@ import pytest
 from shapes import fitted, torso
 
 from app.cli import main
-from app.panels.leeway_words import sentence, tone_at
+from app.panels.leeway_words import key, tone_at
 from core.advice.limits import PRECISION, SIGNS, all_limits, limits_of, shortest
 from core.comparison import shape_of
 from core.elastics import find_elastic
@@ -191,7 +191,7 @@ def test_a_line_of_elastic_ends_where_a_shorter_one_is_refused(built, contact):
     assert told.zones[0].reasons[0].why == "stretched"
     assert told.red_below == end.ratio
     assert tone_at(told, 0.52) == "bad"
-    assert "eyond the table of its elastic below" in sentence(told)
+    assert "eyond the table of its elastic below" in key(told)["red"]
 
 
 def test_a_line_of_nothing_in_particular_ends_at_no_table(built):

@@ -7,8 +7,10 @@ from core.leeway import AMBER, GREEN, RED, SLACK, Leeway, Reason, Zone
 from core.lines import RATIO_LIMITS
 from core.sewing.comfort import comfort
 
+KEY_ORDER = GREEN, AMBER, RED, SLACK
+"""In which order the kinds of zones are explained."""
+
 _TONES = {AMBER: "warn", RED: "bad"}
-_AT_REST = 0.9995  # slack that begins there needs no word: any line is, set longer than at rest [1]
 
 
 def tone_at(leeway: Leeway | None, ratio: float) -> str:
@@ -16,15 +18,24 @@ def tone_at(leeway: Leeway | None, ratio: float) -> str:
     return _TONES.get(leeway.at(ratio).tone, "") if leeway is not None else ""
 
 
-def sentence(leeway: Leeway) -> str:
-    """Return in one line where a line stops being well, from long to short."""
-    reasons = dict.fromkeys(reason for zone in leeway.zones for reason in _told(zone))
-    slack = [each for each in reasons if each.tone == SLACK and each.short < _AT_REST]
-    amber = [each for each in reasons if each.tone == AMBER]
-    first = [each for each in reasons if each.tone == RED][:1]
-    order = [*slack, *sorted(amber, key=lambda each: -each.long), *first]
-    words = " · ".join(_glued(placed(each)) for each in order) or tr("No limit down to half its length.")
-    return words[:1].upper() + words[1:]
+def key(leeway: Leeway) -> dict[str, str]:
+    """Return what zones of each tone mean and from where to where they go, of those that the line has.
+
+    Of all that is red it is what comes first.
+    """
+    told = {tone: _in_key(leeway, tone) for tone in KEY_ORDER}
+    return {tone: _glued(_upper(" \N{MIDDLE DOT} ".join(words))) for tone, words in told.items() if words}
+
+
+def _in_key(leeway: Leeway, tone: str) -> list[str]:
+    zones = [zone for zone in leeway.zones if zone.tone == tone]
+    if tone == GREEN:
+        return [_range(tr("without trouble"), zone.short, zone.long) for zone in zones]
+    reasons = sorted({reason for zone in zones for reason in _told(zone)}, key=lambda each: -each.long)
+    if tone == RED:  # what is worse lies below
+        first = [reason for zone in zones for reason in _told(zone)][:1]
+        return [placed(reason) for reason in first]
+    return [placed(reason) for reason in reasons]
 
 
 def hint(leeway: Leeway, ratio: float) -> str:

@@ -20,9 +20,12 @@ SHORTEST, LONGEST = 0.80, 1.12
 RESISTANCE = 24.0
 """How much further a hand must pull to get a line into the red [px]."""
 
+STALE = 0.2
+"""Strength of zones that are not up to date."""
+
 _BESIDE = 0.02  # room beside a typed length that widens the groove [1]
 _GAP = 1.5  # between two zones [px]
-_QUIET, _STALE = 0.42, 0.2  # strength of the zones of a line that is not in hand, and of those not up to date
+_QUIET = 0.42  # of those of a line that is not in hand
 
 
 def ends_for(ratio: float) -> tuple[float, float]:
@@ -71,8 +74,8 @@ def paint_groove(
         zone = QRectF(left, groove.top(), max(right - left, 1.0), GROOVE_HEIGHT)
         painter.setBrush(QColor(tokens.panel))
         painter.drawRoundedRect(zone.adjusted(-_GAP, 0, _GAP, 0), 1, 1)
-        painter.setOpacity(_STALE if stale else 1.0 if strong else _QUIET)
-        _paint_zone(painter, tokens, zone, tone)
+        painter.setOpacity(STALE if stale else 1.0 if strong else _QUIET)
+        paint_zone(painter, tokens, zone, tone)
         painter.setOpacity(opacity)
     _tick(painter, x_of(1.0), QColor(tokens.control))
 
@@ -84,7 +87,7 @@ def _zones(leeway: Leeway | None, ends: tuple[float, float]) -> list[tuple[str, 
     return [zone for zone in seen if zone[2] > zone[1]]
 
 
-def _paint_zone(painter: QPainter, tokens: Tokens, zone: QRectF, tone: str) -> None:
+def paint_zone(painter: QPainter, tokens: Tokens, zone: QRectF, tone: str) -> None:
     """Paint one zone; where a line is slack the groove is hollow: nothing pulls there."""
     colours = {GREEN: tokens.zone_ok, AMBER: tokens.zone_warn, RED: tokens.zone_bad}
     if tone == SLACK:

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
-from app.dress.parts import IconLabel, ToolButton, hairline, sentence
+from app.dress.parts import ToolButton, hairline, sentence
 from app.dress.theme import label, set_tag, set_tip
 from app.panels.elastic_pull import ElasticPull
-from app.panels.leeway_words import sentence as told
+from app.panels.leeway_key import LeewayKey
 from app.panels.leeway_words import tone_at
 from app.panels.line_parts import PaletteMenu, StiffnessField
 from app.panels.line_view import LineView, SideView
@@ -51,7 +51,8 @@ class LineDetails(QWidget):
         column.addSpacing(5)
         column.addWidget(hairline())
         column.addSpacing(4)
-        column.addWidget(self._limit_row())
+        self._key = LeewayKey()
+        column.addWidget(self._key)
         self._part, self._whole = sentence("", "caption"), sentence("", "caption")
         column.addWidget(self._part)
         column.addWidget(self._whole)
@@ -87,13 +88,9 @@ class LineDetails(QWidget):
         """Show limits and stiffness, and what can be done; a line that is only measured has none."""
         for each in (self._set, self._tools["reset"]):
             each.setVisible(view.constrained)
-        self._limits.setVisible(view.leeway is not None)
+        self._key.setVisible(view.leeway is not None)
         if view.leeway is not None:
-            self._limit.setText(told(view.leeway))
-            # What was said of the design before is faint until it is said of this one, as its zones are.
-            set_tag(self._limit, "tone", "faint" if view.stale else "")
-            tone = "" if view.stale else tone_at(view.leeway, view.ratio)
-            self._sign.show_icon("warning" if tone else "info", tone or "text_caption")
+            self._key.show_leeway(view.leeway, view.ratio, view.stale)
         self._pull.setVisible(view.constrained and not view.elastic)  # an elastic has its own
         self._presses.setVisible(bool(view.elastic))
         self._pressed.setText(view.pressed or "\N{EN DASH}")
@@ -127,17 +124,6 @@ class LineDetails(QWidget):
             each.setTextFormat(Qt.TextFormat.RichText)
             self._grid.addWidget(each, row, column)
         return figures
-
-    def _limit_row(self) -> QWidget:
-        self._limits = QWidget()
-        row = QHBoxLayout(self._limits)
-        row.setContentsMargins(0, 0, 0, 2)
-        row.setSpacing(6)
-        self._sign = IconLabel("info", "text_caption", 15)
-        self._limit = sentence("", "secondary")
-        row.addWidget(self._sign, alignment=Qt.AlignmentFlag.AlignTop)
-        row.addWidget(self._limit, 1)
-        return self._limits
 
     def _foot(self) -> QHBoxLayout:
         foot = QHBoxLayout()

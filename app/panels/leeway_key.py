@@ -1,0 +1,64 @@
+"""The key to the groove of a slider: what each kind of its zones means, and from where to where it goes."""
+
+# ruff: noqa: D102, N802 - Qt names its events and says what they are
+from __future__ import annotations
+
+from PySide6.QtCore import QRectF, QSize, Qt
+from PySide6.QtGui import QPainter, QPaintEvent
+from PySide6.QtWidgets import QGridLayout, QLabel, QWidget
+
+from app.dress.parts import sentence
+from app.dress.theme import set_tag, tokens_of
+from app.panels.leeway_words import KEY_ORDER, key, tone_at
+from app.panels.length_groove import GROOVE_HEIGHT, STALE, paint_zone
+from core.leeway import Leeway
+
+
+class Swatch(QWidget):
+    """A piece of the groove as a zone of one ``tone`` is painted; faint where that is old."""
+
+    def __init__(self, tone: str) -> None:
+        super().__init__()
+        self._tone, self._stale = tone, False
+        self.setFixedSize(QSize(16, 16))  # as high as a line of words, so that both lie on one level
+
+    def show_stale(self, stale: bool) -> None:
+        """Show that what it stands for is of the design before, or that it is not."""
+        if stale != self._stale:
+            self._stale = stale
+            self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setOpacity(STALE if self._stale else 1.0)
+        top = (self.height() - GROOVE_HEIGHT) / 2.0
+        paint_zone(painter, tokens_of(self), QRectF(0.0, top, self.width(), GROOVE_HEIGHT), self._tone)
+
+
+class LeewayKey(QWidget):
+    """A row for each kind of zone that a line has: a swatch and words; the one it stands in is told apart."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        grid = QGridLayout(self)
+        grid.setContentsMargins(0, 0, 0, 3)
+        grid.setHorizontalSpacing(7)
+        grid.setVerticalSpacing(1)
+        grid.setColumnStretch(1, 1)
+        self.rows: dict[str, tuple[Swatch, QLabel]] = {}
+        for row, tone in enumerate(KEY_ORDER):
+            swatch, words = self.rows[tone] = Swatch(tone), sentence("", "secondary")
+            grid.addWidget(swatch, row, 0, Qt.AlignmentFlag.AlignTop)
+            grid.addWidget(words, row, 1)
+
+    def show_leeway(self, leeway: Leeway, ratio: float, stale: bool) -> None:
+        """Tell of the leeway of a line set to ``ratio`` [1]; ``stale``: of the design before."""
+        told, here = key(leeway), leeway.at(ratio).tone
+        for tone, (swatch, words) in self.rows.items():
+            words.setText(told.get(tone, ""))
+            set_tag(words, "tone", "faint" if stale else tone_at(leeway, ratio) if tone == here else "")
+            swatch.show_stale(stale)
+            for each in (swatch, words):
+                each.setVisible(tone in told)
