@@ -12,6 +12,7 @@ import threading
 from collections.abc import Callable, Iterator
 from functools import cache, lru_cache, wraps
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -28,6 +29,7 @@ from core.design_lines import WornLine
 from core.pipeline import Stages, build
 
 SAMPLES = Path(__file__).parent.parent / "resources" / "samples"
+SPARING_NOTHING = SimpleNamespace(**{**vars(gc), "freeze": lambda: None, "unfreeze": lambda: None})
 
 
 def display_of_its_own() -> None:
@@ -146,11 +148,21 @@ def qapp_cls() -> type[QApplication]:
 
 
 @pytest.fixture
-def empty_house(qapp: QApplication, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+def spared_as_in_the_program() -> None:
+    """What a window spares the search for garbage it gives back when it is closed, with all libraries."""
+
+
+@pytest.fixture
+def empty_house(
+    request: pytest.FixtureRequest, qapp: QApplication, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[None]:
     """Nothing of a window lives on after a test: no thread of ours, no window; its settings are fresh.
 
     How sure figures are is not worked out where a test does not ask: it takes half a minute of a processor.
     """
+    if "spared_as_in_the_program" not in request.fixturenames:
+        # Else all libraries would be looked through three times after each window, and not only what it left.
+        monkeypatch.setattr("app.asking.housekeeping.gc", SPARING_NOTHING)
     monkeypatch.setattr("app.keeping.spread_desk.PAUSE", 10**8)
     QSettings().clear()
     yield

@@ -18,6 +18,7 @@ from core.errors import ProjectError
 pytestmark = pytest.mark.usefixtures("empty_house")
 
 
+@pytest.mark.usefixtures("spared_as_in_the_program")
 def test_the_sample_opens_in_a_finished_state() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
@@ -34,6 +35,7 @@ def test_the_sample_opens_in_a_finished_state() -> None:
 
     assert run_main([], script) == 0
     assert gc.isenabled()
+    assert not gc.get_freeze_count(), "what the window spared the search is given back"
 
 
 def test_dragging_a_slider_moves_the_body_and_is_one_undo_step() -> None:
