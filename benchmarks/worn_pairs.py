@@ -12,18 +12,27 @@ import numpy as np
 from core.design import Design
 from core.export import write_mesh
 from core.mesh import Mesh
+from core.patch import patch_fade
 from core.pipeline import Stages, build
-from core.tffd import deform
+from core.tffd import bind, deform
 from core.worn_scan.aligning import turned
-from core.worn_scan.calibrating import exact_answer
+from core.worn_scan.fit import exact_answer
 
+_CELL = 1.07  # of the spacing: a cube's edge at which a skin has one vertex to each square of it
 LEAN = 4.0  # degrees about x and y; a turn about z is undone when a scan is set upright, but not all of it
 
 
-def worn_mesh(stages: Stages, truth: Design) -> Mesh:
-    """Return the body as ``truth`` predicts it."""
+def worn_mesh(stages: Stages, truth: Design, finer: int = 0) -> Mesh:
+    """Return the body as ``truth`` predicts it, its triangles split in four ``finer`` times before that."""
     there = build(truth, stages)
-    return stages.body.mesh.moved(deform(there.binding, exact_answer(there).place.points))
+    mesh, binding = there.body.mesh, there.binding
+    for _ in range(finer):
+        mesh = split(mesh)
+    if finer:
+        fade = patch_fade(mesh, there.control).fade
+        how = {"scaled_normals": truth.scaled_normals, "fixed": there.control.fixed}
+        binding = bind(mesh, there.control.mesh, fade, truth.weights, **how)
+    return mesh.moved(deform(binding, exact_answer(there).place.points))
 
 
 def scanned(
@@ -33,20 +42,22 @@ def scanned(
     *,
     noise: float = 1.0,
     resampled: bool = True,
+    spacing: float = 0.0,
     hole: float = 20.0,
     arms: bool = False,
 ) -> tuple[Mesh, np.ndarray]:
     """Return a body as a scanner would give it, and the matrix (4, 4) that took it there.
 
     ``noise`` [mm] is the standard deviation at each vertex along each axis, ``hole`` [mm] the radius of a
-    hole in the front, 0 for none; with ``arms`` they stay.
+    hole in the front, 0 for none; with ``arms`` they stay. ``resampled`` it has other vertices, one to a
+    square of ``spacing`` [mm], or if that is 0 about as many as before.
     """
-    if resampled:
-        mesh = other_mesh(mesh)
     if not arms:
         low, high = stages.control.mesh.vertices[:, 0].min(), stages.control.mesh.vertices[:, 0].max()
         x = mesh.vertices[:, 0]
         mesh = only(mesh, (x > low - 40.0) & (x < high + 40.0))
+    if resampled:
+        mesh = met(mesh, _CELL * spacing) if spacing else other_mesh(mesh)
     if hole:
         front = stages.moving.rest[: stages.moving.count]
         middle = front[rng.integers(len(front))]
@@ -66,7 +77,14 @@ def only(mesh: Mesh, kept: np.ndarray) -> Mesh:
 
 
 def other_mesh(mesh: Mesh) -> Mesh:
-    """Return the same skin with other vertices: each triangle in four, then one kept of what lies together.
+    """Return the same skin with about as many other vertices: those that lie in the middle of its edges."""
+    edges = mesh.vertices[mesh.edges]
+    size = 0.95 * float(np.median(np.linalg.norm(edges[:, 0] - edges[:, 1], axis=1)))
+    return met(split(mesh), size, old=len(mesh.vertices))
+
+
+def split(mesh: Mesh) -> Mesh:
+    """Return a mesh with each triangle in four, the new vertices behind the old ones.
 
     A scanner's places lie on the skin, not in its chords: the middle of an edge is lifted by what the
     normals of its ends turn, as a parabola would be.
@@ -87,20 +105,23 @@ def other_mesh(mesh: Mesh) -> Mesh:
     (a, b, c), (ab, bc, ca) = corners.T, between
     quarters = (a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)
     faces = np.concatenate([np.stack(each, axis=1) for each in quarters])
-    points = np.concatenate([mesh.vertices, middle])
-    size = 0.95 * float(
-        np.median(np.linalg.norm(mesh.vertices[edges[:, 0]] - mesh.vertices[edges[:, 1]], axis=1))
-    )
+    return Mesh(np.concatenate([mesh.vertices, middle]), faces)
+
+
+def met(mesh: Mesh, size: float, old: int = 0) -> Mesh:
+    """Return a mesh with one vertex kept of what lies together in a cube of a ``size`` [mm].
+
+    It is that nearest to their middle, the first ``old`` ones only where there is no other.
+    """
+    points = mesh.vertices
     _, place = np.unique(np.floor(points / size).astype(int), axis=0, return_inverse=True)
     place = place.ravel()
     many = np.bincount(place)
-    met = np.stack([np.bincount(place, points[:, axis]) / many for axis in range(3)], axis=1)
-    away = np.linalg.norm(points - met[place], axis=1)
-    old = np.arange(len(points)) < count
-    # The new one that is nearest to the middle of its cell, where there is any.
-    chosen = np.lexsort((away, old, place))[np.cumsum(many) - many]
-    faces = place[faces]
-    faces = faces[[len(set(face)) == 3 for face in faces.tolist()]]
+    middle = np.stack([np.bincount(place, points[:, axis]) / many for axis in range(3)], axis=1)
+    away = np.linalg.norm(points - middle[place], axis=1)
+    chosen = np.lexsort((away, np.arange(len(points)) < old, place))[np.cumsum(many) - many]
+    faces = place[mesh.faces]
+    faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
     _, once = np.unique(np.sort(faces, axis=1), axis=0, return_index=True)
     return Mesh(points[chosen], faces[np.sort(once)])
 

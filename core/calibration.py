@@ -7,8 +7,9 @@ from core.mesh import Points
 from core.pipeline import Stages, read_body
 from core.progress import Progress, quiet
 from core.worn_scan.aligning import Alignment, align
-from core.worn_scan.calibrating import Found, calibrate, exact_answer, refuse_bare
+from core.worn_scan.calibrating import Found, calibrate, refuse_bare
 from core.worn_scan.comparing import THICKEST, Difference, Figures, Worn, compare, laid_on
+from core.worn_scan.fit import exact_answer
 
 __all__ = [
     "THICKEST",

@@ -16,6 +16,9 @@ LONGEST_NAME = 200
 MOST_NUMBERS = 20
 """Numbers that a calibration may hold."""
 
+WELL = 0.05
+"""A number whose ± is no more than this part of it is told well [1]."""
+
 
 @dataclass(frozen=True)
 class FoundNumber:
@@ -29,6 +32,11 @@ class FoundNumber:
     after: float
     plus_minus: float
     kept: bool = False
+
+    @property
+    def told(self) -> bool:
+        """Whether the scans tell it well: its ± is ``WELL`` of it or less."""
+        return not self.kept and self.plus_minus <= WELL * abs(self.after)
 
 
 @dataclass(frozen=True)

@@ -19,10 +19,10 @@ from core.errors import ProjectError, UserError
 from core.pipeline import Stages, build
 from core.progress import Cancelled
 from core.project import open_project
-from core.worn_scan.calibrating import exact_answer
+from core.worn_scan.fit import exact_answer
 from core.worn_scan.least_squares import Normal
-from core.worn_scan.numbers import Number, candidates, rates_by
-from core.worn_scan.telling import least_sure, one_will_do
+from core.worn_scan.numbers import MOST, Number, candidates, precision_before, rates_by
+from core.worn_scan.telling import not_told
 
 STEP = 3e-4
 
@@ -152,32 +152,39 @@ def test_each_line_or_one_stiffness_for_all() -> None:
     ]
 
 
-@pytest.mark.parametrize(
-    ("sds", "values", "one"),
-    [
-        ((0.03, 0.3), (40.0, 65.0), True),  # unsure by itself, and not unlike
-        ((0.03, 0.3), (40.0, 4.0), False),  # unsure, but unlike
-        ((0.03, 0.04), (40.0, 41.0), False),  # each is told by itself
-    ],
-)
-def test_lines_share_a_stiffness_where_nothing_tells_them_apart(
-    sds: tuple[float, float], values: tuple[float, float], one: bool
-) -> None:
+def test_lines_are_taken_to_be_somewhat_alike_before_a_scan_tells_more() -> None:
     numbers = Number("stiffness", ("mid-bust",)), Number("stiffness", ("full-bust",)), Number("firm_chest")
-    covariance = np.diag([*sds, 0.01]) ** 2
-    plan = VARIANTS["glued"]
-    for number, value in zip(numbers, values, strict=False):
-        plan = number.put(plan, value)
-    assert one_will_do(Normal(np.eye(3), np.zeros(3), covariance), numbers, plan) is one
+    known = np.linalg.inv(precision_before(numbers))
+    one, other, chest = np.sqrt(np.diag(known))
+    assert [one, other] == pytest.approx([np.sqrt(1.25)] * 2)
+    assert np.sqrt(known[0, 0] + known[1, 1] - 2.0 * known[0, 1]) == pytest.approx(0.5 * np.sqrt(2.0))
+    assert chest == pytest.approx(0.1)
+    assert known[2, :2] == pytest.approx(0.0)
 
 
-def test_a_number_counts_as_told_by_its_share() -> None:
+def test_many_lines_share_one_stiffness() -> None:
+    stages = build(VARIANTS["glued"])
+    plan = stages.design
+    for line in stages.model.lines:
+        if line.constrains:
+            plan = plan.with_line(line.name, 0.95)
+    many = candidates(build(plan, stages), lengths=False)
+    assert len(many) <= MOST
+    assert "firm_chest" in [number.name for number in many]
+
+
+def test_a_number_stays_where_the_scans_say_next_to_nothing_of_it() -> None:
     numbers = Number("line_stiffness"), Number("firm_chest")
-    doubts = [number.blind for number in numbers]
-    sure = Normal(np.eye(2), np.zeros(2), np.diag([0.1, 0.04]) ** 2)
-    unsure = Normal(np.eye(2), np.zeros(2), np.diag([0.1, 0.06]) ** 2)
-    assert least_sure(sure, doubts) is None
-    assert least_sure(unsure, doubts) == 1
+    sure = Normal(np.eye(2), np.zeros(2), np.diag([0.7, 0.07]) ** 2)
+    unsure = Normal(np.eye(2), np.zeros(2), np.diag([0.7, 0.09]) ** 2)
+    assert not_told(sure, numbers).tolist() == [False, False]
+    assert not_told(unsure, numbers).tolist() == [False, True]
+
+
+def test_a_number_is_told_well_by_its_plus_minus() -> None:
+    assert FoundNumber("firm_chest", 0.05, 0.1, 0.005).told
+    assert not FoundNumber("firm_chest", 0.05, 0.1, 0.006).told
+    assert not FoundNumber("firm_chest", 0.05, 0.05, 0.0, kept=True).told
 
 
 def test_a_design_without_a_calibration_is_written_as_ever() -> None:

@@ -19,8 +19,9 @@ from core.project import open_project
 from core.standing.upright import Pose
 from core.worn_scan.aligning import align, turned
 from core.worn_scan.comparing import Worn, laid_on
+from core.worn_scan.feet import Ground
 from core.worn_scan.gap import WornSkin, curvature
-from core.worn_scan.least_squares import Normal, cost, normal, spread_of
+from core.worn_scan.least_squares import Beforehand, cost, normal, spread_of
 
 POSE = Pose("mm", "+z", "-y", np.eye(4), True, "", 0.0)
 
@@ -88,6 +89,41 @@ def test_gaps_on_a_round_skin_are_not_cut_short_by_its_triangles() -> None:
     assert np.nanmean(noisy.gaps(places, normals, curved)) == pytest.approx(0.5, abs=0.04)
 
 
+def test_every_point_tells_how_far_a_round_skin_stands_before_it() -> None:
+    rng = np.random.default_rng(7)
+    ground = Ground(*ball(rng, 60.0))
+    facing = rng.normal(size=(20_000, 3))
+    facing /= np.linalg.norm(facing, axis=1)[:, None]
+    clean = ground.feet(59.5 * facing, facing)
+    assert len(clean.rows) > 0.998 * len(facing)
+    assert clean.gaps.mean() == pytest.approx(0.5, abs=0.005), "no corner of a triangle is cut"
+    assert clean.gaps.std() < 0.02
+    assert np.linalg.norm(clean.of(ground.places), axis=1).mean() == pytest.approx(60.0, abs=0.1)
+    assert not len(ground.feet(59.5 * facing, -facing).rows), "the back of a skin is none"
+    rough = 59.5 * facing + rng.normal(scale=2.0, size=facing.shape)
+    told = ground.feet(rough, facing, 2.0).gaps.mean()
+    assert told == pytest.approx(0.5, abs=3.0 * 2.0 / np.sqrt(len(facing)))
+    # Noise along a round skin lifts points off it, by its square over the radius.
+    assert told - ground.feet(rough, facing).gaps.mean() == pytest.approx(4.0 / 60.0, rel=0.03)
+
+
+def test_points_beside_a_skin_have_no_foot_on_it() -> None:
+    mesh = flat(0.0)
+    ground = Ground(mesh.vertices, np.tile((0.0, 0.0, 1.0), (121, 1)), mesh.faces.T)
+    points = np.array([[50.0, 50.0, 3.0], [103.0, 50.0, 3.0], [50.0, 50.0, 45.0], [5.0, 7.0, -2.0]])
+    feet = ground.feet(points, np.tile((0.0, 0.0, 1.0), (4, 1)))
+    assert feet.rows.tolist() == [0, 3]
+    assert feet.gaps == pytest.approx([-3.0, 2.0])
+
+
+def test_a_fine_skin_with_noise_still_looks_outward() -> None:
+    rng = np.random.default_rng(9)
+    mesh = flat(0.0)
+    rough = mesh.moved(mesh.vertices + rng.normal(scale=5.0, size=mesh.vertices.shape))
+    assert (rough.vertex_normals[:, 2] < 0.6).any()
+    assert (WornSkin(rough).facing[:, 2] > 0.6).all()
+
+
 def ball(rng: np.random.Generator, radius: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Places (2500, 3) [mm] on a ball by chance, their normals, and triangles (3, a), outward."""
     normals = rng.normal(size=(2500, 3))
@@ -100,8 +136,8 @@ def ball(rng: np.random.Generator, radius: float) -> tuple[np.ndarray, np.ndarra
 
 def test_huber_counts_far_gaps_by_their_distance() -> None:
     gaps = np.array([-1.0, 1.0, -1.0, 1.0, 0.0])
-    assert cost(gaps, 1.0) == pytest.approx(0.8)
-    assert cost(np.array([30.0, -30.0]), 1.0) == pytest.approx(2.0 * 2.0 * 30.0 - 4.0)
+    assert cost(gaps, 1.0) == pytest.approx(4.0)
+    assert cost(np.array([30.0, -30.0]), 1.0) == pytest.approx(2.0 * (2.0 * 2.0 * 30.0 - 4.0))
     assert spread_of(np.array([-3.0, 3.0, -3.0, 3.0])) == pytest.approx(1.4826 * 3.0)
 
 
@@ -116,12 +152,18 @@ def test_the_spread_of_an_answer_is_wider_where_neighbours_are_off_together() ->
     assert unsure == pytest.approx(1.0 / np.sqrt(20.0), rel=0.5)
 
 
-def test_an_offset_in_common_is_nobodys_to_tell() -> None:
-    slopes = np.linspace(0.0, 1.0, 50)[:, None]
-    gaps = 2.0 * slopes[:, 0] + 7.0
-    step = normal(gaps, slopes, 1e3, offset=True).step()
-    assert step == pytest.approx([-2.0])
-    assert isinstance(normal(gaps, slopes, 1.0), Normal)
+def test_what_is_known_beforehand_counts_as_much_as_it_is_sure() -> None:
+    rng = np.random.default_rng(6)
+    slopes = np.stack([np.ones(400), np.zeros(400)], axis=1)
+    gaps = rng.normal(size=400)
+    known = Beforehand(np.diag([400.0, 4.0]), np.zeros(2))  # 0.05 as 400 gaps of 1 mm tell, and 0.5
+    assert normal(gaps + 3.0, slopes, 1e3, known=known).step()[0] == pytest.approx(0.0, abs=1e-4)
+    assert normal(gaps + 0.6, slopes, 1.0, known=known).step()[0] == pytest.approx(-0.3, abs=0.05)
+    equations = normal(gaps, slopes, 1.0, [np.arange(400) // 20], known)
+    assert np.sqrt(equations.covariance[0, 0]) == pytest.approx(0.05 / np.sqrt(2.0), rel=0.2)
+    assert np.sqrt(equations.covariance[1, 1]) == pytest.approx(0.5), "what no gap tells stays as unsure"
+    assert known.cost(1.0) == 0.0
+    assert Beforehand(known.precision, np.array([0.0, 2.0])).cost(3.0) == pytest.approx(9.0 * 16.0)
 
 
 def test_a_worn_scan_is_laid_on_the_first_by_still_skin(stages: Stages) -> None:

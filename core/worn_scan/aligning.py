@@ -1,14 +1,15 @@
 """A second scan is laid on the first by the skin that no line moves: back, ribs, shoulders, belly (ours).
 
 The two stand upright already, each by itself. Landmarks tell roughly how far apart they are; from a few
-starts round there the still skin of the first is laid on the second, coarsely, and from the best one finely.
-Arms are left out, and what is held otherwise counts little.
+starts round there the still skin of the first is laid on the second, coarsely, and from the best one finely:
+first along its own normals, then by all points that the second has there. Arms are left out, and what is held
+otherwise counts little.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -17,11 +18,13 @@ from core.body import Body
 from core.errors import LandmarkError, ScanError
 from core.landmark import Landmarks
 from core.landmarks import find_landmarks
-from core.mesh import Flags, Floats, Mesh, Points, strewn
+from core.mesh import Floats, Mesh, Points
 from core.pipeline import Stages
 from core.progress import Progress, quiet
+from core.worn_scan.feet import Ground
 from core.worn_scan.gap import WornSkin, cells, known
 from core.worn_scan.least_squares import PATCHES, normal, spread_of
+from core.worn_scan.still import ground_of, still_faces, strewn_on
 
 MET = 5.0
 """Still skin that is this near to the second scan is met [mm]."""
@@ -32,14 +35,14 @@ LEAST_MET = 0.85
 LEAST_SEEN = 0.4
 """Less of the still skin than this to compare with is too little to tell [1]."""
 
-_SAMPLE, _COARSE = 4000, 700
-_BELOW, _ABOVE, _BESIDE = 160.0, 60.0, 15.0  # how far the still skin reaches beyond the control mesh [mm]
+_COARSE = 700  # places that are laid on from every start
 _STILL = ("side_left", "side_right", "armpit_left", "armpit_right", "back_centre", "back_centre_underbust",
           "front_centre_underbust", "waist_front", "hip_front", "neck_front", "neck_back")  # fmt: skip
 _HEIGHTS = (0.0, -25.0, 25.0, -50.0, 50.0)  # starts above and below what landmarks tell [mm]
 _TURNS = (0.0, -0.2, 0.2)  # and turned about the vertical [rad]
 _KEPT = 0.7  # of the still skin, the nearest: the rest may be arms, or not there
-_ROUNDS, _COARSE_ROUNDS, _STILL_STEP = 40, 7, 1e-5
+_ROUNDS, _COARSE_ROUNDS, _POINT_ROUNDS, _STILL_STEP = 40, 7, 5, 1e-5
+_FEWEST, _MOST_POINTS = 50, 60_000  # places that tell anything; points of the second scan that are asked
 _SIZES = {"m": 1000.0, "inch": 25.4, "cm": 10.0, "mm": 1.0}
 
 
@@ -48,8 +51,8 @@ class Alignment:
     """Where the second scan lies on the first: ``matrix`` (4, 4) takes its frame to that of the first [mm].
 
     ``rms`` and ``most`` (at 95 %) [mm] are of the still skin that is met, whose share is ``met`` [1] of what
-    there is skin for, ``seen`` [1] of all. ``turns`` (3,) [degrees] and ``shifts`` (3,) [mm] are how unsure
-    the rotation about, and the place along, x, y and z are: standard deviations.
+    there is skin for, ``seen`` [1] of all. ``covariance`` (6, 6) is of turns about x, y and z through
+    ``middle`` (3,) [rad, mm] and of shifts [mm] along them.
     """
 
     matrix: Floats
@@ -57,8 +60,18 @@ class Alignment:
     most: float
     met: float
     seen: float
-    turns: Floats
-    shifts: Floats
+    covariance: Floats
+    middle: Points
+
+    @property
+    def turns(self) -> Floats:
+        """How unsure the rotation about x, y and z is, standard deviations (3,) [degrees]."""
+        return np.asarray(np.degrees(np.sqrt(np.maximum(np.diag(self.covariance)[:3], 0.0))))
+
+    @property
+    def shifts(self) -> Floats:
+        """How unsure the place along x, y and z is, standard deviations (3,) [mm]."""
+        return np.asarray(np.sqrt(np.maximum(np.diag(self.covariance)[3:], 0.0)))
 
     def laid(self, mesh: Mesh) -> Mesh:
         """Return a mesh of the second scan's frame in that of the first."""
@@ -72,37 +85,18 @@ def moved(matrix: Floats, points: Points) -> Points:
 
 def align(stages: Stages, worn: Body, progress: Progress = quiet) -> Alignment:
     """Lay ``worn`` on the body of ``stages``. Raises ScanError if it is no scan of the same still skin."""
-    places, normals = still_skin(stages)
+    faces = still_faces(stages)
+    places, normals = strewn_on(stages.body.mesh, faces)
     _refuse_other_size(stages.body, worn)
-    skin = WornSkin(worn.mesh)
+    skin = WornSkin(worn.mesh, worn.noise)
     progress("aligning", 0.1)
     there = _coarse(places, worn, _starts(stages, worn))
     progress("aligning", 0.5)
     there = _fine(skin, places, normals, there)
-    progress("aligning", 0.9)
+    progress("aligning", 0.7)
     found = _judged(skin, places, normals, there)
     _refuse_other_body(found)
-    return found
-
-
-def still_skin(stages: Stages) -> tuple[Points, Points]:
-    """Return places (k, 3) [mm] strewn over the trunk's skin that no line moves, and its normals there."""
-    mesh, control = stages.body.mesh, stages.control.mesh.vertices
-    low, high = control.min(axis=0), control.max(axis=0)
-    middle = mesh.vertices[mesh.faces].mean(axis=1)
-    beside = (middle[:, 0] > low[0] - _BESIDE) & (middle[:, 0] < high[0] + _BESIDE)
-    level = (middle[:, 2] > low[2] - _BELOW) & (middle[:, 2] < high[2] + _ABOVE)
-    kept = np.flatnonzero(beside & level & ~_moves(stages)[mesh.faces].any(axis=1))
-    faces, areas = mesh.faces[kept], mesh.face_areas[kept]
-    places, face = strewn(mesh.vertices, faces, areas, min(_SAMPLE, 4 * len(faces)))
-    corners = mesh.vertex_normals[faces[face]].sum(axis=1)
-    return places, corners / np.maximum(np.linalg.norm(corners, axis=1), 1e-12)[:, None]
-
-
-def _moves(stages: Stages) -> Flags:
-    moves = np.zeros(len(stages.body.mesh.vertices), dtype=bool)
-    moves[stages.moving.vertices[: stages.moving.count]] = True
-    return moves
+    return by_all_points(found, skin, ground_of(stages.body.mesh, faces))
 
 
 def _starts(stages: Stages, worn: Body) -> Iterator[Floats]:
@@ -185,15 +179,44 @@ def _fine(skin: WornSkin, places: Points, normals: Points, matrix: Floats) -> Fl
         here, facing = moved(matrix, places), normals @ matrix[:3, :3].T
         gaps = skin.gaps(here, facing)
         seen = known(gaps)
-        if seen.sum() < 50:
+        if seen.sum() < _FEWEST:
             return matrix
         gaps, here, facing = gaps[seen], here[seen], facing[seen]
         equations = normal(gaps, _slopes(here, facing), spread_of(gaps))
         step = equations.step()
         matrix = _stepped(step, here) @ matrix
-        if np.abs(step[:3]).max() < _STILL_STEP and np.abs(step[3:]).max() < 100.0 * _STILL_STEP:
+        if _is_still(step, 10.0 * _STILL_STEP):  # all points set it right
             break
     return matrix
+
+
+def _is_still(step: Floats, turn: float) -> bool:
+    """Tell whether a step (6,) turns by less than ``turn`` [rad], and shifts by as little."""
+    return bool(np.abs(step[:3]).max() < turn and np.abs(step[3:]).max() < 100.0 * turn)
+
+
+def by_all_points(found: Alignment, skin: WornSkin, ground: Ground) -> Alignment:
+    """Return an alignment set right by the points of the second scan over the still ``ground``.
+
+    Each of them counts, or each of very many: a scanner that gives more of them tells better where it stood.
+    """
+    every = max(1, int(np.ceil(len(skin.mesh.vertices) / _MOST_POINTS)))
+    points, facing, matrix = skin.mesh.vertices[::every], skin.facing[::every], found.matrix
+    for _ in range(_POINT_ROUNDS):
+        here = moved(matrix, points)
+        feet = ground.feet(here, facing @ matrix[:3, :3].T, skin.noise)
+        if len(feet.gaps) < _FEWEST:
+            return found
+        here = here[feet.rows]
+        slopes, spread = -_slopes(here, feet.normals), spread_of(feet.gaps)
+        step = normal(feet.gaps, slopes, spread).step()
+        matrix = _stepped(step, here) @ matrix
+        if _is_still(step, _STILL_STEP):
+            break
+    # By their feet: noise would part points of one place, those outside from those inside.
+    patches = [cells(feet.of(ground.places), size) for size in PATCHES]
+    covariance = normal(feet.gaps, slopes, spread, patches).covariance
+    return replace(found, matrix=matrix, covariance=covariance, middle=here.mean(axis=0))
 
 
 def _judged(skin: WornSkin, places: Points, normals: Points, matrix: Floats) -> Alignment:
@@ -201,28 +224,25 @@ def _judged(skin: WornSkin, places: Points, normals: Points, matrix: Floats) -> 
     gaps = skin.gaps(here, facing)
     seen = known(gaps)
     gaps, here, facing = gaps[seen], here[seen], facing[seen]
-    if len(gaps) < 50:
-        return Alignment(_back(matrix), np.inf, np.inf, 0.0, len(gaps) / len(seen), *_UNSURE)
+    if len(gaps) < _FEWEST:
+        unsure = np.diag(np.full(6, np.inf))
+        return Alignment(_back(matrix), np.inf, np.inf, 0.0, len(gaps) / len(seen), unsure, np.zeros(3))
     near = np.abs(gaps) < MET
     patches = [cells(here, size) for size in PATCHES]
     equations = normal(gaps, _slopes(here, facing), spread_of(gaps), patches)
-    unsure = np.sqrt(np.maximum(np.diag(equations.covariance), 0.0))
     return Alignment(
         _back(matrix),
         float(np.sqrt(np.mean(gaps[near] ** 2))) if near.any() else np.inf,
         float(np.quantile(np.abs(gaps[near]), 0.95)) if near.any() else np.inf,
         float(near.mean()),
         float(seen.mean()),
-        np.degrees(unsure[:3]),
-        unsure[3:],
+        equations.covariance,
+        moved(_back(matrix), here).mean(axis=0),
     )
 
 
 def _back(matrix: Floats) -> Floats:
     return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
-
-
-_UNSURE = (np.full(3, np.inf), np.full(3, np.inf))
 
 
 def _refuse_other_size(body: Body, worn: Body) -> None:

@@ -14,10 +14,13 @@ from core.landmarks import find_landmarks
 from core.mesh import Floats, Points
 from core.pipeline import Stages
 from core.worn_scan.aligning import Alignment, moved
+from core.worn_scan.feet import Ground
 from core.worn_scan.gap import WornSkin, curvature, known
 
 THICKEST = 20.0
 """Cloth is not thicker than this [mm]."""
+
+_SEVERAL = 2.0  # points round a vertex, counted by their share of it, whose mean tells more than one triangle
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,23 +77,30 @@ def laid_on(name: str, body: Body, alignment: Alignment) -> Worn:
         if mark := found.get(f"bust_point_{side}"):
             points[side] = moved(alignment.matrix, mark.position[None])[0]
             sure[side] = mark.confidence
-    return Worn(name, body, alignment, WornSkin(alignment.laid(body.mesh)), points, sure)
+    return Worn(name, body, alignment, WornSkin(alignment.laid(body.mesh), body.noise), points, sure)
 
 
-def gaps_to(stages: Stages, points: Points, skin: WornSkin, thickness: float) -> Floats:
+def gaps_at(stages: Stages, points: Points, skin: WornSkin, thickness: float) -> Floats:
     """Return predicted less real of the moving vertices for control ``points`` (n, 3) [mm], shape (k,) [mm].
 
-    The real skin is taken to lie ``thickness`` [mm] under the scanned one.
+    The real skin is taken to lie ``thickness`` [mm] under the scanned one. Where the scan is finer than the
+    predicted skin it is the mean of the points round a vertex, else where its normal meets the scan.
     """
     count = stages.moving.count
     places, normals = stages.shape(points)
     curved = curvature(places, normals, stages.moving.corners)[:count]
-    return np.asarray(skin.gaps(places[:count], normals[:count], curved) + thickness)
+    met = skin.gaps(places[:count], normals[:count], curved)
+    ground = Ground(places, normals, stages.moving.corners)
+    feet = ground.feet(skin.mesh.vertices, skin.facing, skin.noise)
+    many = np.bincount(feet.corners.ravel(), feet.parts.ravel(), len(places))[:count]
+    sums = np.bincount(feet.corners.ravel(), (feet.parts * feet.gaps[:, None]).ravel(), len(places))[:count]
+    several = many >= np.where(known(met), _SEVERAL, 1.0)
+    return np.asarray(np.where(several, sums / np.where(several, many, 1.0), met) + thickness)
 
 
 def compare(stages: Stages, points: Points, worn: Worn, thickness: float = 0.0) -> Difference:
     """Compare what control ``points`` (n, 3) [mm] predict with a worn scan."""
-    values = gaps_to(stages, points, worn.skin, thickness)
+    values = gaps_at(stages, points, worn.skin, thickness)
     left = stages.moving.rest[: len(values), 0] > stages.moving.middle
     marks = dict(zip(SIDES, stages.watch.bust_points(points), strict=True))
     inward = np.array([0.0, thickness, 0.0])

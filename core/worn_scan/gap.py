@@ -21,14 +21,37 @@ REACH = 40.0
 _NEAR = 8  # triangles whose middles are nearest, among which the nearest is looked for
 _ROUNDS = 4
 _SLANT = 0.35  # a skin more slanted than this against the normal tells no distance along it [1]
+_EASED = 3  # rounds in which normals are taken together with their neighbours
 _MET = 0.3  # how far from the skin the place that was found may lie [mm]
 
 
 class WornSkin:
-    """The skin of a scan [mm], to be asked how far places lie before it."""
+    """The skin of a scan [mm], to be asked how far places lie before it.
 
-    def __init__(self, mesh: Mesh) -> None:
-        self.mesh = mesh
+    ``noise`` [mm] is the standard deviation of its vertices along each axis.
+    """
+
+    def __init__(self, mesh: Mesh, noise: float = 0.0) -> None:
+        self.mesh, self.noise = mesh, noise
+
+    @cached_property
+    def facing(self) -> Points:
+        """Where it looks at its vertices, as roughly as matters to tell front from back, (n, 3) [1].
+
+        A fine skin with noise has normals of all sorts: those of neighbours are taken together.
+        """
+        ways, corners = self.mesh.vertex_normals, self.mesh.faces.T
+        for _ in range(_EASED):
+            sums = ways[corners].sum(axis=0)
+            ways = np.stack(
+                [
+                    sum(np.bincount(corner, sums[:, axis], len(ways)) for corner in corners)
+                    for axis in range(3)
+                ],
+                axis=1,
+            )
+            ways /= np.maximum(np.linalg.norm(ways, axis=1), 1e-12)[:, None]
+        return ways
 
     @cached_property
     def _middles(self) -> cKDTree:

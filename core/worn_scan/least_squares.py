@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.mesh import Floats, Indices
+from core.mesh import Flags, Floats, Indices
 
 PATCHES = (25.0, 50.0)
 """Places in the same cube of one of these sizes may be off together [mm]."""
@@ -28,13 +28,22 @@ def weights(gaps: Floats, spread: float) -> Floats:
 
 
 def cost(gaps: Floats, spread: float) -> float:
-    """Return the mean of Huber's cost of ``gaps`` (k,) less what they have in common, as squares [mm^2]."""
-    weight = weights(gaps, spread)
-    gaps = gaps - float(weight @ gaps / max(weight.sum(), 1e-12))
+    """Return the sum of Huber's cost of ``gaps`` (k,), as squares [mm^2]."""
     limit = _HUBER * spread
     far = np.abs(gaps) > limit
-    each = np.where(far, 2.0 * limit * np.abs(gaps) - limit**2, gaps**2)
-    return float(each.mean()) if len(each) else 0.0
+    return float(np.where(far, 2.0 * limit * np.abs(gaps) - limit**2, gaps**2).sum())
+
+
+@dataclass(frozen=True, eq=False)
+class Beforehand:
+    """What is known of p unknowns without any gap: ``precision`` (p, p), how far they are ``off`` (p,)."""
+
+    precision: Floats
+    off: Floats
+
+    def cost(self, spread: float) -> float:
+        """Return what it costs to be so far off, as squares of gaps with a ``spread`` [mm^2]."""
+        return float(spread**2 * self.off @ self.precision @ self.off)
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +57,11 @@ class Normal:
     slope: Floats
     covariance: Floats
 
+    def of(self, some: Flags) -> Normal:
+        """Return the equations of ``some`` (p,) of the unknowns, the others held."""
+        both = np.ix_(some, some)
+        return Normal(self.matrix[both], self.slope[some], self.covariance[both])
+
     def step(self, damping: float = 0.0) -> Floats:
         """Return the step of Gauss and Newton, damped after Levenberg and Marquardt, shape (p,)."""
         damped = self.matrix + damping * np.diag(np.diag(self.matrix))
@@ -55,25 +69,31 @@ class Normal:
 
 
 def normal(
-    gaps: Floats, slopes: Floats, spread: float, patches: Sequence[Indices] = (), *, offset: bool = False
+    gaps: Floats,
+    slopes: Floats,
+    spread: float,
+    patches: Sequence[Indices] = (),
+    known: Beforehand | None = None,
 ) -> Normal:
-    """Return the normal equations of ``gaps`` (k,) with ``slopes`` (k, p).
+    """Return the normal equations of ``gaps`` (k,) with ``slopes`` (k, p), and of what is ``known`` before.
 
     Each of ``patches`` (k,) numbers places that may be off together: so the covariance is honest where
     neighbours are, be it by smoothed noise or since the model is no body. Of several divisions that which
-    makes an unknown least sure counts: it tells how far errors reach. Without any all are off by themselves.
-    With an ``offset`` all gaps may have one more in common, which is nobody's to tell: it is taken out.
+    makes an unknown least sure counts: it tells how far errors reach. At the least all are off by themselves.
     """
-    weight = weights(gaps, spread)
-    if offset and len(gaps):
-        slopes = slopes - weight @ slopes / weight.sum()
-        gaps = gaps - float(weight @ gaps / weight.sum())
-    weighted = weight[:, None] * slopes
+    weighted = weights(gaps, spread)[:, None] * slopes
     pulls = weighted * gaps[:, None]
-    matrix = np.asarray(weighted.T @ slopes)
+    matrix, slope = np.asarray(weighted.T @ slopes), np.asarray(pulls.sum(axis=0))
+    tied = np.zeros_like(matrix)
+    if known is not None:
+        tied = spread**2 * known.precision
+        matrix, slope = matrix + tied, slope + tied @ known.off
     inverse = np.asarray(np.linalg.pinv(matrix, rcond=1e-14, hermitian=True), dtype=np.float64)
-    every = [_left_out(weighted, slopes, pulls, inverse, patch) for patch in patches]
-    return Normal(matrix, pulls.sum(axis=0), _widest(every) if every else np.asarray(spread**2 * inverse))
+    # What is known beforehand is unsure as well: else an unknown that no gap tells would count as sure.
+    before = spread**2 * inverse @ tied @ inverse
+    every = [inverse @ pulls.T @ pulls @ inverse]
+    every += [_left_out(weighted, slopes, pulls, inverse, patch) for patch in patches]
+    return Normal(matrix, slope, _widest(every) + before)
 
 
 def _left_out(weighted: Floats, slopes: Floats, pulls: Floats, inverse: Floats, patch: Indices) -> Floats:
@@ -81,10 +101,9 @@ def _left_out(weighted: Floats, slopes: Floats, pulls: Floats, inverse: Floats, 
     count, size = int(patch.max(initial=-1)) + 1, slopes.shape[1]
     if not count or not size:
         return np.zeros((size, size))
-    own = np.zeros((count, size, size))
-    np.add.at(own, patch, weighted[:, :, None] * slopes[:, None, :])
-    pulled = np.zeros((count, size))
-    np.add.at(pulled, patch, pulls)
+    rows = np.split(np.argsort(patch, kind="stable"), np.cumsum(np.bincount(patch))[:-1])
+    own = np.array([weighted[each].T @ slopes[each] for each in rows])
+    pulled = np.array([pulls[each].sum(axis=0) for each in rows])
     rest = np.eye(size) - own @ inverse  # what of the matrix is left without the patch
     steps = np.einsum("gpq,gq->gp", np.linalg.pinv(rest, rcond=_BLIND), pulled) @ inverse
     return np.asarray(steps.T @ steps * max(count - 1, 1) / count)

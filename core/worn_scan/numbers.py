@@ -36,18 +36,18 @@ STIFFNESS, LENGTH = "stiffness", "length"
 MOST = 6
 """No more numbers than this are sought at once."""
 
-_BLIND = {
-    LINE_STIFFNESS: 0.35,
-    STIFFNESS: 0.35,
-    TISSUE: 0.35,
-    FIRM_CHEST: 0.05,
-    PRESTRESS: 0.15,
-    LENGTH: 0.01,
+_BEFORE = {
+    LINE_STIFFNESS: 1.0,
+    STIFFNESS: 1.0,
+    TISSUE: 0.5,
+    FIRM_CHEST: 0.1,
+    PRESTRESS: 0.25,
+    LENGTH: 0.02,
 }
-"""A number less sure than this is not told, and stays: of stiffness and tissue the logarithm [1]."""
+"""How far off a number may be before any scan tells it: a standard deviation, as it is sought."""
 
-OWN_DOUBT = 0.075
-"""Lines share one stiffness where that of one alone is less sure than this part of itself [1]."""
+_OWN = 0.5
+"""And how far the stiffness of one line from that of the others, its logarithm [1]."""
 
 
 @dataclass(frozen=True)
@@ -68,9 +68,9 @@ class Number:
         return self.kind in (LINE_STIFFNESS, STIFFNESS, TISSUE)
 
     @property
-    def blind(self) -> float:
-        """The largest standard deviation [as it is sought] at which it is sought at all."""
-        return _BLIND[self.kind]
+    def before(self) -> float:
+        """How far off it may be before any scan tells it: a standard deviation, as it is sought."""
+        return _BEFORE[self.kind]
 
     @property
     def range(self) -> tuple[float, float]:
@@ -114,13 +114,14 @@ class Number:
         return self.put(design, min(max(math.exp(sought) if self.logarithmic else sought, low), high))
 
 
-def candidates(stages: Stages, *, lengths: bool, each: bool) -> tuple[Number, ...]:
+def candidates(stages: Stages, *, lengths: bool, each: bool = True) -> tuple[Number, ...]:
     """Return the numbers that a second scan may tell of a design, at most ``MOST``, the likeliest first.
 
-    ``each`` line has a stiffness of its own, or one does for all that have none of their own; ``lengths``
-    tells that lines may have been cut to another length than was designed.
+    ``each`` line has a stiffness of its own unless these are too many, or one does for all that have none of
+    their own; ``lengths`` tells that lines may have been cut to another length than was designed.
     """
-    return tuple(_candidates(stages, lengths, each))[:MOST]
+    several = tuple(_candidates(stages, lengths, each))
+    return several if len(several) <= MOST else tuple(_candidates(stages, lengths, False))[:MOST]
 
 
 def _candidates(stages: Stages, lengths: bool, each: bool) -> Iterator[Number]:
@@ -142,6 +143,15 @@ def _candidates(stages: Stages, lengths: bool, each: bool) -> Iterator[Number]:
         yield Number(PRESTRESS)
     if lengths:
         yield from (Number(LENGTH, group) for group in groups)
+
+
+def precision_before(numbers: tuple[Number, ...]) -> Floats:
+    """Return the precision (p, p) of ``numbers`` as they are sought, before any scan tells them."""
+    size = np.array([number.before for number in numbers])
+    lines = np.array([number.kind in (LINE_STIFFNESS, STIFFNESS) for number in numbers])
+    together = np.outer(size * lines, size * lines)
+    alone = np.diag(np.where(lines, _OWN, size) ** 2)
+    return np.asarray(np.linalg.inv(together + alone)) if len(numbers) else np.zeros((0, 0))
 
 
 def rates_by(stages: Stages, answer: Answer, numbers: tuple[Number, ...]) -> Floats:
