@@ -22,13 +22,16 @@ _CELL = 1.07  # of the spacing: a cube's edge at which a skin has one vertex to 
 LEAN = 4.0  # degrees about x and y; a turn about z is undone when a scan is set upright, but not all of it
 
 
-def worn_mesh(stages: Stages, truth: Design, finer: int = 0) -> Mesh:
-    """Return the body as ``truth`` predicts it, its triangles split in four ``finer`` times before that."""
+def worn_mesh(stages: Stages, truth: Design, finer: int = 0, skin: Mesh | None = None) -> Mesh:
+    """Return the body as ``truth`` predicts it, its triangles split in four ``finer`` times before that.
+
+    If there is a ``skin`` [mm] it is that which follows, else that of the body that was scanned first.
+    """
     there = build(truth, stages)
-    mesh, binding = there.body.mesh, there.binding
+    mesh, binding = skin or there.body.mesh, there.binding
     for _ in range(finer):
         mesh = split(mesh)
-    if finer:
+    if finer or skin:
         fade = patch_fade(mesh, there.control).fade
         how = {"scaled_normals": truth.scaled_normals, "fixed": there.control.fixed}
         binding = bind(mesh, there.control.mesh, fade, truth.weights, **how)
@@ -67,6 +70,13 @@ def scanned(
     matrix[:3, 3] += rng.uniform(-150.0, 150.0, 3)
     vertices = mesh.vertices @ matrix[:3, :3].T + matrix[:3, 3]
     return mesh.moved(vertices + noise * rng.normal(size=vertices.shape)), matrix
+
+
+def rough(mesh: Mesh, rng: np.random.Generator, spacing: float, noise: float = 1.0) -> Mesh:
+    """Return a body as a scanner would give it without turning or cutting it; see ``scanned``."""
+    if spacing:
+        mesh = met(split(split(mesh)), _CELL * spacing)
+    return mesh.moved(mesh.vertices + noise * rng.normal(size=mesh.vertices.shape))
 
 
 def only(mesh: Mesh, kept: np.ndarray) -> Mesh:

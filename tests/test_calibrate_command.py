@@ -37,6 +37,9 @@ def test_it_tells_finds_and_saves(pair: tuple[str, str], tmp_path: Path, capsys)
     assert "line stiffness" in said
     assert "firm chest" in said
     assert "hold for this person and this garment" in said
+    weak = [line for line in said.splitlines() if line.endswith("told weakly")]
+    assert any(line.startswith("firm chest") for line in weak)
+    assert f"{2 - len(weak)} of 2 numbers told to within 5 %, by" in said
     design = open_project(out).design
     assert design.calibration is not None
     assert design.line_stiffness == pytest.approx(6.0, rel=0.15)
@@ -46,6 +49,9 @@ def test_it_tells_finds_and_saves(pair: tuple[str, str], tmp_path: Path, capsys)
     assert told["alignment"]["met"] == pytest.approx(1.0, abs=0.01)
     assert told["after"]["all"]["rms_mm"] == pytest.approx(told["before"]["all"]["rms_mm"], rel=0.01)
     assert {number["name"] for number in told["numbers"]} == {"line_stiffness", "firm_chest"}
+    for number in told["numbers"]:
+        assert number["told"] is (number["plus_minus"] <= 0.05 * number["after"])
+    assert told["points"] > 300
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QScrollArea
 from window_tools import Script, run_main, settled, undrawn
 
@@ -50,7 +52,7 @@ def test_a_worn_scan_is_compared_and_learnt_from(pair: tuple[str, str, str]) -> 
         desk, page = window.worn_desk, window.worn_desk.page
         window.map_desk.choose("worn")
         assert "worn scan first" in window.map_desk.legend._note.text()
-        assert window.map_desk.name == "worn"
+        window.map_desk.choose("")
         window.desk.go_to("result")
         assert desk.door.isVisible(), "it is met under the measures"
         desk.door.click()
@@ -67,11 +69,20 @@ def test_a_worn_scan_is_compared_and_learnt_from(pair: tuple[str, str, str]) -> 
         assert frame is not None
         values = window.worn_desk.values(frame)
         assert 0.8 < np.isfinite(values[: frame.stages.moving.count]).mean() < 1.0, "there is a hole"
+        QTest.mouseClick(page.look, Qt.MouseButton.LeftButton)
+        assert window.focusWidget() is not area, "no frame round all of the page"
+        assert window.map_desk.name == "worn"
         before = window.session.design
         page.calibrate.click()
         assert not page.calibrate.isEnabled(), "it is at work"
         yield lambda: bool(page.view.numbers)
         assert [row.title for row in page.view.numbers] == ["Stiffness of lines", "Firm chest"]
+        assert page.view.numbers[1].told is False
+        assert (
+            page.surely.text()
+            == page.view.surely
+            == ("Told to within 5 %: Stiffness of lines. Told weakly, as ± says: Firm chest.")
+        )
         assert page.apply.isVisible()
         page.apply.click()
         yield lambda: settled(window)() and bool(page.view.rows) and not page.view.faint
@@ -124,8 +135,8 @@ def test_another_person_is_refused_and_an_edit_makes_the_comparison_old(pair: tu
 def test_where_the_bust_points_are_is_said_without_a_sign() -> None:
     figures = Figures(0.0, 1.0, 2.0, 1.0)
     way = {"left": np.array([0.0, 0.7, -0.3]), "right": np.array([0.0, -0.2, 0.04])}
-    words = bust_words(Difference(np.zeros(3), figures, {}, way))
+    words = bust_words(Difference(np.zeros(3), figures, {}, way, {"left": 5.66, "right": 10.8}))
     assert words.startswith(
-        "Left bust point: predicted 0.3 mm lower, 0.7 mm less far out. Right bust point: "
+        "Left bust point: predicted 0.3 mm lower (±5.7 mm), 0.7 mm less far out. Right bust point: "
     )
-    assert "predicted 0.0 mm higher, 0.2 mm further out." in words
+    assert "predicted 0.0 mm higher (±10.8 mm), 0.2 mm further out." in words

@@ -13,7 +13,7 @@ from app.commands.settings import dressed, made_of
 from core import __version__
 from core.calibration import THICKEST, Difference, Figures, Found, Worn, calibrate, read_worn, refuse_bare
 from core.design import Design, ScanSource
-from core.design_calibration import FoundNumber
+from core.design_calibration import WELL, FoundNumber
 from core.document import Document
 from core.errors import UserError
 from core.pipeline import Stages, build
@@ -97,7 +97,9 @@ def _plain(done: Calibrated) -> Iterator[str]:
             yield (
                 f"{spoken(number.name):28}{_value(number, number.before):>10}"
                 f"{_value(number, number.after):>10}{_value(number, number.plus_minus):>9}"
+                f"{'' if number.told else '   told weakly'}"
             )
+    yield told(found)
     for number in found.calibration.numbers:
         if number.kept:
             yield stays(number, found.confused.get(number.name, ""))
@@ -109,6 +111,16 @@ def _plain(done: Calibrated) -> Iterator[str]:
         yield f"written to {done.out}"
 
 
+def told(found: Found) -> str:
+    """Return how many of the numbers that were found are told well."""
+    sought = [number for number in found.calibration.numbers if not number.kept]
+    well = sum(number.told for number in sought)
+    return (
+        f"{well} of {len(sought)} numbers told to within {100.0 * WELL:.0f} %, "
+        f"by {found.met:,} points on the moving skin; a finer scan tells more."
+    )
+
+
 def _row(name: str, figures: Figures) -> str:
     parts = "".join(f"{value:8.2f}" for value in (figures.mean, figures.rms, figures.most))
     return f"{name:28}{parts}{100.0 * figures.seen:6.0f} %"
@@ -118,7 +130,10 @@ def _bust_points(done: Calibrated) -> Iterator[str]:
     told = done.found.before.bust_points, done.found.after.bust_points
     for side, before in told[0].items():
         sure = 100.0 * done.worn.sure[side]
-        yield f"bust point, her {side} ({sure:.0f} % sure on the worn scan): predicted less real"
+        yield (
+            f"bust point, her {side} ({sure:.0f} % sure on the worn scan): predicted less real, "
+            f"±{done.found.before.bust_unsure[side]:.1f} mm along the skin"
+        )
         for when, way in (("before", before), ("after", told[1][side])):
             parts = ", ".join(f"{value:+.1f} mm {where}" for value, where in zip(way, WAYS, strict=True))
             yield f"  {when:8}{parts}"
@@ -166,10 +181,12 @@ def _figures(done: Calibrated) -> dict[str, Any]:
                 "after": number.after,
                 "plus_minus": number.plus_minus,
                 "kept": number.kept,
+                "told": number.told,
                 "cannot_be_told_from": found.confused.get(number.name) or None,
             }
             for number in found.calibration.numbers
         ],
+        "points": found.met,
         "singular_values": list(found.singular),
         "thickness_mm": found.calibration.thickness,
         "helped": found.helped,
@@ -190,6 +207,7 @@ def _difference(difference: Difference) -> dict[str, Any]:
         for name, each in every.items()
     }
     told["bust_points_mm"] = {side: way.tolist() for side, way in difference.bust_points.items()}
+    told["bust_points_plus_minus_mm"] = dict(difference.bust_unsure)
     return told
 
 

@@ -227,6 +227,7 @@ class WornDesk(QObject):
             rows=words.figure_rows(shown) if shown else (),
             bust=words.told_words(shown) if shown else "",
             numbers=words.number_rows(found, design) if found else (),
+            surely=words.surely_words(found, design) if found else "",
             kept=words.kept_words(found, design) if found else "",
             better=words.better_words(found) if found else "",
             record=words.record_words(design.calibration),

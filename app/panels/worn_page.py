@@ -27,12 +27,13 @@ class FigureRow:
 
 @dataclass(frozen=True)
 class NumberRow:
-    """A number that was found, as it is written: before, after, its ±."""
+    """A number that was found, as it is written: before, after, its ±; and whether it is ``told`` well."""
 
     title: str
     before: str
     after: str
     plus_minus: str
+    told: bool = True
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,8 @@ class WornView:
     """All that the page says; empty where there is nothing.
 
     ``faint``: the comparison is of a former shape. ``ready``: the numbers can be sought. ``helped``: those
-    found can be applied. ``record`` is what the design keeps of a calibration.
+    found can be applied, and ``surely`` says which are told well. ``record`` is what the design keeps of a
+    calibration.
     """
 
     file: str = ""
@@ -48,6 +50,7 @@ class WornView:
     rows: tuple[FigureRow, ...] = ()
     bust: str = ""
     numbers: tuple[NumberRow, ...] = ()
+    surely: str = ""
     kept: str = ""
     better: str = ""
     record: str = ""
@@ -77,7 +80,7 @@ class WornPage(QWidget):
             "caption",
         )
         self.bust, self.kept, self.better = (sentence("", role) for role in ("secondary", "caption", "name"))
-        self.record = sentence("", "secondary")
+        self.record, self.surely = sentence("", "secondary"), sentence("", "secondary")
         self.choose = button(tr("Choose a worn scan…"))
         self.unit = Segment(
             (("", tr("Guessed")), ("mm", "mm"), ("cm", "cm"), ("m", "m"), ("inch", tr("inch"))),
@@ -131,6 +134,7 @@ class WornPage(QWidget):
         area = QScrollArea()
         area.setAccessibleName(tr("Worn scan"))
         area.setWidgetResizable(True)
+        area.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # not by a click on a button, which takes none itself
         area.setFrameShape(QFrame.Shape.NoFrame)
         area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         area.setWidget(inside)
@@ -174,6 +178,7 @@ class WornPage(QWidget):
         column.addWidget(hairline())
         column.addWidget(self.better)
         column.addLayout(self._numbers)
+        column.addWidget(self.surely)
         column.addWidget(self.kept)
         column.addWidget(self.unsure)
         column.addWidget(sentence(tr("These numbers hold for this person and this garment."), "caption"))
@@ -188,7 +193,7 @@ class WornPage(QWidget):
         self.view = view
         texts = (self.file, view.file), (self.lies, view.lies), (self.bust, view.bust)
         others = (self.kept, view.kept), (self.better, view.better), (self.record, view.record)
-        for part, text in (*texts, *others):
+        for part, text in (*texts, *others, (self.surely, view.surely)):
             part.setText(text)
             part.setVisible(bool(text))
         self.choose.setText(tr("Choose another…") if view.file else tr("Choose a worn scan…"))
@@ -200,20 +205,25 @@ class WornPage(QWidget):
         for cell in self._cells:
             cell.deleteLater()
         self._cells = []
-        self._fill(self._figures, ("", tr("Mean"), tr("rms"), "95 %"), [vars(row) for row in view.rows])
-        self._fill(self._numbers, ("", tr("As it is"), tr("Found"), "±"), [vars(row) for row in view.numbers])
+        rows = [(row.title, row.mean, row.rms, row.most) for row in view.rows]
+        self._fill(self._figures, ("", tr("Mean"), tr("rms"), "95 %"), rows, [view.faint] * len(rows))
+        rows = [(row.title, row.before, row.after, row.plus_minus) for row in view.numbers]
+        weak = [not row.told for row in view.numbers]
+        self._fill(self._numbers, ("", tr("As it is"), tr("Found"), "±"), rows, weak)
 
     def show_map(self, on: bool) -> None:
         """Tell by the button whether the map lies on the body."""
         self._mapped = on
         self.look.setText(tr("Hide the map") if on else tr("Show on the body"))
 
-    def _fill(self, grid: QGridLayout, heads: Sequence[str], rows: Sequence[dict[str, str]]) -> None:
+    def _fill(
+        self, grid: QGridLayout, heads: Sequence[str], rows: Sequence[Sequence[str]], faint: Sequence[bool]
+    ) -> None:
         right = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
-        for at, texts in enumerate((heads, *(tuple(row.values()) for row in rows)) if rows else ()):
+        for at, texts in enumerate((heads, *rows) if rows else ()):
             for column, text in enumerate(texts):
                 cell = label(text, "caption" if at == 0 else "body", tabular=bool(column))
-                set_tag(cell, "tone", "faint" if self.view.faint and grid is self._figures and at else "")
+                set_tag(cell, "tone", "faint" if at and faint[at - 1] else "")
                 if column:
                     cell.setAlignment(right)
                 grid.addWidget(cell, at, column)

@@ -11,7 +11,7 @@ from app.presenting.lines import line_title
 from app.wording.words import joined, listed, number, tr
 from core.calibration import Difference, Figures, Found, Worn
 from core.design import Design
-from core.design_calibration import Calibration, FoundNumber
+from core.design_calibration import WELL, Calibration, FoundNumber
 from core.mesh import Floats
 from core.worn_scan.numbers import FIRM_CHEST, LENGTH, LINE_STIFFNESS, PRESTRESS, STIFFNESS, TISSUE
 
@@ -60,16 +60,21 @@ def bust_words(difference: Difference) -> str:
     }
     said = [
         named[side].format(
-            way=_way(float(way[2]), tr("{mm} mm higher"), tr("{mm} mm lower")),
+            way=_way(
+                float(way[2]),
+                tr("{mm} mm higher (±{sure} mm)"),
+                tr("{mm} mm lower (±{sure} mm)"),
+                difference.bust_unsure[side],
+            ),
             out=_way(-float(way[1]), tr("{mm} mm further out"), tr("{mm} mm less far out")),
         )
         for side, way in difference.bust_points.items()
     ]
-    return joined([*said, tr("Where a bust point is read from a scan it is 3 mm off as a rule.")])
+    return joined([*said, tr("± is how surely both scans tell the bust points.")])
 
 
-def _way(mm: float, more: str, less: str) -> str:
-    return (less if round(mm, 1) < 0.0 else more).format(mm=number(abs(mm), 1))
+def _way(mm: float, more: str, less: str, sure: float = 0.0) -> str:
+    return (less if round(mm, 1) < 0.0 else more).format(mm=number(abs(mm), 1), sure=number(sure, 1))
 
 
 def told_words(difference: Difference) -> str:
@@ -92,10 +97,25 @@ def number_rows(found: Found, design: Design) -> tuple[NumberRow, ...]:
             value_words(each, each.before),
             value_words(each, each.after),
             f"±{value_words(each, each.plus_minus)}",
+            each.told,
         )
         for each in found.calibration.numbers
         if not each.kept
     )
+
+
+def surely_words(found: Found, design: Design) -> str:
+    """Return which of the numbers that were found are told well, and which are not."""
+    sought = [each for each in found.calibration.numbers if not each.kept]
+    well, weak = (
+        listed([number_title(each.name, design) for each in sought if each.told is told])
+        for told in (True, False)
+    )
+    percent = number(100.0 * WELL, 0)
+    if not weak:
+        return tr("All are told to within {percent} %.").format(percent=percent) if well else ""
+    first = tr("Told to within {percent} %: {numbers}.").format(percent=percent, numbers=well) if well else ""
+    return joined([first, tr("Told weakly, as ± says: {numbers}.").format(numbers=weak)])
 
 
 def kept_words(found: Found, design: Design) -> str:

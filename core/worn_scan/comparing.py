@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from core.advice.assumed import assumed
 from core.body import Body
 from core.errors import LandmarkError
-from core.landmark import CERTAIN, SIDES
+from core.landmark import CERTAIN, SIDES, Landmark
 from core.landmarks import find_landmarks
 from core.mesh import Floats, Points
 from core.pipeline import Stages
@@ -21,6 +23,7 @@ THICKEST = 20.0
 """Cloth is not thicker than this [mm]."""
 
 _SEVERAL = 2.0  # points round a vertex, counted by their share of it, whose mean tells more than one triangle
+_ANY = 0.25  # and where no triangle is met
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,13 +59,15 @@ class Difference:
     """Predicted less real at each of the moving vertices, ``values`` (k,) [mm] along the predicted normal.
 
     Positive where the predicted skin stands before the real one; not a number where the worn scan shows none.
-    ``all_of_it`` and ``sides`` sum it up; ``bust_points`` (3,) [mm] by side, where they are sure on the scan.
+    ``all_of_it`` and ``sides`` sum it up; ``bust_points`` (3,) [mm] by side, where they are sure on the scan,
+    and the ± of each along the skin, ``bust_unsure`` [mm], as both scans tell where it is.
     """
 
     values: Floats
     all_of_it: Figures
     sides: Mapping[str, Figures]
     bust_points: Mapping[str, Points]
+    bust_unsure: Mapping[str, float]
 
 
 def laid_on(name: str, body: Body, alignment: Alignment) -> Worn:
@@ -94,7 +99,7 @@ def gaps_at(stages: Stages, points: Points, skin: WornSkin, thickness: float) ->
     feet = ground.feet(skin.mesh.vertices, skin.facing, skin.noise)
     many = np.bincount(feet.corners.ravel(), feet.parts.ravel(), len(places))[:count]
     sums = np.bincount(feet.corners.ravel(), (feet.parts * feet.gaps[:, None]).ravel(), len(places))[:count]
-    several = many >= np.where(known(met), _SEVERAL, 1.0)
+    several = many >= np.where(known(met), _SEVERAL, _ANY)
     return np.asarray(np.where(several, sums / np.where(several, many, 1.0), met) + thickness)
 
 
@@ -104,16 +109,20 @@ def compare(stages: Stages, points: Points, worn: Worn, thickness: float = 0.0) 
     left = stages.moving.rest[: len(values), 0] > stages.moving.middle
     marks = dict(zip(SIDES, stages.watch.bust_points(points), strict=True))
     inward = np.array([0.0, thickness, 0.0])
+    shown = [side for side in worn.bust_points if worn.sure[side] >= CERTAIN]
     return Difference(
         values,
         figures(values),
         {"left": figures(values[left]), "right": figures(values[~left])},
-        {
-            side: marks[side] - (place + inward)
-            for side, place in worn.bust_points.items()
-            if worn.sure[side] >= CERTAIN
-        },
+        {side: marks[side] - (worn.bust_points[side] + inward) for side in shown},
+        {side: bust_unsure(stages.landmarks.points[f"bust_point_{side}"]) for side in shown},
     )
+
+
+def bust_unsure(first: Landmark) -> float:
+    """Return the ± along the skin of a bust point of both scans, ``first`` that of the first [mm]."""
+    told = assumed()
+    return told.sds * math.hypot(told.of_landmark(first), told.landmark_mm)
 
 
 def figures(values: Floats) -> Figures:

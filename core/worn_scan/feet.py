@@ -18,7 +18,7 @@ from core.proximity import nearest_on, shares
 from core.worn_scan.gap import REACH, curvature
 
 _NEAR = 8  # triangles whose middles are nearest, among which the foot is looked for
-_BESIDE, _SLANT = 0.5, 0.2  # a foot this far from below a point [mm], and by the way to it, is no foot [1]
+_BESIDE, _SLANT = 1.0, 0.5  # a foot this far from below a point [mm], and by the way to it, is no foot [1]
 
 
 @dataclass(frozen=True, eq=False)
