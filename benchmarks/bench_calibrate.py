@@ -8,6 +8,7 @@ nothing is said, or with 0 about as many as the sample bodies. The design begins
 --before tells what the first scan is: clean, noisy as the second with the garment lying alike on both, or
 apart:
 noisy, and the garment lies where it would on the clean body, while Busk finds its places on the noisy one.
+--bent bends the second scan smoothly, waves of 150 to 300 mm, as breath or posture would.
 Prints a line for each case, then how far alignment and numbers are off; --put puts that into
 docs/calibrate.md.
 """
@@ -103,9 +104,15 @@ def truth_of(rng: np.random.Generator, stages: Stages, *, each: bool = True) -> 
 
 
 def case(
-    rng: np.random.Generator, base: Stages, kind: str, folder: Path, spacing: float, before: str = "clean"
+    rng: np.random.Generator,
+    base: Stages,
+    kind: str,
+    folder: Path,
+    spacing: float,
+    before: str = "clean",
+    bent: float = 0.0,
 ) -> Case:
-    """Make a pair, its scans with a ``spacing`` [mm], and find its numbers; see the head for ``before``."""
+    """Make a pair, its scans with a ``spacing`` [mm], and find its numbers; see the head for the rest."""
     stages = real = build(garment(rng, base.design, kind), base)
     truth, finer = truth_of(rng, stages, each=kind != "one roll"), 2 if spacing else 0
     if before != "clean":
@@ -118,7 +125,7 @@ def case(
     else:
         worn_skin = worn_mesh(real, truth, finer)
         worn_skin = worn_skin.moved(moved(here, worn_skin.vertices))
-    mesh, matrix = scanned(worn_skin, stages, rng, spacing=spacing)
+    mesh, matrix = scanned(worn_skin, stages, rng, spacing=spacing, bent=bent)
     path = written(mesh, folder / "worn.ply")
     begun = time.process_time()
     worn = read_worn(stages, ScanSource(path, unit="mm"))
@@ -155,6 +162,7 @@ def main() -> None:
     parser.add_argument("--cases", type=int, default=36)
     parser.add_argument("--spacing", type=float, default=2.0, help="of the worn scan's points [mm]")
     parser.add_argument("--before", choices=MARKS, default="clean", help="what the first scan is")
+    parser.add_argument("--bent", type=float, default=0.0, help="how far the second scan is bent [mm]")
     parser.add_argument("--put", action="store_true", help="put the table into docs/calibrate.md")
     options = parser.parse_args()
     on, cases = list(bodies(options.folder)), []
@@ -162,8 +170,9 @@ def main() -> None:
         for at in range(options.cases):
             base, kind = on[at % len(on)], GARMENTS[at % len(GARMENTS)]
             rng = np.random.default_rng([606, at])  # each pair by itself: the same at each spacing
+            how = options.spacing, options.before, options.bent
             try:
-                done = case(rng, base, kind, Path(folder), options.spacing, options.before)
+                done = case(rng, base, kind, Path(folder), *how)
             except UserError as why:
                 print(f"no pair: {base.design.scan.name}, {kind}: {why}", flush=True)
                 continue

@@ -91,6 +91,18 @@ def test_the_numbers_of_a_made_pair_are_found(pair: tuple[Stages, Worn, Design],
     assert after["firm_chest"].after == pytest.approx(truth.firm_chest, rel=0.1)
 
 
+def test_lines_of_one_roll_share_a_stiffness_that_is_told_better(
+    pair: tuple[Stages, Worn, Design], found: Found
+) -> None:
+    one = calibrate(*pair[:2], one_roll=True)
+    told = {number.name: number for number in one.calibration.numbers}
+    assert set(told) == {"line_stiffness", "firm_chest"}
+    share = told["line_stiffness"].plus_minus / told["line_stiffness"].after
+    apart = next(each for each in found.calibration.numbers if each.name == "stiffness of full-bust")
+    assert share < 0.8 * apart.plus_minus / apart.after
+    assert told["line_stiffness"].after == pytest.approx(pair[2].line_stiffness, rel=2.0 * share)
+
+
 def test_the_design_has_the_numbers_and_a_record(found: Found) -> None:
     kept = found.design.calibration
     assert kept is not None

@@ -28,7 +28,8 @@ def calibrate(options: argparse.Namespace) -> int:
     from core.design import ScanSource
 
     axes = {"unit": options.worn_unit, "up": options.worn_up, "front": options.worn_front}
-    worn = WornScan(ScanSource(options.worn, **axes), options.thickness, options.lengths, options.out)
+    how = {"lengths": options.lengths, "one_roll": options.one_roll, "out": options.out}
+    worn = WornScan(ScanSource(options.worn, **axes), options.thickness, **how)
     design, lengths, elastics = design_of(options.input, options), options.line or [], options.elastic or []
     done = run_calibrate(options.input, design, lengths, elastics, worn)
     return told(calibrated_text(done, options.json), done.found.helped, [])

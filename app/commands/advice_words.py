@@ -43,6 +43,8 @@ def add_worn_scan(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--thickness", type=float, default=0.0, metavar="MM", help=thick)
     lengths = "lines may have been cut to other lengths than designed: find these too"
     parser.add_argument("--lengths", action="store_true", help=lengths)
+    one = "lines without a stiffness or an elastic of their own are of one roll: one stiffness for all"
+    parser.add_argument("--one-roll", action="store_true", help=one)
     parser.add_argument("--out", default="", metavar="FILE", help="save what was found as a project: .busk")
 
 

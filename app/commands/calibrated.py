@@ -27,12 +27,14 @@ WAYS = ("to her left", "to the back", "up")
 class WornScan:
     """What is told of the second scan; ``thickness`` [mm] is that of the cloth, ``out`` a project or empty.
 
-    ``lengths`` tells that lines may have been cut to other lengths than designed.
+    ``lengths`` tells that lines may have been cut to other lengths than designed, ``one_roll`` that they are
+    of one roll.
     """
 
     source: ScanSource
     thickness: float = 0.0
     lengths: bool = False
+    one_roll: bool = False
     out: str = ""
 
 
@@ -63,7 +65,8 @@ def run_calibrate(
     stages = build(made_of(dressed(design, stages.model.lines, lengths), elastics), stages)
     refuse_bare(stages)  # before half a minute is spent on reading
     worn = read_worn(stages, told.source)
-    found = calibrate(stages, worn, thickness=told.thickness, lengths=told.lengths)
+    thickness, lengths_too = told.thickness, told.lengths
+    found = calibrate(stages, worn, thickness=thickness, lengths=lengths_too, one_roll=told.one_roll)
     if told.out:
         document = open_project(source) if is_project(source) else Document.of(found.design)
         save_project(told.out, document.with_design(found.design), stages.scan, None)
@@ -115,9 +118,10 @@ def told(found: Found) -> str:
     """Return how many of the numbers that were found are told well."""
     sought = [number for number in found.calibration.numbers if not number.kept]
     well = sum(number.told for number in sought)
+    more = "; a finer scan tells more" if well < len(sought) else ""
     return (
         f"{well} of {len(sought)} numbers told to within {100.0 * WELL:.0f} %, "
-        f"by {found.met:,} points on the moving skin; a finer scan tells more."
+        f"by {found.met:,} points on the moving skin{more}."
     )
 
 

@@ -79,15 +79,18 @@ def calibrate(
     *,
     thickness: float = 0.0,
     lengths: bool = False,
+    one_roll: bool = False,
     progress: Progress = quiet,
 ) -> Found:
     """Find the numbers of a design at which it predicts a worn scan best.
 
     The cloth is taken to be ``thickness`` [mm] thick; ``lengths`` tells that lines may have been cut to other
-    lengths than designed. Raises UserError if nothing is worn that moves the body, or too little is seen.
+    lengths than designed, ``one_roll`` that those without a stiffness or an elastic of their own are of one
+    roll, and share one stiffness. Raises UserError if nothing is worn that moves the body, or too little is
+    seen.
     """
     refuse_bare(stages)
-    numbers = candidates(stages, lengths=lengths)
+    numbers = candidates(stages, lengths=lengths, each=not one_roll)
     fit = Fit(stages, worn, thickness, numbers, progress)
     first = fit.look(stages.design)
     seen = known(first.gaps)

@@ -29,6 +29,7 @@ from core.worn_scan.numbers import Number, precision_before, rates_by
 BESIDE = 7
 """Unknowns beside the numbers: three turns [rad], three shifts and what all gaps have in common [mm]."""
 
+_SUREST = (1e-5, 1e-3)  # a turn [rad] and a shift [mm] of an alignment that no noise makes unsure
 _STEPS, _DONE, _TRIED = 25, 1e-4, 6
 _FARTHEST = np.log(4.0)  # no stiffness changes more than this in one step
 
@@ -74,7 +75,8 @@ class Fit:
         self._sought = np.array([number.sought(stages.design) for number in numbers])
         precision = np.zeros((len(numbers) + BESIDE, len(numbers) + BESIDE))
         precision[: len(numbers), : len(numbers)] = precision_before(numbers)
-        precision[len(numbers) : -1, len(numbers) : -1] = np.linalg.inv(worn.alignment.covariance)
+        laid = worn.alignment.covariance + np.diag(np.repeat(_SUREST, 3) ** 2)
+        precision[len(numbers) : -1, len(numbers) : -1] = np.linalg.inv(laid)
         self._precision = precision
 
     def look(self, design: Design, near: Look | None = None, beside: Floats | None = None) -> Look:
