@@ -6,8 +6,7 @@ predict, with 1 mm of noise at each vertex along each axis, on another mesh, els
 the front and without arms; it goes through a file. It has a point to each square of --spacing, 2 mm if
 nothing is said, or with 0 about as many as the sample bodies. The design begins with the usual numbers.
 --before tells what the first scan is: clean, noisy as the second with the garment lying alike on both, or
-apart:
-noisy, and the garment lies where it would on the clean body, while Busk finds its places on the noisy one.
+apart: noisy, and the garment lies where it would on the clean body, while Busk finds its places on the other.
 --bent bends the second scan smoothly, waves of 150 to 300 mm, as breath or posture would.
 Prints a line for each case, then how far alignment and numbers are off; --put puts that into
 docs/calibrate.md.
@@ -24,7 +23,7 @@ from pathlib import Path
 import numpy as np
 from bench_ask import bodies
 from pages import put, table
-from worn_pairs import rough, scanned, worn_mesh, written
+from worn_pairs import bent, rough, scanned, worn_mesh, written
 
 from core.calibration import calibrate, read_worn
 from core.design import Design, ScanSource
@@ -110,7 +109,7 @@ def case(
     folder: Path,
     spacing: float,
     before: str = "clean",
-    bent: float = 0.0,
+    height: float = 0.0,
 ) -> Case:
     """Make a pair, its scans with a ``spacing`` [mm], and find its numbers; see the head for the rest."""
     stages = real = build(garment(rng, base.design, kind), base)
@@ -125,7 +124,9 @@ def case(
     else:
         worn_skin = worn_mesh(real, truth, finer)
         worn_skin = worn_skin.moved(moved(here, worn_skin.vertices))
-    mesh, matrix = scanned(worn_skin, stages, rng, spacing=spacing, bent=bent)
+    if height:
+        worn_skin = bent(worn_skin, rng, height)
+    mesh, matrix = scanned(worn_skin, stages, rng, spacing=spacing)
     path = written(mesh, folder / "worn.ply")
     begun = time.process_time()
     worn = read_worn(stages, ScanSource(path, unit="mm"))

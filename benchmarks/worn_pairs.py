@@ -46,7 +46,6 @@ def scanned(
     noise: float = 1.0,
     resampled: bool = True,
     spacing: float = 0.0,
-    bent: float = 0.0,
     hole: float = 20.0,
     arms: bool = False,
 ) -> tuple[Mesh, np.ndarray]:
@@ -54,8 +53,7 @@ def scanned(
 
     ``noise`` [mm] is the standard deviation at each vertex along each axis, ``hole`` [mm] the radius of a
     hole in the front, 0 for none; with ``arms`` they stay. ``resampled`` it has other vertices, one to a
-    square of ``spacing`` [mm], or if that is 0 about as many as before. It is ``bent`` [mm] as breath or another
-    posture would: see ``swell``.
+    square of ``spacing`` [mm], or if that is 0 about as many as before.
     """
     if not arms:
         low, high = stages.control.mesh.vertices[:, 0].min(), stages.control.mesh.vertices[:, 0].max()
@@ -67,8 +65,6 @@ def scanned(
         front = stages.moving.rest[: stages.moving.count]
         middle = front[rng.integers(len(front))]
         mesh = only(mesh, np.linalg.norm(mesh.vertices - middle, axis=1) > hole)
-    if bent:
-        mesh = mesh.moved(mesh.vertices + (bent * swell(mesh.vertices, rng))[:, None] * mesh.vertex_normals)
     angles = np.radians(rng.uniform([-LEAN, -LEAN, -8.0], [LEAN, LEAN, 8.0]))
     matrix = turned(angles, mesh.vertices.mean(axis=0))
     matrix[:3, 3] += rng.uniform(-150.0, 150.0, 3)
@@ -76,8 +72,12 @@ def scanned(
     return mesh.moved(vertices + noise * rng.normal(size=vertices.shape)), matrix
 
 
-def swell(places: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """Return a smooth height at ``places`` (n, 3) [mm], (n,), of mean square 1: waves of 150 to 300 mm."""
+def bent(mesh: Mesh, rng: np.random.Generator, height: float) -> Mesh:
+    """Return a body bent as breath would bend it: waves of 150 to 300 mm, ``height`` [mm] (rms)."""
+    return mesh.moved(mesh.vertices + (height * _swell(mesh.vertices, rng))[:, None] * mesh.vertex_normals)
+
+
+def _swell(places: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     ways = rng.normal(size=(40, 3))
     ways *= 2.0 * np.pi / (rng.uniform(150.0, 300.0, 40) * np.linalg.norm(ways, axis=1))[:, None]
     phases = rng.uniform(0.0, 2.0 * np.pi, 40)
