@@ -1,4 +1,4 @@
-"""Scenes of what advises: how sure figures are, how even left and right are, a scan with the garment on."""
+"""Scenes of what is asked for and of what advises: how sure, how even, how near to a scan with the garment on."""
 
 from __future__ import annotations
 
@@ -9,12 +9,39 @@ import numpy as np
 from scenes import HOUSE, bra, wait_for
 
 from app.main_window import MainWindow
+from core.aims.figure import Goal
 from core.answer import answer_of
 from core.export import write_mesh
 from core.pipeline import Stages, build
 from core.tffd import deform
 
 _NOISE = 1.0  # of the made scan [mm]
+
+
+def wishing(window: MainWindow) -> None:
+    """Ask for bust points higher up, and wait for the answer on the body."""
+    wait_for(window.is_settled)
+    window.view.viewport.set_view("left")
+    window.ask_desk.begin([Goal("lift", 9.0)])
+    wait_for(lambda: window.ask_desk.answer is not None and not window.ask_desk.work.at_work)
+    wanted = window.ask_desk.answer.reply.design
+    wait_for(lambda: window.session.frame.stages.design == wanted)
+
+
+def drawing_a_profile(window: MainWindow) -> None:
+    """Ask for a fuller profile, drawn on the body, and wait for the answer."""
+    wait_for(window.is_settled)
+    desk = window.ask_desk
+    desk.begin()
+    wait_for(lambda: desk.answer is not None and not desk.work.at_work)
+    desk.drawing.begin("left")
+    profile = desk.drawn["profile left"]
+    foremost = int(profile.spots[:, 1].argmax())
+    desk.drawing.draw("profile left", profile.pulled(foremost, 2.0, 2.5).pulled(foremost + 1, 1.0, 2.0))
+    desk.ask()
+    wait_for(lambda: desk.answer.reply is not None and not desk.work.at_work)
+    wanted = desk.answer.reply.design
+    wait_for(lambda: window.session.frame.stages.design == wanted)
 
 
 def sure(window: MainWindow) -> None:

@@ -21,7 +21,6 @@ from app.main_window import MainWindow
 from app.panels.commands import CommandSheet
 from app.wording.samples import sample_design, sample_path
 from app.wording.words import language
-from core.aims.figure import Goal
 from core.design import Design, ScanSource
 from core.elastics import find_elastic
 from core.presets import built_in, with_preset
@@ -229,32 +228,6 @@ def asking(window: MainWindow) -> None:
     window.desk.go_to("scan")
     window.scan_desk.ask()
     wait_for(window.view.question.isVisible)
-
-
-def wishing(window: MainWindow) -> None:
-    """Ask for bust points higher up, and wait for the answer on the body."""
-    wait_for(window.is_settled)
-    window.view.viewport.set_view("left")
-    window.ask_desk.begin([Goal("lift", 9.0)])
-    wait_for(lambda: window.ask_desk.answer is not None and not window.ask_desk.work.at_work)
-    wanted = window.ask_desk.answer.reply.design
-    wait_for(lambda: window.session.frame.stages.design == wanted)
-
-
-def drawing_a_profile(window: MainWindow) -> None:
-    """Ask for a fuller profile, drawn on the body, and wait for the answer."""
-    wait_for(window.is_settled)
-    desk = window.ask_desk
-    desk.begin()
-    wait_for(lambda: desk.answer is not None and not desk.work.at_work)
-    desk.drawing.begin("left")
-    profile = desk.drawn["profile left"]
-    foremost = int(profile.spots[:, 1].argmax())
-    desk.drawing.draw("profile left", profile.pulled(foremost, 2.0, 2.5).pulled(foremost + 1, 1.0, 2.0))
-    desk.ask()
-    wait_for(lambda: desk.answer.reply is not None and not desk.work.at_work)
-    wanted = desk.answer.reply.design
-    wait_for(lambda: window.session.frame.stages.design == wanted)
 
 
 def reported(window: MainWindow) -> None:
