@@ -32,7 +32,7 @@ SHELL = ("busk", "ls", "head", "echo")
 SHELLS = ("", "sh", "bash", "console")
 """How a frame with commands is marked on a page."""
 
-LENGTHY = ("demo", "figures", "self-test", "spread", "sweep")
+LENGTHY = ("calibrate", "demo", "figures", "self-test", "spread", "sweep")
 """Commands that take long: only what a page says of them is parsed, but for sweep --quick."""
 
 PLACEHOLDER = re.compile(r"\b(?:DIR|FOLDER|BODIES|MADE|SCAN|PROJECT|FILE|KEY=VALUE|COMMAND)\b|=\.\.\.")

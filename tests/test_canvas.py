@@ -60,13 +60,16 @@ def test_only_what_moved_in_3d_is_drawn_anew_without_a_card(
     view = Viewport()
     qtbot.addWidget(view)
     view.resize(300, 200)
-    view.show()
-    qtbot.waitExposed(view)
-    assert view.scene.body is None
-    qtbot.wait(20)
     drawn: list[str] = []
     draw = view._canvas._render
     monkeypatch.setattr(view._canvas, "_render", lambda: drawn.append("drawn") or draw())
+    view.show()
+    qtbot.waitExposed(view)
+    assert view.scene.body is None
+    qtbot.waitUntil(lambda: bool(drawn))
+    while drawn:  # until all of its beginning has been painted
+        drawn.clear()
+        qtbot.wait(50)
     view.overlay.repaint()
     assert drawn == []
     view.request_draw()
