@@ -1,4 +1,4 @@
-"""Scenes of what is asked for and of what advises: how sure, how even, how near to a scan with the garment on."""
+"""Scenes of what is asked for and of what advises: how sure, how even, how near to a worn scan."""
 
 from __future__ import annotations
 
