@@ -181,7 +181,8 @@ def test_a_line_of_elastic_ends_where_a_shorter_one_is_refused(built, contact):
     strap = find_elastic("strap 15")
     design = replace(stages.design, line_contact=contact).with_line("mid-bust", 0.7)
     stages = build(design.with_elastic("mid-bust", strap), stages)
-    end = limits_of(stages, "mid-bust").stretched
+    limits = limits_of(stages, "mid-bust")
+    end = limits.stretched
     rest = next(line.rest_length for line in stages.model.lines if line.name == "mid-bust")
     assert end.reached / (end.ratio * rest) - 1.0 == pytest.approx(strap.reach, abs=PRECISION)
     assert build(stages.design.with_line("mid-bust", end.ratio + PRECISION), stages)
@@ -189,6 +190,8 @@ def test_a_line_of_elastic_ends_where_a_shorter_one_is_refused(built, contact):
         build(stages.design.with_line("mid-bust", end.ratio - PRECISION), stages)
     told = leeway_of(stages, "mid-bust")
     assert told.zones[0].reasons[0].why == "stretched"
+    others = [span for sign, spans in limits.shows.items() if sign != "stretched" for span in spans]
+    assert all(span.long.ratio > end.ratio for span in others), "nothing begins where a length is refused"
     assert told.red_below == end.ratio
     assert tone_at(told, 0.52) == "bad"
     assert "eyond the table of its elastic below" in key(told)["red"]

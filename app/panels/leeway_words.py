@@ -48,7 +48,8 @@ def hint(leeway: Leeway, ratio: float) -> str:
     reasons = dict.fromkeys(reason for each in near for reason in _told(each))
     alike = any((each.short, each.long) == (zone.short, zone.long) for each in reasons)
     lines = [] if alike or zone.tone == SLACK else [_range(_name(zone), zone.short, zone.long)]
-    lines += [f"{_upper(placed(each))}: {meaning(each)}." for each in reasons]
+    explained = tr("{reason}: {meaning}.")
+    lines += [explained.format(reason=_upper(placed(each)), meaning=meaning(each)) for each in reasons]
     if zone.tone == GREEN and not leeway.pressure_known:
         lines.append(tr("Pressure is not looked at: it is made of no elastic."))
     return "\n".join(_glued(line) for line in lines)

@@ -131,11 +131,24 @@ def _limits(ground: Ground, index: int, looks: Mapping[str, Look], through: bool
     walk.go(set_, through)
     if not walk.stops:
         return Limits(line, length, beyond, {}, None, found=False)
-    shows = {sign: spans(walk, sign) for sign in looks}
     rest = min(walk.stops, key=lambda stop: abs(stop.length.ratio - 1.0)).length
     looked = Span(walk.stops[0].length, walk.stops[-1].length)
+    shows = _within_curves({sign: spans(walk, sign) for sign in looks}, rest, looked)
     ends = looked, walk.last, walk.longest
     return Limits(line, length, beyond, shows, rest, *ends, pressure_known="pressing" in looks)
+
+
+def _within_curves(
+    shows: Mapping[str, tuple[Span, ...]], rest: Length, looked: Span
+) -> Mapping[str, tuple[Span, ...]]:
+    """Return what shows without what begins only at lengths that are refused: no curve tells of them."""
+    ends = [span.long for span in shows.get("stretched", ()) if span.short is looked.short]
+    if not ends or ends[0].ratio >= rest.ratio:
+        return shows
+    return {
+        sign: tuple(span for span in spans if sign == "stretched" or span.long.ratio > ends[0].ratio)
+        for sign, spans in shows.items()
+    }
 
 
 def _wearing(design: Design, names: Collection[str]) -> Design:
