@@ -17,6 +17,7 @@ from core.mesh import Mesh
 from core.pipeline import Stages, build
 from core.project import open_project
 from core.standing.upright import Pose
+from core.worn_scan import feet
 from core.worn_scan.aligning import align, turned
 from core.worn_scan.comparing import Worn, laid_on
 from core.worn_scan.feet import Ground
@@ -89,7 +90,7 @@ def test_gaps_on_a_round_skin_are_not_cut_short_by_its_triangles() -> None:
     assert np.nanmean(noisy.gaps(places, normals, curved)) == pytest.approx(0.5, abs=0.04)
 
 
-def test_every_point_tells_how_far_a_round_skin_stands_before_it() -> None:
+def test_every_point_tells_how_far_a_round_skin_stands_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
     rng = np.random.default_rng(7)
     ground = Ground(*ball(rng, 60.0))
     facing = rng.normal(size=(20_000, 3))
@@ -100,6 +101,8 @@ def test_every_point_tells_how_far_a_round_skin_stands_before_it() -> None:
     assert clean.gaps.std() < 0.02
     assert np.linalg.norm(clean.of(ground.places), axis=1).mean() == pytest.approx(60.0, abs=0.1)
     assert not len(ground.feet(59.5 * facing, -facing).rows), "the back of a skin is none"
+    monkeypatch.setattr(feet, "_AT_ONCE", 7000)
+    assert (ground.feet(59.5 * facing, facing).gaps == clean.gaps).all(), "in several goes"
     rough = 59.5 * facing + rng.normal(scale=2.0, size=facing.shape)
     told = ground.feet(rough, facing, 2.0).gaps.mean()
     assert told == pytest.approx(0.5, abs=3.0 * 2.0 / np.sqrt(len(facing)))
@@ -111,9 +114,9 @@ def test_points_beside_a_skin_have_no_foot_on_it() -> None:
     mesh = flat(0.0)
     ground = Ground(mesh.vertices, np.tile((0.0, 0.0, 1.0), (121, 1)), mesh.faces.T)
     points = np.array([[50.0, 50.0, 3.0], [103.0, 50.0, 3.0], [50.0, 50.0, 45.0], [5.0, 7.0, -2.0]])
-    feet = ground.feet(points, np.tile((0.0, 0.0, 1.0), (4, 1)))
-    assert feet.rows.tolist() == [0, 3]
-    assert feet.gaps == pytest.approx([-3.0, 2.0])
+    stood = ground.feet(points, np.tile((0.0, 0.0, 1.0), (4, 1)))
+    assert stood.rows.tolist() == [0, 3]
+    assert stood.gaps == pytest.approx([-3.0, 2.0])
 
 
 def test_a_fine_skin_with_noise_still_looks_outward() -> None:

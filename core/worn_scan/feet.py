@@ -18,6 +18,7 @@ from core.proximity import nearest_on, shares
 from core.worn_scan.gap import REACH, curvature
 
 _NEAR = 8  # triangles whose middles are nearest, among which the foot is looked for
+_AT_ONCE = 50_000  # points that are asked about in one go: their tables take 100 MB
 _BESIDE, _SLANT = 1.0, 0.5  # a foot this far from below a point [mm], and by the way to it, is no foot [1]
 
 
@@ -86,6 +87,9 @@ class Ground:
 
     def _nearest(self, points: Points) -> tuple[Indices, Points]:
         """Return the nearest triangle to each point and the place on it, shapes (k,) and (k, 3) [mm]."""
+        if len(points) > _AT_ONCE:
+            parts = [self._nearest(each) for each in np.split(points, range(_AT_ONCE, len(points), _AT_ONCE))]
+            return np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
         count = min(_NEAR, len(self._faces))
         near = np.asarray(self._middles.query(points, np.arange(1, count + 1))[1])
         asked = np.repeat(points, count, axis=0)

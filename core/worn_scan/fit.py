@@ -29,6 +29,9 @@ from core.worn_scan.numbers import Number, precision_before, rates_by
 BESIDE = 7
 """Unknowns beside the numbers: three turns [rad], three shifts and what all gaps have in common [mm]."""
 
+MOST_POINTS = 150_000
+"""Of more points near the moving skin each second, third and so on counts: as many as one every mm."""
+
 _SUREST = (1e-5, 1e-3)  # a turn [rad] and a shift [mm] of an alignment that no noise makes unsure
 _STEPS, _DONE, _TRIED = 25, 1e-4, 6
 _FARTHEST = np.log(4.0)  # no stiffness changes more than this in one step
@@ -70,7 +73,8 @@ class Fit:
         self._thickness, self._progress, self._laid = thickness, progress, worn.alignment
         low, high = stages.moving.rest.min(axis=0) - REACH, stages.moving.rest.max(axis=0) + REACH
         every = worn.skin.mesh.vertices
-        near = ((every > low) & (every < high)).all(axis=1)
+        near = np.flatnonzero(((every > low) & (every < high)).all(axis=1))
+        near = near[:: -(-len(near) // MOST_POINTS) or 1]  # each, or each second, third ...
         self._points, self._facing, self._noise = every[near], worn.skin.facing[near], worn.skin.noise
         self._sought = np.array([number.sought(stages.design) for number in numbers])
         precision = np.zeros((len(numbers) + BESIDE, len(numbers) + BESIDE))
