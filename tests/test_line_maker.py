@@ -11,7 +11,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
-from window_tools import Script, drag, points, run_main, settled, undrawn
+from window_tools import Script, drag, points, run_main, run_undrawn, settled, undrawn
 
 from app.lining import line_maker
 from app.lining.line_dialog import LineDialog
@@ -91,8 +91,8 @@ def test_a_line_goes_through_the_points_that_are_named(
         assert list(window.lines.rows)[-2:] == ["v", "edge"]
         assert {"v", "edge"} <= set(window.view.viewport.scene.bands.names)
 
-    run_main([], script)
-    run_main([str(tmp_path / "v.busk")], again)
+    run_undrawn([], script)
+    run_undrawn([str(tmp_path / "v.busk")], again)
 
 
 def test_a_line_is_drawn_from_point_to_point(qtbot: QtBot) -> None:
@@ -138,7 +138,7 @@ def test_the_accumulating_force_can_be_chosen() -> None:
         segment.button("exact").click()
         assert window.session.design.volume == "exact"
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 @pytest.mark.parametrize("name", ["168", "120"])

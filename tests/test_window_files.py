@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import trimesh
 from PySide6.QtGui import QImage
-from window_tools import Script, drag, points, run_main, settled, undrawn
+from window_tools import Script, drag, points, run_main, run_undrawn, settled, undrawn
 
 import app.desks.desk
 import app.desks.export_desk
@@ -44,12 +44,12 @@ def test_a_project_is_saved_and_reopened(tmp_path: Path, monkeypatch: pytest.Mon
         assert window.session.design.lines == seen[0][0].lines
         assert np.abs(points(window) - seen[0][1]).max() < 0.3
 
-    run_main([], first)
+    run_undrawn([], first)
     with zipfile.ZipFile(path) as archive:
         assert set(archive.namelist()) == {"design.json", "scan/mannequin.ply", "preview.png"}
         assert json.loads(archive.read("design.json"))["format"] == 1
         assert QImage.fromData(archive.read("preview.png")).width() == 480
-    run_main([str(path)], again)
+    run_undrawn([str(path)], again)
 
 
 def test_the_shown_body_is_exported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -68,7 +68,7 @@ def test_the_shown_body_is_exported(tmp_path: Path, monkeypatch: pytest.MonkeyPa
                 moved = np.asarray(body.vertices)[frame.stages.moving.vertices]
                 assert np.abs(moved - frame.points).max() < 1e-3
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_an_export_that_failed_is_told_until_it_succeeds(
@@ -121,7 +121,7 @@ def test_a_bad_scan_leaves_everything_as_it_was(tmp_path: Path) -> None:
         assert window.session.design is design
         assert np.abs(points(window) - at_start).max() < 0.2
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_the_file_that_was_refused_last_is_the_one_that_is_told(tmp_path: Path, project: Path) -> None:
@@ -186,7 +186,7 @@ def test_closing_asks_about_changes(last: str, tmp_path: Path, monkeypatch: pyte
         assert window.close()
         assert path.exists() == (last == "save")
 
-    run_main([], script)
+    run_undrawn([], script)
     assert not answers
     if last == "save":
         assert open_project(path).design.ratio("mid-bust") < 0.95
@@ -200,7 +200,7 @@ def test_a_project_that_cannot_be_opened_at_start_is_told(tmp_path: Path) -> Non
         assert window.session.frame is None
         assert not window.actions_.save.isEnabled()
 
-    run_main([str(tmp_path / "broken.busk")], script)
+    run_undrawn([str(tmp_path / "broken.busk")], script)
 
 
 def test_an_edit_while_another_scan_is_read_does_not_mix_the_two(person: Path) -> None:
@@ -220,4 +220,4 @@ def test_an_edit_while_another_scan_is_read_does_not_mix_the_two(person: Path) -
         assert notice is not None
         assert "person.ply was not opened" in notice.sentence
 
-    run_main([], script)
+    run_undrawn([], script)

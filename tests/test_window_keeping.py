@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QLockFile, QSettings
 from test_window_work import endless
-from window_tools import Script, drag, points, run_main, settled
+from window_tools import Script, drag, points, run_main, run_undrawn, settled
 
 import app.desks.desk
 import app.keeping.recovery_desk
@@ -72,11 +72,11 @@ def test_a_crash_loses_nothing_and_the_next_start_offers_it(
         assert window.session.finish_saving()
         assert open_project(path).design.lines == document.design.lines
 
-    run_main([], first)
+    run_undrawn([], first)
     (folder,) = recovery_folder().iterdir()
     assert json.loads((folder / "document.json").read_text())["project"] == str(path)
     assert (folder / "picture.png").exists()
-    run_main([], again)
+    run_undrawn([], again)
     assert list(recovery_folder().iterdir()) == []
 
 
@@ -100,7 +100,7 @@ def test_what_is_not_restored_stays_until_it_is_discarded(monkeypatch: pytest.Mo
         assert not window.recovery_desk.card.isVisible()
 
     for script in (first, later, discard):
-        run_main([], script)
+        run_undrawn([], script)
     assert list(recovery_folder().iterdir()) == []
 
 
@@ -117,7 +117,7 @@ def test_a_broken_recovery_is_told_and_rescue_never_raises(monkeypatch: pytest.M
         monkeypatch.setattr(os, "fsync", lambda _: (_ for _ in ()).throw(OSError(28, "No space left")))
         assert window.rescue() == ""
 
-    run_main([], script)
+    run_undrawn([], script)
     shutil.rmtree(recovery_folder())
 
 
@@ -142,7 +142,7 @@ def test_saving_waits_for_no_disk_and_closing_waits_for_saving(
         assert window.close()
         assert open_project(path).design.ratio("mid-bust") == 0.9
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_two_windows_and_a_change_from_outside_are_told(
@@ -185,7 +185,7 @@ def test_two_windows_and_a_change_from_outside_are_told(
         assert "*" in window.windowTitle()
         other.unlock()
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_the_history_goes_back_to_edits_and_results() -> None:
@@ -216,7 +216,7 @@ def test_the_history_goes_back_to_edits_and_results() -> None:
         session.undo_stack.undo()
         assert session.design == long
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_variants_are_chosen_undone_and_seen_side_by_side(

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
-from window_tools import Script, drag, run_main, settled
+from window_tools import Script, drag, run_main, run_undrawn, settled
 
 import app.desks.desk
 import core.body
@@ -136,7 +136,7 @@ def test_the_reading_of_a_scan_can_be_cancelled(person: Path, monkeypatch: pytes
         assert window.session.undo_stack.count() == 1
         assert window.notices.notice() is None
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_a_cancelled_edit_of_the_scan_leaves_no_trace(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -152,7 +152,7 @@ def test_a_cancelled_edit_of_the_scan_leaves_no_trace(monkeypatch: pytest.Monkey
         assert window.session.undo_stack.count() == 0
         yield settled(window)
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_a_dragged_pin_is_a_correction_that_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -35,6 +35,16 @@ def run_main(arguments: list[str], script: Callable[[MainWindow], Script]) -> in
     return code
 
 
+def run_undrawn(arguments: list[str], script: Callable[[MainWindow], Script]) -> int:
+    """Do as ``run_main``, with no 3D view drawn and no limits looked for from the start."""
+
+    def unseen(window: MainWindow) -> Script:
+        undrawn(window)
+        yield from script(window)
+
+    return run_main(arguments, unseen)
+
+
 def settled(window: MainWindow) -> Callable[[], bool]:
     """The design of the session is solved to the end and has been drawn."""
 

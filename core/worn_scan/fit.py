@@ -76,7 +76,7 @@ class Fit:
         near = np.flatnonzero(((every > low) & (every < high)).all(axis=1))
         near = near[:: -(-len(near) // MOST_POINTS) or 1]  # each, or each second, third ...
         self._points, self._facing, self._noise = every[near], worn.skin.facing[near], worn.skin.noise
-        self._sought = np.array([number.sought(stages.design) for number in numbers])
+        self._sought = self._sought_by(stages.design)
         precision = np.zeros((len(numbers) + BESIDE, len(numbers) + BESIDE))
         precision[: len(numbers), : len(numbers)] = precision_before(numbers)
         laid = worn.alignment.covariance + np.diag(np.repeat(_SUREST, 3) ** 2)
@@ -137,6 +137,7 @@ class Fit:
             step[open_] = equations.step(damping)
             step[:count] = np.clip(step[:count], -_FARTHEST, _FARTHEST)
             design = moved_by(here.stages.design, self.numbers, step[:count])
+            step[:count] = self._sought_by(design) - self._sought_by(here.stages.design)  # within what may be
             try:
                 there = self.look(design, here, here.beside + step[count:])
             except UserError:
@@ -154,8 +155,11 @@ class Fit:
         return cost(look.gaps[seen], spread) + self._beforehand(look).cost(spread)
 
     def _beforehand(self, look: Look) -> Beforehand:
-        sought = np.array([number.sought(look.stages.design) for number in self.numbers])
-        return Beforehand(self._precision, np.concatenate([sought - self._sought, look.beside]))
+        off = self._sought_by(look.stages.design) - self._sought
+        return Beforehand(self._precision, np.concatenate([off, look.beside]))
+
+    def _sought_by(self, design: Design) -> Floats:
+        return np.array([number.sought(design) for number in self.numbers])
 
 
 def slopes_of(stages: Stages, answer: Answer, numbers: tuple[Number, ...], normals: Points) -> Floats:
