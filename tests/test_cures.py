@@ -13,6 +13,7 @@ from app.presenting.doctor import change_words, details
 from app.wording.samples import sample_design
 from core.advice.outlook import outlook, outlook_about
 from core.advice.standing import gone_on, standing
+from core.advice.ways import line_ways
 from core.comparison import Comparison
 from core.doctor import Diagnosis, diagnose
 from core.own_lines import ready_made
@@ -118,3 +119,10 @@ def test_all_lines_together_are_told_with_how_far_they_go() -> None:
 
 def test_forces_are_told_as_sums_over_points() -> None:
     assert "Forces at all points added up" in details(twice_sick())
+
+
+def test_a_line_at_its_rest_length_has_one_way_and_that_leads_away_from_it() -> None:
+    ways = list(line_ways(made("mannequin", {"mid-bust": 0.95, "full-bust": 1.0})))
+    of_full = [way for way in ways if way.at(1).lines == ("full-bust",)]
+    assert [round(way.at(1).design.ratio("full-bust"), 6) for way in of_full] == [1.001]
+    assert all(way.most > 0 for way in ways)

@@ -81,7 +81,7 @@ def outlook_about(stages: Stages, moved: Points) -> Outlook | None:
         return outlook(stages)
     if not np.isfinite(moved).all():
         return None
-    start = balance_at(Potential(_together(model), targets.ratios), moved)
+    start = balance_at(Potential(together(model), targets.ratios), moved)
     return _seen(model, targets, resting(stages, targets, start))
 
 
@@ -113,10 +113,10 @@ def resting(stages: Stages, targets: Targets, near: Balance | None = None) -> Ba
         if stages.design.dense_volume:
             return solve_body_exact(model, targets.ratios, stages.body_change, near=near)
         return solve_exact(model, targets.ratios, _most_steps(near), near=near, turns=False)
-    return _kept(_together(model), targets, near)
+    return _kept(together(model), targets, near)
 
 
-def _together(model: ConstrainedModel) -> ConstrainedModel:
+def together(model: ConstrainedModel) -> ConstrainedModel:
     """Return a model as turns measure it: both breasts together, whatever the exact answer holds."""
     both = replace(model.tensegric, mechanics=replace(model.mechanics, volume_of="both"))
     return replace(model, tensegric=both)

@@ -11,9 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.advice.outlook import resting
+from core.advice.outlook import resting, together
 from core.answer import NoBalanceError, answer_of, volume_keeper
-from core.model import ConstrainedModel
 from core.pipeline import Stages, targets_of
 from core.solving.potential import Potential
 from core.solving.sensitivity import Answer, Rates
@@ -46,7 +45,7 @@ def resting_answer(stages: Stages, push: float | None = None) -> Resting:
     balance = resting(stages, replace(targets, gain=push / stages.model.pressure_unit))
     if not balance.found:
         raise NoBalanceError(stages.design)
-    model = _together(stages.model)
+    model = together(stages.model)
     share = model.volume.volume(model.tensegric.expand(balance.state.moved)) / model.volume.rest_volume - 1.0
     keeps = targets.control in ("adaptive", "accumulating")
     excess = np.full(2, 0.0 if keeps else 0.5 * share * model.volume.rest_volume)
@@ -67,9 +66,3 @@ def _pushed(answer: Answer, push: float) -> Callable[[Rates], Rates]:
         return Rates(rates.moved + more.moved @ excess, rates.multipliers + more.multipliers @ excess)
 
     return kept
-
-
-def _together(model: ConstrainedModel) -> ConstrainedModel:
-    """Return a model as turns measure it: both breasts together, whatever the exact answer holds."""
-    both = replace(model.tensegric, mechanics=replace(model.mechanics, volume_of="both"))
-    return replace(model, tensegric=both)

@@ -68,7 +68,8 @@ def line_ways(stages: Stages) -> Iterator[Way]:
         for sign, end in ((1, top), (-1, bottom)):
             grid = math.floor(sign * ratio / LENGTH_STEP + 1e-6)
             most = math.floor(sign * end / LENGTH_STEP + 1e-6) - grid
-            yield Way(partial(_length, stages.design, names, sign, grid), most)
+            if most > 0:  # a line that is worn at its rest length has one way only
+                yield Way(partial(_length, stages.design, names, sign, grid), most)
 
 
 def _least_gain(stages: Stages) -> float:

@@ -56,7 +56,7 @@ class Wanted:
         return self._amiss(look.values, self.room(look)[0])
 
     def breaks_a_limit(self, look: Look) -> bool:
-        """Tell whether a look would be nearer to what is wanted, did it not break a limit."""
+        """Tell whether a look breaks a limit."""
         return bool(self.room(look)[0].min() < 0.0)
 
     def towards(self, here: Floats, look: Look, reach: float) -> tuple[Floats, float]:
