@@ -25,6 +25,8 @@ NEWTON_LIMIT = 200
 _STRIDE = 0.05
 _STRIDE_STEPS = 20
 _SHORTEST_STRIDE = 0.01  # of the first one: a walk that must go more slowly has come to its end
+_KEEPS_DOWN_TO = 1.0 / 64.0  # of the first one: where no shorter stride keeps to a branch it has an end
+_OFF_WAY, _OFF_ANYWAY = 0.5, 0.5  # how far off the first step others may go: in parts of it, and [mm]
 _TURNS = 3000
 _AT_REST, _AWAY = 1e-6, 1.0  # largest move of a turn that has come to rest, and that runs away [mm]
 
@@ -67,15 +69,21 @@ def newton(
             yield last
         if last.found or last.steps >= limit:
             return
-    done, spared = last.steps, _STRIDE_STEPS if _slides(model) else 0
-    for last in _walk(model, ratios, excess, max(limit - done - spared, 1)):
+    slides, spared = _slides(model), _STRIDE_STEPS if _slides(model) else 0
+    done, most = last.steps, limit - last.steps - spared
+    for last in _walk(model, ratios, excess, max(most, 1), keeps=slides):
         yield replace(last, steps=done + last.steps)
+    if last.found or not slides:
+        return
     done += last.steps
-    if turns and not last.found and _slides(model) and limit - done >= spared:
-        turned = _turned(model, ratios, excess)
-        # Where turns run away, what the walk came to stays the answer.
-        if turned is not None:
-            yield replace(turned, steps=done + turned.steps)
+    turned = _turned(model, ratios, excess) if turns and most >= 0 else None
+    if turned is None or not turned.found:
+        for last in _walk(model, ratios, excess, max(most, 1), keeps=False):
+            yield replace(last, steps=done + last.steps)
+        done += last.steps
+    # Where turns run away, what the walk came to stays the answer.
+    if turned is not None and not last.found:
+        yield replace(turned, steps=done + turned.steps)
 
 
 def _most_steps(model: ConstrainedModel) -> int:
@@ -92,31 +100,47 @@ def _steps(potential: Potential, start: Balance, limit: int) -> Iterator[Balance
 
 
 def _walk(
-    model: ConstrainedModel, ratios: tuple[float, ...], excess: Floats | None, limit: int
+    model: ConstrainedModel, ratios: tuple[float, ...], excess: Floats | None, limit: int, keeps: bool
 ) -> Iterator[Balance]:
     """Yield the iterates of a walk from rest to ``ratios`` in strides, the last one where it breaks off.
 
-    Each stride ends in a balance, so the walk keeps to the branch that leads there from rest.
+    Each stride ends in a balance. Under sliding lines others lie about: one that ``keeps`` to the branch that
+    comes from rest takes no steps that go elsewhere than the first one leads, but shorter strides. Where the
+    branch has an end it leaps to another and goes on.
     """
     way = max(abs(ratio - 1.0) for ratio in ratios)
     first = stride = min(1.0, _STRIDE / max(way, 1e-9))
-    done, steps = 0.0, 0
+    done, steps, kept = 0.0, 0, keeps
     last = balance_at(Potential(model, ratios), at_rest(model).moved)
     while done < 1.0 and steps < limit and stride > _SHORTEST_STRIDE * first:
         share = min(done + stride, 1.0)
         between = tuple(1.0 + share * (ratio - 1.0) for ratio in ratios)
         potential = Potential(model, between, None if excess is None else share * excess)
-        found = last
-        for found in _steps(potential, last, min(_STRIDE_STEPS, limit - steps)):
+        found, ways = last, _steps(potential, last, min(_STRIDE_STEPS, limit - steps))
+        for found in _as_led(last, ways) if kept else ways:
             if found.steps or found.found:
                 yield replace(found, steps=steps + found.steps)
         steps += found.steps
         if found.found:
-            done, last, stride = share, found, 1.5 * stride
+            done, last, stride, kept = share, found, 1.5 * stride, keeps
+        elif kept and stride < _KEEPS_DOWN_TO * first:
+            stride, kept = first, False
         else:
             stride /= 2.0
     if done < 1.0:
         yield replace(last, steps=steps, residual=np.inf)
+
+
+def _as_led(start: Balance, steps: Iterator[Balance]) -> Iterator[Balance]:
+    """Yield ``steps`` as long as they keep to where the first of them leads from ``start``."""
+    towards, allowed = start.state.moved, np.inf
+    for step in steps:
+        if step.steps == 1:
+            towards = step.state.moved
+            allowed = _OFF_WAY * np.abs(towards - start.state.moved).max() + _OFF_ANYWAY
+        if np.abs(step.state.moved - towards).max() > allowed:
+            return
+        yield step
 
 
 def _turned(model: ConstrainedModel, ratios: tuple[float, ...], excess: Floats | None) -> Balance | None:

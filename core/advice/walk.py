@@ -20,6 +20,7 @@ RED = ("overstrained", "folded", "inverted", "stretched")
 _STRIDE = 0.025  # zones that come and go within less are only found where margins hint at it
 _LONGEST = 0.1  # stride, where answers come as they are guessed, as those of soft lines do
 _AS_GUESSED, _OTHERWISE = 0.03, 0.3  # how far points may be off a guess for a longer or a shorter one [mm]
+_OFF_WAY, _OFF_ANYWAY = 0.5, 1.0  # how far off a guess that is still on the way: in parts of it, and [mm]
 _LEAPS = 0.005, 0.05, 0.1, 0.2
 """How far beyond the last balance lines that spring back may snap to another, as it is tried [1]."""
 
@@ -72,7 +73,7 @@ class Walk:
             ratio = here + sign * min(stride, abs(end - here))
             start = guess(alike[-3:], ratio)
             there = self.near(ratio, start)
-            if there is not None:
+            if there is not None and (stride <= PRECISION or not _astray(alike, start, there.found)):
                 stride = _next_stride(stride, _off(start, there.found) if len(alike) > 2 else None)
                 alike.append(there)
             elif stride > PRECISION:
@@ -123,6 +124,12 @@ def _next_stride(stride: float, off: float | None) -> float:
     if off < _AS_GUESSED:
         return min(1.5 * stride, _LONGEST)
     return max(stride / 1.5, min(stride, _STRIDE)) if off > _OTHERWISE else stride
+
+
+def _astray(stops: list[Stop], start: Found, found: Found) -> bool:
+    """Tell whether an answer lies elsewhere than the way through ``stops`` leads: on another branch."""
+    led = _off(stops[-1].found, start)
+    return len(stops) > 1 and _off(start, found) > _OFF_WAY * led + _OFF_ANYWAY
 
 
 def _off(start: Found, found: Found) -> float:
