@@ -36,6 +36,10 @@ def made(sample: str, lines: dict[str, float], **settings: Any) -> Stages:
     return build(design, body(sample))
 
 
+def built_as(stages: Stages, volume: str) -> Stages:
+    return build(replace(stages.design, volume=volume), stages)
+
+
 @cache
 def twice_sick() -> Diagnosis:
     """It swings because of the gain, and folds because of the lengths."""
@@ -54,8 +58,10 @@ def test_what_slides_is_looked_at_where_its_run_stands() -> None:
     assert found.complaint == "vibrating"
     assert found.cure is not None
     design = found.cure.change.design
-    assert found.cure.change.size < 3.0
     assert settled_frame(design, stages).verdict.told in ("settled", "strained")
+    assert found.cure.change.kind == "length"
+    less = build(design.with_line("mid-bust", design.ratio("mid-bust") - 0.01), stages)
+    assert standing(less).complaint == standing(built_as(less, "exact")).complaint == "folded"
 
 
 def test_turns_that_stand_somewhere_are_found_to_rest_there() -> None:
