@@ -88,6 +88,12 @@ def test_changes_are_told_line_by_line_and_what_presses() -> None:
         "presses with 2.5 kPa at most",
     ]
     assert change_words(design(), reply()) == ["No line changes"]
+    assert change_words(design(), reply(unseen=("mid-bust",)))[-1] == "pressure not looked at: see Garment"
+    some = reply(unseen=("full-bust",), pressure={"mid-bust": 2.46})
+    assert change_words(design(), some)[-2:] == [
+        "presses with 2.5 kPa at most",
+        "pressure of Full bust not looked at: see Garment",
+    ]
     assert kept_words(design(), ["mid-bust", "strap left"]) == "Locked, so kept: Mid-bust."
     assert kept_words(design(), []) == ""
 

@@ -93,6 +93,20 @@ def test_an_opened_row_has_a_key_to_its_zones(qtbot: QtBot) -> None:
     assert {words.property("tone") for _, words in shown.rows.values()} == {"faint"}
 
 
+def test_the_key_says_where_green_is_no_word_on_pressure(qtbot: QtBot) -> None:
+    shown = LeewayKey()
+    qtbot.addWidget(shown)
+    green = Zone("green", 0.5, 1.3)
+    for leeway, told in (
+        (Leeway("waist", (green,)), True),
+        (Leeway("waist", (green,), pressure_known=True), False),
+        (Leeway("waist", (Zone("red", 0.5, 1.3, (FOLDED,)),)), False),
+    ):
+        shown.show_leeway(leeway, 0.9, stale=False)
+        assert shown.unseen.isHidden() is not told
+    assert shown.unseen.text() == "Pressure is not looked at here: see Garment."
+
+
 def test_what_a_line_stands_in_and_why_a_hand_is_held_is_told() -> None:
     assert [tone_at(LEEWAY, ratio) for ratio in (0.8, 0.9, 0.95, 1.1)] == ["bad", "warn", "", ""]
     assert refusal(LEEWAY) == "Not this short: folds below 86.0 %."

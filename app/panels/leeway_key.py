@@ -11,7 +11,8 @@ from app.dress.parts import sentence
 from app.dress.theme import set_tag, tokens_of
 from app.panels.leeway_words import KEY_ORDER, key, tone_at
 from app.panels.length_groove import GROOVE_HEIGHT, STALE, paint_zone
-from core.leeway import Leeway
+from app.wording.words import tr
+from core.leeway import GREEN, Leeway
 
 
 class Swatch(QWidget):
@@ -38,7 +39,10 @@ class Swatch(QWidget):
 
 
 class LeewayKey(QWidget):
-    """A row for each kind of zone that a line has: a swatch and words; the one it stands in is told apart."""
+    """A row for each kind of zone that a line has: a swatch and words; the one it stands in is told apart.
+
+    Beneath them ``unseen`` says that green is no word on pressure, where that was not looked at.
+    """
 
     def __init__(self) -> None:
         super().__init__()
@@ -52,6 +56,8 @@ class LeewayKey(QWidget):
             swatch, words = self.rows[tone] = Swatch(tone), sentence("", "secondary")
             grid.addWidget(swatch, row, 0, Qt.AlignmentFlag.AlignTop)
             grid.addWidget(words, row, 1)
+        self.unseen = sentence(tr("Pressure is not looked at here: see Garment."), "caption")
+        grid.addWidget(self.unseen, len(KEY_ORDER), 1)
 
     def show_leeway(self, leeway: Leeway, ratio: float, stale: bool) -> None:
         """Tell of the leeway of a line set to ``ratio`` [1]; ``stale``: of the design before."""
@@ -62,3 +68,4 @@ class LeewayKey(QWidget):
             swatch.show_stale(stale)
             for each in (swatch, words):
                 each.setVisible(tone in told)
+        self.unseen.setVisible(GREEN in told and not leeway.pressure_known)

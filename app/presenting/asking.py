@@ -151,7 +151,7 @@ def _reasons(reply: Reply) -> list[str]:
 
 
 def change_words(before: Design, reply: Reply) -> list[str]:
-    """Return how lengths would change, row by row, and what elastics would press with."""
+    """Return how lengths would change, row by row, what elastics press with, and if others were not asked."""
     after, said = reply.design, []
     for title, name in _rows(sorted(after.worn()), after):
         one, other = before.ratio(name), after.ratio(name)
@@ -163,6 +163,11 @@ def change_words(before: Design, reply: Reply) -> list[str]:
     if reply.pressure:
         most = max(reply.pressure.values())
         said.append(tr("presses with {kpa} kPa at most").format(kpa=number(most)))
+    if reply.unseen and reply.pressure:
+        lines = _titles(reply.unseen, after)
+        said.append(tr("pressure of {lines} not looked at: see Garment").format(lines=lines))
+    elif reply.unseen:
+        said.append(tr("pressure not looked at: see Garment"))
     return said
 
 
