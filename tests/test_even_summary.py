@@ -8,14 +8,17 @@ import numpy as np
 import pytest
 
 from app.panels.even_card import EvenSummary
-from app.presenting.even import even_summary, map_note
+from app.presenting.even import asks_to_be_even, even_summary, evened_words, map_note
 from app.wording.samples import sample_design
+from app.wording.words import speaking
 from core.advice.mirrored import SkinGap
+from core.aims.figure import Goal
 from core.design_lines import LineTraits
 from core.evenness import BeforeAfter, Evenness, evenness
 from core.measuring.plus_minus import SOURCES, Doubt, Spread
 from core.own_lines import ready_made
 from core.pipeline import Stages, build
+from core.request import Reply
 from core.splitting import split
 from core.template import read_template
 
@@ -104,3 +107,52 @@ def test_the_legend_tells_ml_of_what_is_shown(told: BeforeAfter) -> None:
     assert map_note(both, after=False).endswith(
         f"left {skin.left_more:.0f} ml, right {skin.right_more:.0f} ml"
     )
+
+
+def evened(**changes: object) -> Reply:
+    """The answer of a design whose left breast sits lower."""
+    reached = {"left higher": -2.7, "left further out": -3.6, "lift": 4.2}
+    design = sample_design("person")
+    for name, ratio in (("strap right", 0.999), ("mid-bust left", 0.999), ("mid-bust right", 0.95)):
+        design = design.with_line(name, ratio)
+    at_end = ("strap right", "mid-bust left")
+    plain = Reply(design, reached, False, 2.7, at_end, (), True, True, {}, 4.0, (), 1.0, 3, longest=0.999)
+    return replace(plain, **changes)
+
+
+EVEN = (Goal("left higher", 0.0), Goal("left further out", 0.0), Goal("lift", 6.9))
+NOW = {"left higher": -11.5, "left further out": -0.1, "lift": 6.9, "out": 1.2}
+
+
+def test_what_makes_it_even_is_told_from_where_to_where_with_its_price() -> None:
+    assert asks_to_be_even(EVEN)
+    assert not asks_to_be_even(EVEN[2:])
+    said, why = evened_words(evened(), EVEN, NOW, {"out": -3.0})
+    assert said.splitlines() == [
+        "Not reachable. Nearest:",
+        "Right higher: 11.5 → 2.7 mm",
+    ]
+    assert why == (
+        "At the price of: Right further forward 0.1 → 3.6 mm, Bust point up +6.9 → +4.2 mm, "
+        "Bust point forward +1.2 → −3.0 mm\n"
+        "Because Strap (right), Mid-bust (left) may not be longer: a longer line would have to push, "
+        "and the body would be strained more than looks natural."
+    )
+    with speaking("ja"):
+        said, why = evened_words(evened(), EVEN, NOW, {"out": -3.0})
+        assert said.splitlines()[1] == "右が高い：11.5 → 2.7 mm"
+        assert "ストラップ（右）、バスト下部（左）は" in why
+
+
+def test_a_side_that_changes_is_named_and_what_is_even_has_none() -> None:
+    turned = evened(reached={"left higher": 2.0, "left further out": 0.0}, reachable=True)
+    said, why = evened_words(turned, EVEN[:2], NOW, {"lift": 6.9, "out": 1.2})
+    assert said.splitlines() == [
+        "Reached.",
+        "Right higher 11.5 mm → Left higher 2.0 mm",
+        "Right further forward: 0.1 → 0.0 mm",
+    ]
+    assert why == ""
+    said, why = evened_words(evened(agreed=False), EVEN, NOW, {"out": 1.2})
+    assert said.startswith("Nearest so far:\n")
+    assert why.endswith("\nLengths, elastics and pressures did not come to agree.")

@@ -18,6 +18,7 @@ from app.presenting.asking import (
     profile_title,
     values_words,
 )
+from app.presenting.even import asks_to_be_even, evened_words
 from app.wording.words import joined, listed, number, tr
 from core.design import Design
 
@@ -36,10 +37,11 @@ def show_answer(
     else:
         reply, asked = answer.reply, answer.question.goals
         met = is_met(reply, asked) or (wishes.only_limit is not None and reply.agreed)
-        said = answer_words(reply, asked, wishes.only_limit)
-        card.show_answer(
-            said, "ok" if met else "warn", listed(change_words(design, reply)), note, can_apply=True
-        )
+        said, why = answer_words(reply, asked, wishes.only_limit), ""
+        if asks_to_be_even(asked) and wishes.only_limit is None:
+            said, why = evened_words(reply, asked, answer.now, answer.then)
+        changes = "\n".join(filter(None, (why, listed(change_words(design, reply)))))
+        card.show_answer(said, "ok" if met else "warn", changes, note, can_apply=True)
 
 
 def wish_views(design: Design, wishes: Wishes, answer: Answer | None) -> Iterator[WishView]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.presenting.lines import row_title
+from app.presenting.lines import told_title
 from app.wording.words import colon, listed, number, tr
 from core.aims.even import FURTHER_OUT, HIGHER
 from core.aims.figure import Goal
@@ -89,7 +89,7 @@ def answer_words(reply: Reply, goals: Sequence[Goal], limit: float | None = None
         said = tr("Nearest so far: {nearest}. Lengths, elastics and pressures did not come to agree.")
         return said.format(nearest=nearest)
     said = tr("Not reachable: nearest is {nearest}, because {reasons}.")
-    return said.format(nearest=nearest, reasons=tr(", and ").join(_reasons(reply)))
+    return said.format(nearest=nearest, reasons=reasons_words(reply))
 
 
 def _come(reply: Reply, goals: Sequence[Goal]) -> Iterable[str]:
@@ -130,6 +130,11 @@ def is_met(reply: Reply, goals: Sequence[Goal]) -> bool:
 
 def _mean_and_most(off: Floats) -> tuple[str, str]:
     return number(float(np.abs(off).mean())), number(float(np.abs(off).max()))
+
+
+def reasons_words(reply: Reply) -> str:
+    """Return why an answer is not what was asked for, as part of a sentence."""
+    return tr(", and ").join(_reasons(reply))
 
 
 def _reasons(reply: Reply) -> list[str]:
@@ -203,7 +208,7 @@ def _rows(names: Iterable[str], design: Design) -> list[tuple[str, str]]:
     """Return titles of rows with the first of their lines."""
     rows: dict[str, str] = {}
     for name in names:
-        rows.setdefault(row_title(name, design), name)
+        rows.setdefault(told_title(name, design), name)
     return list(rows.items())
 
 

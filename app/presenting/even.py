@@ -2,18 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from app.panels.even_card import EvenSummary, EvenView
 from app.panels.measure_view import plus_minus
+from app.presenting.asking import figure_title, is_met, is_signed, reasons_words
 from app.presenting.lines import line_title, pair_title
 from app.wording.words import joined, listed, number, say, tr
 from core.advice.parting import ENOUGH, moves_one_side, partable
+from core.aims.bust import LIFT, OUT
+from core.aims.even import FURTHER_OUT, HIGHER
+from core.aims.figure import Goal
+from core.aims.outline import section_of
 from core.design import Design
 from core.evenness import BeforeAfter, Evenness, EvenRow, even_rows
 from core.measuring.plus_minus import AFTER, Spread
 from core.pipeline import Stages
 from core.template import read_template
+
+if TYPE_CHECKING:
+    from core.request import Reply
+
+_SEEN = 0.05  # what differs less reads the same [mm]
 
 _FULL = {"mm": 10.0, "ml": 60.0}
 """What fills half a bar."""
@@ -162,3 +173,60 @@ def left_as_it_is(gained: float, lost: float) -> tuple[str, str]:
     said = tr("These lines cannot make it more even: {gained} mm nearer would move both sides by {lost} mm.")
     hint = tr("Other lines may do more: a strap lifts one side alone.")
     return said.format(gained=number(max(gained, 0.0)), lost=number(lost)), hint
+
+
+def asks_to_be_even(goals: Sequence[Goal]) -> bool:
+    """Tell whether left and right are asked to be alike, and no profile besides."""
+    names = [goal.name for goal in goals]
+    return bool({HIGHER, FURTHER_OUT} & set(names)) and not any(map(section_of, names))
+
+
+def evened_words(
+    reply: Reply, goals: Sequence[Goal], now: Mapping[str, float], then: Mapping[str, float]
+) -> tuple[str, str]:
+    """Return in short lines what an answer brings nearer; and what that costs, and why it is no nearer.
+
+    ``now`` and ``then`` [mm] are figures before and after: what both sides do together is to stay.
+    """
+    met = is_met(reply, goals)
+    come = {**then, **reply.reached}
+    wanted = {goal.name: goal.value for goal in goals}
+    wanted |= {name: now[name] for name in (LIFT, OUT) if name in now and name not in wanted}
+    nearer = {name: abs(come[name] - mm) - abs(now[name] - mm) for name, mm in wanted.items() if name in now}
+    line = tr("{figure}: {before} → {after} mm")
+    lines = [_way(name, now[name], come[name], line) for name, by in nearer.items() if by < -_SEEN]
+    beside = tr("{figure} {before} → {after} mm")
+    price = listed(_way(name, now[name], come[name], beside) for name, by in nearer.items() if by > _SEEN)
+    costs = tr("At the price of: {figures}").format(figures=price) if price else ""
+    why = "" if met else _why(reply)
+    return "\n".join((_outcome(reply, met), *lines)), "\n".join(filter(None, (costs, why)))
+
+
+def _outcome(reply: Reply, met: bool) -> str:
+    if met:
+        return tr("Reached.")
+    return tr("Not reachable. Nearest:") if reply.agreed else tr("Nearest so far:")
+
+
+def _why(reply: Reply) -> str:
+    if not reply.agreed:
+        return tr("Lengths, elastics and pressures did not come to agree.")
+    return tr("Because {reasons}.").format(reasons=reasons_words(reply))
+
+
+def _way(name: str, before: float, after: float, said: str) -> str:
+    """Return how a figure goes, as ``said``: of one that has a side with that side, and no sign."""
+    titles = {
+        HIGHER: (tr("Left higher"), tr("Right higher")),
+        FURTHER_OUT: (tr("Left further forward"), tr("Right further forward")),
+    }
+    if name not in titles:
+        words = [number(each, 1, signed=is_signed(name)) for each in (before, after)]
+        return said.format(figure=figure_title(name), before=words[0], after=words[1])
+    one, other = (titles[name][each < 0.0] for each in (before, after))
+    values = {"before": number(abs(before)), "after": number(abs(after))}
+    if min(abs(before), abs(after)) < _SEEN:  # even has no side
+        one = other = one if abs(before) >= abs(after) else other
+    if one != other:
+        said = tr("{figure} {before} mm → {other} {after} mm")
+    return said.format(figure=one, other=other, **values)

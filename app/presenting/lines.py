@@ -75,6 +75,17 @@ def row_title(name: str, design: Design) -> str:
     return pair_title(name, design) if len(design.linked(name)) > 1 else line_title(name, design)
 
 
+def told_title(name: str, design: Design) -> str:
+    """Return what the row of a line is called where others follow: "Mid-bust (left)", "Straps"."""
+    side = _side(name)
+    if not side or len(design.linked(name)) > 1:
+        return row_title(name, design)
+    kind = kind_of(name)
+    titles = {"strap": tr("Strap"), "sling": tr("Sling"), "oblique": tr("Oblique"), "ring": tr("Ring")}
+    line = design.traits_of(name).title or titles.get(kind) or line_title(kind)
+    return tr("{line} ({side})").format(line=line, side=side)
+
+
 def titled(said: str, design: Design | None) -> str:
     """Return what the core says with the titles that the designer gave in place of names.
 
