@@ -10,10 +10,14 @@ import numpy as np
 import pytest
 
 from app.cli import main
+from app.commands.calibrated import spoken
+from app.wording.samples import sample_design
 from benchmarks.worn_pairs import scanned, worn_mesh, written
 from core.document import Document
+from core.own_lines import ready_made
 from core.pipeline import build
 from core.project import open_project, save_project
+from core.template import read_template
 
 
 @pytest.fixture(scope="module")
@@ -65,3 +69,12 @@ def test_it_tells_finds_and_saves(pair: tuple[str, str], tmp_path: Path, capsys)
 def test_what_cannot_be_is_refused(pair: tuple[str, str], words: list[str], said: str, capsys) -> None:
     assert main(["calibrate", *pair, *words]) == 2
     assert said in capsys.readouterr().err
+
+
+def test_a_number_that_linked_lines_share_is_told_of_both() -> None:
+    straps = ready_made(read_template("168"))["straps"]
+    linked = replace(sample_design(), own_lines=straps)
+    apart = linked.with_traits(replace(linked.traits_of("strap left"), linked=False))
+    told = [spoken("stiffness of strap left", design) for design in (linked, apart)]
+    assert told == ["stiffness of strap, both", "stiffness of strap left"]
+    assert spoken("line_stiffness", linked) == "line stiffness"

@@ -13,12 +13,16 @@ from PySide6.QtWidgets import QScrollArea
 from window_tools import Script, run_main, settled, undrawn
 
 from app.main_window import MainWindow
-from app.presenting.worn import bust_words
+from app.presenting.worn import bust_words, number_title
+from app.wording.samples import sample_design
+from app.wording.words import speaking
 from benchmarks.worn_pairs import scanned, worn_mesh, written
 from core.calibration import Difference, Figures
 from core.document import Document
+from core.own_lines import ready_made
 from core.pipeline import build
 from core.project import open_project, save_project
+from core.template import read_template
 
 
 @pytest.fixture(scope="module")
@@ -140,3 +144,14 @@ def test_where_the_bust_points_are_is_said_without_a_sign() -> None:
         "Left bust point: predicted 0.3 mm lower (±5.7 mm), 0.7 mm less far out. Right bust point: "
     )
     assert "predicted 0.0 mm higher (±10.8 mm), 0.2 mm further out." in words
+
+
+def test_a_number_that_linked_lines_share_is_called_as_their_row() -> None:
+    linked = replace(sample_design(), own_lines=ready_made(read_template("168"))["straps"])
+    apart = linked.with_traits(replace(linked.traits_of("strap left"), linked=False))
+    assert number_title("stiffness of strap left", linked) == "Stiffness of Straps"
+    assert number_title("length of strap left", linked) == "Length of Straps"
+    assert number_title("stiffness of strap right", apart) == "Stiffness of Strap (right)"
+    assert number_title("stiffness of mid-bust", linked) == "Stiffness of Mid-bust"
+    with speaking("ja"):
+        assert "左" not in number_title("stiffness of strap left", linked)

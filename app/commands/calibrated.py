@@ -79,7 +79,7 @@ def calibrated_text(done: Calibrated, as_json: bool) -> str:
 
 
 def _plain(done: Calibrated) -> Iterator[str]:
-    found, laid = done.found, done.worn.alignment
+    found, laid, design = done.found, done.worn.alignment, done.stages.design
     turn, shift = 2.0 * float(laid.turns.max()), 2.0 * float(laid.shifts.max())
     yield (
         f"{done.worn.name} lies on the first scan: {100.0 * laid.met:.0f} % of the still skin within 5 mm, "
@@ -98,14 +98,14 @@ def _plain(done: Calibrated) -> Iterator[str]:
     for number in found.calibration.numbers:
         if not number.kept:
             yield (
-                f"{spoken(number.name):28}{_value(number, number.before):>10}"
+                f"{spoken(number.name, design):28}{_value(number, number.before):>10}"
                 f"{_value(number, number.after):>10}{_value(number, number.plus_minus):>9}"
                 f"{'' if number.told else '   told weakly'}"
             )
     yield told(found)
     for number in found.calibration.numbers:
         if number.kept:
-            yield stays(number, found.confused.get(number.name, ""))
+            yield stays(number, found.confused.get(number.name, ""), design)
     yield "± is 95 % of what noise of the scans makes; another posture or breath is not in it."
     yield "The numbers hold for this person and this garment."
     if not found.helped:
@@ -146,8 +146,11 @@ def _bust_points(done: Calibrated) -> Iterator[str]:
     yield ""
 
 
-def spoken(name: str) -> str:
-    """Return what a number is called in plain words."""
+def spoken(name: str, design: Design) -> str:
+    """Return what a number is called in plain words; one that linked lines share is of both."""
+    line = name.partition(" of ")[2]
+    if line and len(design.linked(line)) > 1:
+        return name.rpartition(" ")[0] + ", both"
     return {"tissue_stiffness": "tissue [N/m]"}.get(name, name.replace("_", " "))
 
 
@@ -157,10 +160,12 @@ def _value(number: FoundNumber, value: float) -> str:
     return f"{value:.0f}" if number.name == "tissue_stiffness" else f"{value:.3g}"
 
 
-def stays(number: FoundNumber, other: str) -> str:
+def stays(number: FoundNumber, other: str, design: Design) -> str:
     """Return why a number stays as it is."""
-    why = f"these scans cannot tell it from {spoken(other)}" if other else "these scans do not tell it"
-    return f"{spoken(number.name)} stays {_value(number, number.before)}: {why}."
+    why = (
+        f"these scans cannot tell it from {spoken(other, design)}" if other else "these scans do not tell it"
+    )
+    return f"{spoken(number.name, design)} stays {_value(number, number.before)}: {why}."
 
 
 def _figures(done: Calibrated) -> dict[str, Any]:

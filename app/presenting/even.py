@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from app.panels.even_card import EvenSummary, EvenView
 from app.panels.measure_view import plus_minus
 from app.presenting.asking import figure_title, is_met, is_signed, reasons_words
-from app.presenting.lines import line_title, pair_title
+from app.presenting.lines import row_title
 from app.wording.words import joined, listed, number, say, tr
 from core.advice.parting import ENOUGH, moves_one_side, partable
 from core.aims.bust import LIFT, OUT
@@ -161,11 +161,7 @@ def _hint(stages: Stages, now: Evenness) -> tuple[str, bool]:
 
 def parted_titles(design: Design, names: tuple[str, ...]) -> list[str]:
     """Return what lines that are parted are called, a pair once."""
-    titles = [
-        pair_title(name, design) if len(design.linked(name)) > 1 else line_title(name, design)
-        for name in names
-    ]
-    return list(dict.fromkeys(titles))
+    return list(dict.fromkeys(row_title(name, design) for name in names))
 
 
 def left_as_it_is(gained: float, lost: float) -> tuple[str, str]:

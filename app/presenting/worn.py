@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from app.panels.worn_page import FigureRow, NumberRow
-from app.presenting.lines import line_title
+from app.presenting.lines import told_title
 from app.wording.words import joined, listed, number, tr
 from core.calibration import Difference, Figures, Found, Worn
 from core.design import Design
@@ -130,9 +130,9 @@ def number_title(name: str, design: Design) -> str:
     """Return what a number is called."""
     kind, _, line = name.partition(" of ")
     if kind == STIFFNESS and line:
-        return tr("Stiffness of {line}").format(line=line_title(line, design))
+        return tr("Stiffness of {line}").format(line=told_title(line, design))
     if kind == LENGTH and line:
-        return tr("Length of {line}").format(line=line_title(line, design))
+        return tr("Length of {line}").format(line=told_title(line, design))
     return {
         LINE_STIFFNESS: tr("Stiffness of lines"),
         FIRM_CHEST: tr("Firm chest"),
