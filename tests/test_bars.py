@@ -222,6 +222,21 @@ def test_the_strip_says_what_to_do_about_a_fold(strip: Strip) -> None:
     assert "Mid-bust longer." in hints[1].toolTip(), "in a narrow window its end is cut"
 
 
+def test_what_has_no_room_in_the_folded_strip_is_left_out_whole(strip: Strip) -> None:
+    line = strip._said
+    line.show_parts(("Set Mid-bust longer.", "Volume error 0.1 %", "", "Bust point 0.2 mm up"))
+    need = line.fontMetrics().horizontalAdvance(line.text())
+    seen = {}
+    for width in (need, need - 1, 60):
+        line.resize(width, 20)
+        seen[width] = line.seen()
+    assert seen[need] == line.text()
+    assert seen[need - 1].endswith("Volume error 0.1 %"), "a figure that is cut is none"
+    assert seen[60].startswith("Set")
+    assert seen[60].endswith("…")
+    assert "0.2 mm up" in line.toolTip()
+
+
 @pytest.mark.parametrize("settling", [False, True])
 def test_the_range_of_the_plots_only_grows_while_a_run_settles_whatever_its_word(
     strip: Strip, settling: bool

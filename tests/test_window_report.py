@@ -60,6 +60,9 @@ def test_the_sheet_takes_the_place_of_the_work_and_gives_it_back() -> None:
         assert window.pages.currentWidget() is work
         desk.open()
         assert scroll.value() == 0, "a sheet opens at its head, where a doubt stands"
+        assert not desk.page.back.icon().isNull(), "an arrow says that it is no heading"
+        desk.page.back.click()
+        assert window.pages.currentWidget() is work
 
     assert run_main(["resources/samples/mannequin.ply"], script) == 0
 

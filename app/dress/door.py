@@ -1,14 +1,15 @@
-"""A door: a row at the foot of a panel that leads somewhere else, with a line of what is there."""
+"""A door: a row at the foot of a panel that leads somewhere else, with a line of what is there; and back."""
 
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, QRectF, Qt
+from PySide6.QtCore import QEvent, QRectF, QSize, Qt, SignalInstance
 from PySide6.QtGui import QColor, QEnterEvent, QPainter, QPaintEvent, QPen
-from PySide6.QtWidgets import QAbstractButton
+from PySide6.QtWidgets import QAbstractButton, QHBoxLayout, QPushButton
 
-from app.dress.icons import paint_icon
-from app.dress.theme import font, tokens_of
+from app.dress.icons import icon, paint_icon
+from app.dress.parts import ToolButton
+from app.dress.theme import font, label, tokens_of
 
 DOOR_HEIGHT = 52
 """Height of a door at the foot of the inspector [px]."""
@@ -63,3 +64,37 @@ class Door(QAbstractButton):
 
     def leaveEvent(self, event: QEvent) -> None:
         self.update()
+
+
+def page_head(title: str, back: str, left: SignalInstance) -> QHBoxLayout:
+    """Return the head of what is behind a door: the arrow ``back``, which emits ``left``, and a title."""
+    head = QHBoxLayout()
+    head.setContentsMargins(10, 9, 10, 6)
+    head.setSpacing(4)
+    arrow = ToolButton("caret-left", back, size=16, room=30)
+    arrow.clicked.connect(left)
+    head.addWidget(arrow)
+    head.addWidget(label(title, "heading"))
+    head.addStretch(1)
+    return head
+
+
+class BackButton(QPushButton):
+    """An arrow and words that lead back from a page that fills the window."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self.setFont(font("button"))
+        self.setProperty("kind", "word")
+        self.setCursor(Qt.CursorShape.PointingHandCursor)
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.setIconSize(QSize(14, 14))
+        self._draw_arrow()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange:
+            self._draw_arrow()
+
+    def _draw_arrow(self) -> None:
+        self.setIcon(icon("caret-left", tokens_of(self).text_quiet, 14))

@@ -8,8 +8,8 @@ from typing import Any
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
-from app.dress.door import DOOR_HEIGHT, Door
-from app.dress.parts import ToolButton, button, hairline, sentence
+from app.dress.door import DOOR_HEIGHT, Door, page_head
+from app.dress.parts import button, hairline, sentence
 from app.dress.theme import label, set_tag
 from app.panels.setting_field import AmountField, Field, field_of
 from app.wording.model_choices import Setting, consequences, defaults, groups, summary
@@ -33,7 +33,7 @@ class ModelPanel(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
-        column.addLayout(self._head())
+        column.addLayout(page_head(tr("How the model works"), tr("Back to the lines"), self.left))
         column.addWidget(self._scroll_area(), 1)
         column.addWidget(self._foot())
         self.set_values(self._present)
@@ -57,17 +57,6 @@ class ModelPanel(QWidget):
         )
         self._limit.setText(said.format(limit=number(limit, 2)))
         set_tag(self._limit, "tone", "warn" if above else "")
-
-    def _head(self) -> QHBoxLayout:
-        head = QHBoxLayout()
-        head.setContentsMargins(10, 9, 10, 6)
-        head.setSpacing(4)
-        back = ToolButton("caret-left", tr("Back to the lines"), size=16, room=30)
-        back.clicked.connect(self.left)
-        head.addWidget(back)
-        head.addWidget(label(tr("How the model works"), "heading"))
-        head.addStretch(1)
-        return head
 
     def _foot(self) -> QWidget:
         foot = QWidget()

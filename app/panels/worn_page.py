@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QScrollArea, QVBoxLayout, QWidget
 
-from app.dress.parts import ElidedLabel, Segment, ToolButton, button, hairline, sentence
+from app.dress.door import page_head
+from app.dress.parts import ElidedLabel, Segment, button, hairline, sentence
 from app.dress.theme import font, label, set_tag
 from app.panels.figure_field import FigureField
 from app.wording.words import tr
@@ -141,19 +142,8 @@ class WornPage(QWidget):
         outer = QVBoxLayout(self)
         outer.setContentsMargins(0, 0, 0, 0)
         outer.setSpacing(0)
-        outer.addLayout(self._head())
+        outer.addLayout(page_head(tr("Worn scan"), tr("Back to the measures"), self.left))
         outer.addWidget(area, 1)
-
-    def _head(self) -> QHBoxLayout:
-        head = QHBoxLayout()
-        head.setContentsMargins(10, 9, 10, 6)
-        head.setSpacing(4)
-        back = ToolButton("caret-left", tr("Back to the measures"), size=16, room=30)
-        back.clicked.connect(self.left)
-        head.addWidget(back)
-        head.addWidget(label(tr("Worn scan"), "heading"))
-        head.addStretch(1)
-        return head
 
     def _lay_compared(self, column: QVBoxLayout) -> None:
         column.setContentsMargins(0, 4, 0, 0)

@@ -7,6 +7,7 @@ from PySide6.QtCore import QEvent, QObject, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPixmap, QResizeEvent, QShowEvent, QWheelEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLineEdit, QScrollArea, QVBoxLayout, QWidget
 
+from app.dress.door import BackButton
 from app.dress.parts import Segment, button, hairline, sentence
 from app.dress.theme import font, label, tokens_of
 from app.reporting.pages import Pages
@@ -48,7 +49,7 @@ class ReportPage(QWidget):
         self.zoom = Segment([("page", tr("Whole page")), ("width", tr("Full width"))], wide=True)
         self.zoom.chosen.connect(self.paper.fit)
         self.zoom.set_choice("width")
-        self.back = button(tr("Back to the work"), "quiet")
+        self.back = BackButton(tr("Back to the work"))
         self.back.clicked.connect(self.left)
         self.does = {
             "print": button(tr("Print…")),

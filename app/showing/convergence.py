@@ -9,14 +9,14 @@ from typing import Protocol
 from PySide6.QtCore import QEvent, QObject, QPoint, QSize, Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QMenu, QSizePolicy, QVBoxLayout, QWidget
 
-from app.dress.parts import ElidedLabel, Segment, ToolButton, sentence
-from app.dress.theme import font, label
+from app.dress.parts import Segment, ToolButton, sentence
+from app.dress.theme import label
 from app.showing.live_plot import LivePlot
 from app.showing.plot_canvas import Turns
 from app.showing.plot_curves import Curve, Event
 from app.showing.plot_legend import Entry, Legend, legend_entries, legend_width, run_title
 from app.showing.tracks import Exact, Track, error_quantities, height_quantities, tolerance_of
-from app.showing.verdict_chip import VerdictChip
+from app.showing.verdict_chip import VerdictChip, VerdictLine
 from app.wording.words import tr
 
 CONTROLS = ("adaptive", "conventional", "none", "exact")
@@ -168,10 +168,8 @@ class Strip(QWidget):
                 each.setText(text)
                 each.setVisible(bool(text))
         self._hint.setText(verdict.hint)
-        said = "   ".join(f"{name} {value}" for name, value in pairs[:2])
-        # What to do stands first: in a narrow window the end is cut off.
-        self._said.setText("     ".join(filter(None, (verdict.hint, verdict.pace, said))))
-        self._said.setToolTip(f"<p>{verdict.hint}</p>" if verdict.hint else "")
+        said = (f"{name} {value}" for name, value in pairs[:2])
+        self._said.show_parts((verdict.hint, *said, verdict.pace))  # what to do stands first
 
     def set_control(self, control: str) -> None:
         """Show which of ``CONTROLS`` is on; nothing is emitted."""
@@ -273,10 +271,7 @@ class Strip(QWidget):
         row = QHBoxLayout(self._line)
         row.setContentsMargins(14, 4, 6, 4)
         row.setSpacing(12)
-        self._said = ElidedLabel()
-        self._said.setFont(font("secondary", tabular=True))
-        self._said.setProperty("role", "secondary")
-        self._said.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self._said = VerdictLine()
         unfold = ToolButton("caret-up", tr("Show the plots (Ctrl+J)"), size=14, room=26)
         unfold.clicked.connect(lambda: self.set_folded(False))
         row.addWidget(self._small_chip)

@@ -1,11 +1,13 @@
-"""How the run stands, as icon and word on a coloured pill."""
+"""How the run stands, as icon and word on a coloured pill, and in words on the one line beside it."""
 
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from PySide6.QtCore import QElapsedTimer, QRectF, QSize, Qt, QTimer
 from PySide6.QtGui import QColor, QHideEvent, QPainter, QPaintEvent, QShowEvent
-from PySide6.QtWidgets import QSizePolicy, QWidget
+from PySide6.QtWidgets import QLabel, QSizePolicy, QWidget
 
 from app.dress.icons import paint_icon
 from app.dress.theme import font, tokens_of
@@ -28,6 +30,7 @@ SHORTEST_SHOW_MS = 250
 """A state stays at least so long, so that the chip does not flicker."""
 
 _TURN_MS, _STEP_MS = 1200, 150
+_GAP = "     "
 
 
 def state_title(state: str) -> str:
@@ -135,3 +138,35 @@ class VerdictChip(QWidget):
     def _turn(self) -> None:
         self._angle = (self._angle + 360.0 * _STEP_MS / _TURN_MS) % 360.0
         self.update()
+
+
+class VerdictLine(QLabel):
+    """Words in parts on one line, the first ones first: what has no room is left out whole.
+
+    Only the first one ends in dots, where it does not fit alone; the pointer is told all of it.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._parts: tuple[str, ...] = ()
+        self.setFont(font("secondary", tabular=True))
+        self.setProperty("role", "secondary")
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+
+    def show_parts(self, parts: Sequence[str]) -> None:
+        """Show these parts; empty ones are none."""
+        self._parts = tuple(filter(None, parts))
+        self.setText(_GAP.join(self._parts))
+        self.setToolTip(f"<p>{self.text()}</p>" if self._parts else "")
+
+    def seen(self) -> str:
+        """Return what there is room for."""
+        measure, parts = self.fontMetrics(), self._parts
+        while len(parts) > 1 and measure.horizontalAdvance(_GAP.join(parts)) > self.width():
+            parts = parts[:-1]
+        return measure.elidedText(_GAP.join(parts), Qt.TextElideMode.ElideRight, self.width())
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        painter.setPen(self.palette().color(self.foregroundRole()))
+        painter.drawText(self.rect(), Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, self.seen())
