@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QAction, QKeySequence, QUndoStack
+from PySide6.QtGui import QAction, QKeySequence, QUndoGroup
 from PySide6.QtWidgets import QWidget
 
 from app.menus import Menus
@@ -27,10 +27,10 @@ _KEYS = QKeySequence.StandardKey
 class Actions(Menus):
     """The actions that the window itself knows, by name; ``app.wiring`` connects them."""
 
-    def __init__(self, parent: QWidget, undo_stack: QUndoStack, view: Mapping[str, QAction]) -> None:
+    def __init__(self, parent: QWidget, undo: QUndoGroup, view: Mapping[str, QAction]) -> None:
         super().__init__(parent)
         self._fill_file()
-        self._fill_edit(undo_stack)
+        self._fill_edit(undo)
         self._fill_view(view)
         self._fill_lines()
         self._fill_solve()
@@ -57,10 +57,10 @@ class Actions(Menus):
         self.quit.setMenuRole(QAction.MenuRole.QuitRole)
         self.end("file", 4)
 
-    def _fill_edit(self, undo_stack: QUndoStack) -> None:
-        self.undo = undo_stack.createUndoAction(self._parent, tr("Undo"))
+    def _fill_edit(self, undo: QUndoGroup) -> None:
+        self.undo = undo.createUndoAction(self._parent, tr("Undo"))
         self.undo.setShortcut(_KEYS.Undo)
-        self.redo = undo_stack.createRedoAction(self._parent, tr("Redo"))
+        self.redo = undo.createRedoAction(self._parent, tr("Redo"))
         self.redo.setShortcuts([QKeySequence("Ctrl+Shift+Z"), QKeySequence("Ctrl+Y")])
         for action in (self.undo, self.redo):
             self.place("edit", action)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QKeyEvent
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QKeyEvent, QUndoGroup
 from PySide6.QtWidgets import QAbstractButton, QApplication, QMainWindow, QVBoxLayout, QWidget
 
 from app.actions import Actions
@@ -85,7 +85,10 @@ class MainWindow(QMainWindow):
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.jobs = Jobs(self)
         self.view = ViewArea(self.jobs)
-        do = self.actions_ = Actions(self, session.undo_stack, self.view.tool_actions)
+        self.undo_group = QUndoGroup(self)  # what is asked for has steps of its own
+        self.undo_group.addStack(session.undo_stack)
+        self.undo_group.setActiveStack(session.undo_stack)
+        do = self.actions_ = Actions(self, self.undo_group, self.view.tool_actions)
         self.top = TopBar(do.bar, do.undo, do.redo, do.export_any)
         self.rail, self.notices, self.strip, self.status = Rail(), NoticeBar(), Strip(), StatusBar()
         self.scan, self.landmarks = ScanPanel(), LandmarksPanel()

@@ -232,9 +232,10 @@ class ViewArea(QWidget):
     # -- inside
 
     def _show_view(self) -> None:
-        """Mark the tool of the view that the camera is in; on its way there it stays marked."""
+        """Mark the tools of the view that the camera is in; on its way there it stays marked."""
+        self.tools.set_shown("perspective", not self.viewport.view.parallel)
         name = self.viewport.view.name
-        if name is not None or not self.viewport.gliding:
+        if name is not None or self.viewport.heading == self.viewport.view:
             self.tools.set_view(name)
 
     def _show_new(self, body: Body) -> None:

@@ -43,22 +43,31 @@ def test_it_begins_with_the_skin_and_asks_for_nothing(stages: Stages, profile: D
     assert np.ptp(places[:, 0]) == 0.0
 
 
-def test_a_pulled_handle_takes_the_curve_along_as_far_as_the_next(stages: Stages, profile: Drawn) -> None:
+def test_a_pulled_handle_takes_the_curve_along_softly(stages: Stages, profile: Drawn) -> None:
     pulled = profile.pulled(1, 4.0, -3.0)
     before, here, after = profile.handles[:3]
     assert pulled.spots[1] == pytest.approx(profile.base[here] + [4.0, -3.0])
     assert pulled.curve[here] == pytest.approx(pulled.spots[1])
     moved = pulled.curve - profile.base
-    assert np.abs(moved[: before + 1]).max() == 0.0
-    assert np.abs(moved[after:]).max() == 0.0
-    steps = np.abs(np.diff(moved[:, 0]))
-    assert steps.max() < 3.0 * 4.0 / min(here - before, after - here), "no jump, only a slope"
-    assert steps[[before, here - 1, here, after - 1]].max() < 0.5 * steps.max(), "level at every handle"
+    assert moved[[before, after]] == pytest.approx(np.full((2, 2), [2.0, -1.5])), "those beside it follow"
+    assert np.abs(moved[profile.handles[3] :]).max() == 0.0, "no further"
+    assert moved.min(axis=0) == pytest.approx([0.0, -3.0]), "nowhere beyond the handles"
+    assert moved.max(axis=0) == pytest.approx([4.0, 0.0])
+    steps = np.diff(moved[:, 0])
+    assert np.abs(np.diff(steps)).max() < 0.5 * np.abs(steps).max(), "no kink, at the ends neither"
+    assert np.abs(steps[[0, -1]]).max() < 0.5 * np.abs(steps).max()
     # What is asked for is that curve, every 5 mm.
     goals = pulled.goals(stages)
     heights, outs = np.array([(float(goal.name.split()[2]), goal.value) for goal in goals]).T
     assert np.diff(heights) == pytest.approx(5.0)
     assert outs == pytest.approx(np.interp(heights, *pulled.curve.T), abs=1e-6)
+
+
+def test_a_handle_that_a_hand_has_set_stays(profile: Drawn) -> None:
+    pulled = profile.pulled(1, 0.0, 4.0).pulled(2, 0.0, 6.0)
+    assert pulled.steps[:, 1] == pytest.approx([2.0, 4.0, 8.0, 3.0])
+    again = pulled.pulled(1, 0.0, -4.0)
+    assert again.steps[:3, 1] == pytest.approx([0.0, 0.0, 8.0])
 
 
 def test_a_handle_goes_only_so_far_and_the_ends_stay(profile: Drawn) -> None:

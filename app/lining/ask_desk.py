@@ -9,19 +9,21 @@ from PySide6.QtCore import QObject, QTimer
 
 from app.dress.spoken import announce
 from app.lining.ask_around import AskAround
+from app.lining.ask_back import AskBack
 from app.lining.ask_drawing import AskDrawing
+from app.lining.ask_ground import AskGround
 from app.lining.ask_handles import AskHandles
 from app.lining.ask_menu import AskMenu
+from app.lining.ask_steps import AskSteps
 from app.lining.ask_views import show_answer, wish_views
 from app.lining.ask_wishes import Wishes
 from app.lining.ask_work import Answer, AskWork, Question
 from app.panels.ask_card import AskCard
-from app.presenting.asking import missing_words, step_words
+from app.presenting.asking import step_words
 from app.wording.words import joined, say, tr
 from core.aims.figure import Goal
 from core.design import Design
 from core.errors import UserError
-from core.frame import Frame
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -40,11 +42,10 @@ class AskDesk(QObject):
     def __init__(self, window: MainWindow) -> None:
         super().__init__(window)
         self._window, self._session = window, window.session
-        self._wishes = Wishes()
+        self.all_wishes = Wishes()
         self.answer: Answer | None = None
         self._apply_due = False
-        self._prepared: tuple[Callable[[Design], Design], str] | None = None
-        self._design: Design | None = None  # of which it is asked
+        self.ground = AskGround(window.session)
         self.work = AskWork(window.jobs, self)
         self.work.answered.connect(self._take)
         self.work.refused.connect(self._refuse)
@@ -57,7 +58,8 @@ class AskDesk(QObject):
         window.view.place(self.card, "bottom")
         self.handles = AskHandles(window, self)
         self.drawing, self.around = AskDrawing(window, self), AskAround(window, self)
-        self.menu = AskMenu(window, self)
+        self.menu, self.back = AskMenu(window, self), AskBack(window, self)
+        self.steps = AskSteps(window, self)
         self._connect()
 
     def _connect(self) -> None:
@@ -85,12 +87,6 @@ class AskDesk(QObject):
         """Whether something is being asked for."""
         return not self.card.isHidden()
 
-    @property
-    def asks(self) -> bool:
-        """Whether there are lines that can be asked for anything."""
-        frame, design = self._session.frame, self._design
-        return frame is not None and design is not None and not self._missing(frame, design)
-
     def begin(
         self, goals: Sequence[Goal] = (), prepare: Callable[[Design], Design] | None = None, said: str = ""
     ) -> None:
@@ -105,16 +101,18 @@ class AskDesk(QObject):
         self._window.line_drawing.leave()
         self._window.line_routing.leave()
         self._window.desk.go_to("lines")
-        self._wishes, self.answer, self._apply_due = Wishes.of(goals), None, False
-        self._prepared = None if prepare is None else (prepare, said)
-        self._prepare()
+        self.all_wishes, self.answer, self._apply_due = Wishes.of(goals), None, False
+        self.ground.begin(prepare, said)
+        self.back.remember()
         self.card.show()
         self.drawing.choose("bust")
+        self.steps.forget()
         self.card.take_focus(next(iter(self.wishes), ""))
 
     def wish(self, key: str, value: float) -> None:
         """Wish for a figure [mm], or set the limit of pressure [kPa]."""
-        self._wishes.set(key, value)
+        self.all_wishes.set(key, value)
+        self.steps.note()
         self.ask()
 
     def add(self, name: str) -> None:
@@ -125,38 +123,44 @@ class AskDesk(QObject):
 
     def wish_curve(self, section: str, goals: tuple[Goal, ...], profile: Drawn) -> None:
         """Wish for the profile of a section, from the next question on."""
-        self._wishes.curves[section], self._wishes.drawn[section] = goals, profile
+        self.all_wishes.curves[section], self.all_wishes.drawn[section] = goals, profile
 
     def drop(self, key: str) -> None:
         """Wish for a figure, or a profile, no longer."""
-        self._wishes.drop(key)
+        self.all_wishes.drop(key)
         if self.handles.kind == "profile" and not self.drawn:
             self.drawing.choose("bust")
         else:
             self.ask()
+        self.steps.note()
+
+    def restore(self, wishes: Wishes, kind: str) -> None:
+        """Wish for what was wished for once, with what was dragged on the body then."""
+        self.handles.let_go()
+        self.all_wishes = wishes
+        self.drawing.turn_to(kind)
 
     def wish_by_hand(self, wishes: dict[str, float | None], *, at_rest: bool) -> None:
         """Take wishes that a hand has dragged to; while it is on its way the answers are quick ones."""
-        self._wishes.figures = wishes
+        self.all_wishes.figures = wishes
         self._rest.start()
+        self.ask(hurried=not at_rest)
         if at_rest:
-            self.ask()
-        else:
-            self.ask(hurried=True)
+            self.steps.note()
 
     @property
     def drawn(self) -> dict[str, Drawn]:
         """The profiles that are drawn, by section."""
-        return self._wishes.drawn
+        return self.all_wishes.drawn
 
     @property
     def wishes(self) -> dict[str, float | None]:
         """The figures on the card; those without a value are not asked for."""
-        return self._wishes.figures
+        return self.all_wishes.figures
 
     def goals(self) -> tuple[Goal, ...]:
         """Return what is asked for."""
-        return self._wishes.goals(self.answer.now if self.answer is not None else {})
+        return self.all_wishes.goals(self.answer.now if self.answer is not None else {})
 
     @property
     def is_tried_on(self) -> bool:
@@ -174,9 +178,9 @@ class AskDesk(QObject):
         self._apply_due = self.work.at_work or self._rest.isActive()
         if self._apply_due or answer is None or answer.reply is None:
             return
-        design, words = answer.reply.design, step_words(self._wishes.asked, self._wishes.limit)
-        if self._prepared is not None:
-            words = " · ".join((self._prepared[1], words))
+        design, words = answer.reply.design, step_words(self.all_wishes.asked, self.all_wishes.limit)
+        if self.ground.said:
+            words = " · ".join((self.ground.said, words))
         self.end()
         self._session.edit(lambda _: design, words)
 
@@ -192,39 +196,35 @@ class AskDesk(QObject):
         self._slow.stop()
         self.work.stop()
         self.answer, self._apply_due = None, False
-        self._prepared = self._design = None
+        self.ground.leave()
+        if self.is_open:
+            self.back.go()
         self.card.hide()
         self.handles.put_away()
+        self.steps.forget()
         self._window.lines_desk.show_rows()  # their lengths may be those that were tried on
 
     # -- questions and answers
 
-    def _prepare(self) -> None:
-        """Settle of which design it is asked: the session's, or what is made of it."""
-        design = self._session.design
-        if design is not None and self._prepared is not None:
-            design = self._prepared[0](design)
-        self._design = design
-
     def ask(self, *, hurried: bool = False) -> None:
         """Have what is wished now answered; ``hurried`` while a hand is on its way."""
-        frame, design = self._session.frame, self._design
+        frame, design = self._session.frame, self.ground.design
         if not self.is_open or frame is None or design is None:
             return
         if not hurried:
             self._rest.stop()
-        if self._missing(frame, design):
+        if self.ground.missing:
             self.work.stop()
             self.answer = None
             self._session.cancel_preview()
         else:
-            goals, told, limit = self.goals(), self._wishes.told, self._wishes.limit
+            goals, told, limit = self.goals(), self.all_wishes.told, self.all_wishes.limit
             self.work.ask(Question(design, frame.stages, goals, told, limit, hurried and bool(goals)))
             self._slow.start()
         self._show()
 
     def _take(self, answer: Answer) -> None:
-        if not self.is_open or answer.question.design is not self._design:
+        if not self.is_open or answer.question.design is not self.ground.design:
             return
         self.answer = answer
         if not answer.question.goals and self.goals():  # only now it is known what is to stay
@@ -243,7 +243,7 @@ class AskDesk(QObject):
 
     def _show_nearer(self, question: Question, design: Design) -> None:
         """Show the nearest so far on the body, while it is looked for elsewhere."""
-        if self.is_open and question.design is self._design and self.work.is_at(question):
+        if self.is_open and question.design is self.ground.design and self.work.is_at(question):
             self._session.preview(design)
 
     def _refuse(self, problem: Exception) -> None:
@@ -263,27 +263,27 @@ class AskDesk(QObject):
     def _follow_design(self, _: Design) -> None:
         if self.is_open:
             self.answer = None
-            self._prepare()
+            self.steps.forget()
+            self.ground.follow()
             self.ask()
 
     # -- what is shown
 
     def _show(self) -> None:
-        frame, design = self._session.frame, self._design
+        frame, design = self._session.frame, self.ground.design
         if not self.is_open or frame is None or design is None:
             return
-        missing = self._missing(frame, design)
-        moving = {line.name for line in frame.stages.model.lines if line.constrains}
-        self.card.show_help(bool(missing), locked=bool(moving & design.worn()))
+        missing = self.ground.missing
+        self.card.show_help(bool(missing), locked=not design.worn().isdisjoint(self.ground.moving))
         if missing:
             self.card.show_wishes([], missing)
             self.card.show_answer()
         else:
             hint = self.drawing.hint()
-            views = wish_views(design, self._wishes, self.answer)
-            self.card.show_wishes(list(views), "" if self.goals() else hint)
-            apart = self._prepared[1] if self._prepared is not None else ""
-            show_answer(self.card, design, self._wishes, self.answer, apart=apart, busy=self._busy())
+            views = wish_views(design, self.all_wishes, self.answer)
+            self.card.show_wishes(list(views), hint)
+            said = self.ground.said
+            show_answer(self.card, design, self.all_wishes, self.answer, apart=said, busy=self._busy())
         self.handles.follow()
 
     def _busy(self) -> str:
@@ -291,9 +291,3 @@ class AskDesk(QObject):
         if not (self.work.at_work or self._rest.isActive()):
             return ""
         return "soon" if self._slow.isActive() or self._rest.isActive() else "slow"
-
-    def _missing(self, frame: Frame, design: Design) -> str:
-        """Return what has to be done before anything can be asked, if there is something."""
-        if self._prepared is not None:
-            return ""  # its lines are not in the frame yet; that they can move something is known
-        return missing_words(design, [line.name for line in frame.stages.model.lines if line.constrains])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,9 +17,11 @@ if TYPE_CHECKING:
     from app.lining.ask_desk import AskDesk
     from app.main_window import MainWindow
     from core.aims.drawn import Drawn
+    from core.frame import Frame
 
 _BESIDE = 20.0  # what is seen above and below a profile [mm]
 _LEVEL = 0.05  # part of the way to the side from which on it is looked at from there [1]
+_SIDEWAYS = 0.8  # of a view from the side: what is seen from less of it is not drawn on [1]
 
 
 class AskDrawing(QObject):
@@ -44,7 +47,14 @@ class AskDrawing(QObject):
             for name in KINDS[kind]:
                 if not any(each.startswith(name) for each in desk.wishes):
                     desk.wishes[name] = None
-        self._turn_to(kind)
+        self.turn_to(kind)
+        desk.steps.note()
+
+    def turn_to(self, kind: str) -> None:
+        """Let the handles be those of a kind, whatever is on the card."""
+        self._desk.handles.kind = kind
+        self._desk.card.show_hand(kind)
+        self._desk.ask()
 
     def begin(self, side: str) -> None:
         """Draw the profile through the bust point of a side, as it is now, to be dragged."""
@@ -88,29 +98,43 @@ class AskDrawing(QObject):
             return
         self._desk.wish_curve(section, goals, profile)
 
+    def follow(self, frame: Frame) -> None:
+        """Let profiles that are free be those of the body of a frame."""
+        from core.aims.drawn import drawn  # noqa: PLC0415 (few ever ask)
+
+        for section, profile in list(self._desk.drawn.items()):
+            if profile.is_free:
+                fresh = drawn(frame.stages, profile.section, frame.control_points)
+                self._desk.wish_curve(section, (), fresh)
+
+    def is_from_side(self, section: str) -> bool:
+        """Tell whether a profile is looked at from about its side: else up and out cannot be told by hand."""
+        across = self._window.view.viewport.view.axes[2][0]
+        return bool((across if self._desk.drawn[section].section == "left" else -across) > _SIDEWAYS)
+
     def hint(self) -> str:
-        """Return what to do with the handles."""
+        """Return what to do with the handles, as long as nothing was done."""
+        kind = self._desk.handles.kind
+        untouched = kind == "profile" and any(each.is_free for each in self._desk.drawn.values())
+        if self._desk.goals() and not untouched:
+            return ""
         hints = {
             "bust": tr("Type what it is to be, or drag the handle at the bust point."),
             "apex": tr("Type what it is to be, or drag the handle at the foremost place."),
             "profile": tr("Drag the curve on the body by its handles to where the skin is to be."),
         }
-        return hints[self._desk.handles.kind]
+        return hints[kind]
 
     def _take(self, profile: Drawn) -> None:
         self.draw(f"profile {profile.section}", profile)
-        self._look_at(profile)
-        self._turn_to("profile")
-
-    def _turn_to(self, kind: str) -> None:
-        self._desk.handles.kind = kind
-        self._desk.card.show_hand(kind)
-        self._desk.ask()
+        self.look_at(profile)
+        self.turn_to("profile")
+        self._desk.steps.note()
 
     def _side(self) -> str:
         return "right" if self._window.view.viewport.view.axes[2][0] < -_LEVEL else "left"
 
-    def _look_at(self, profile: Drawn) -> None:
+    def look_at(self, profile: Drawn) -> None:
         """Look at a profile from its side, and over the card."""
         from core.aims.drawn import in_space  # noqa: PLC0415
 
@@ -124,4 +148,5 @@ class AskDrawing(QObject):
         middle, half = box[2].mean(), 0.5 * (np.ptp(box[2]) + 2.0 * _BESIDE) * room / (room - covered)
         box[2] = middle - half, middle + half
         framed = viewport.view.named(profile.section).framing(box, viewport.width() / room)
-        viewport.glide_to(framed.pan(0.0, -0.5 * covered, room))
+        # Seen in parallel the body's outline lies where the curve does, however near it is looked at.
+        self._desk.back.look(replace(framed.pan(0.0, -0.5 * covered, room), parallel=True))

@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, QPoint
 
 from app.lining.ask_profile import AskProfile
 from app.presenting.bust import bust_move
@@ -47,7 +47,7 @@ class AskHandles(QObject):
         self._before: tuple[dict[str, float | None], dict[str, Drawn]] | None = None
         self._height = 0  # of the card, when the picture was moved for it
         self._pulled: dict[str, float] = {}  # how far the hand has gone each way since it closed [mm]
-        self.profile.taken.connect(self._take)
+        self.profile.taken.connect(self._take_profile)
         self.profile.pulled.connect(self._draw)
         self.profile.dropped.connect(self._drop)
 
@@ -61,8 +61,7 @@ class AskHandles(QObject):
         before, self._before = self._before, None
         if before is None:
             return False
-        for handle in (*self.by_side.values(), *self.profile.all()):
-            handle.open_hand()
+        self._open_hands()
         figures, drawn = before
         for section, profile in drawn.items():
             self._desk.drawing.draw(section, profile)
@@ -80,12 +79,14 @@ class AskHandles(QObject):
     def follow(self) -> None:
         """Stand where the bust points are wished on the shown body."""
         frame, view = self._window.session.frame, self._window.view
-        if frame is None or not self._desk.is_open or not view.after or not self._desk.asks:
+        if frame is None or not self._desk.is_open or not view.after or not self._desk.ground.asks:
             self.put_away()
             return
         if self.kind == "profile":
             for handle in self.by_side.values():
                 handle.put_away()
+            if not self.carries:
+                self._desk.drawing.follow(frame)
             self.profile.follow(frame, self._desk.drawn)
             return
         self.profile.put_away()
@@ -98,16 +99,17 @@ class AskHandles(QObject):
 
     def clear(self) -> None:
         """Move the picture up if the card has grown over handles: they could not be taken."""
-        viewport, card = self._window.view.viewport, self._desk.card
-        handles = (*self.by_side.values(), *self.profile.all())
-        seen = [handle for handle in handles if handle.isVisible()]
-        if not seen or self.carries or card.height() <= self._height:
+        view, card = self._window.view, self._desk.card
+        if self.carries:
             return
-        self._height = card.height()
-        top = self._window.view.floating.seen(card).top()
-        low = max(handle.mapTo(self._window.view, handle.rect().bottomLeft()).y() for handle in seen)
-        if low > top - _CLEAR:
-            viewport.glide_to(viewport.view.pan(0.0, float(top - _CLEAR - low), viewport.height()))
+        grown, self._height = card.height() > self._height, card.height()
+        # It may be on its way elsewhere: what is seen from there counts.
+        heading, canvas = view.viewport.heading, view.viewport.mapTo(view, QPoint())
+        reach = [handle.lowest_from(heading) for handle in (*self.by_side.values(), *self.profile.all())]
+        lowest = max((each for each in reach if each is not None), default=-np.inf) + canvas.y()
+        over = view.floating.seen(card).top() - _CLEAR - lowest
+        if grown and over < 0.0:
+            self._desk.back.look(heading.pan(0.0, over, view.viewport.height()))
 
     def _make(self) -> None:
         for side in SIDES:
@@ -138,6 +140,19 @@ class AskHandles(QObject):
             self._before = dict(self._desk.wishes), dict(self._desk.drawn)
             self._pulled = dict.fromkeys(KINDS.get(self.kind, ()), 0.0)
             self._window.job_desk.show()
+
+    def _take_profile(self, section: str) -> None:
+        """Take the curve of a section; from elsewhere than its side a hand cannot tell out from across."""
+        drawing = self._desk.drawing
+        if drawing.is_from_side(section):
+            self._take()
+        else:
+            self._open_hands()
+            drawing.look_at(self._desk.drawn[section])
+
+    def _open_hands(self) -> None:
+        for handle in (*self.by_side.values(), *self.profile.all()):
+            handle.open_hand()
 
     def _draw(self, section: str, handle: int, up: float, out: float) -> None:
         """Go on with the curve of a section by a step of the hand at one of its handles [mm]."""

@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 class AskProfile(QObject):
     """One curve a section with its handles in a view.
 
-    ``taken`` and ``dropped`` when a hand closes and opens; ``pulled`` carries the section, the number of the
-    handle, and each step up and out [mm].
+    ``taken`` and ``dropped`` when a hand closes and opens, ``taken`` with the section; ``pulled`` carries the
+    section, the number of the handle, and each step up and out [mm].
     """
 
-    taken = Signal()
+    taken = Signal(str)
     pulled = Signal(str, int, float, float)
     dropped = Signal()
 
@@ -48,12 +48,10 @@ class AskProfile(QObject):
     def follow(self, frame: Frame, drawn: dict[str, Drawn]) -> None:
         """Show these profiles, by section, on the body of a frame."""
         for gone in [each for each in self.handles if each not in drawn]:
-            self._curves.pop(gone).deleteLater()
-            for handle in self.handles.pop(gone):
-                handle.put_away()
-                handle.deleteLater()
+            self._remove(gone)
         for section, profile in drawn.items():
-            if len(self.handles.get(section, ())) != len(profile.handles):
+            if len(self.handles.get(section, ())) != len(profile.handles) or section not in self._curves:
+                self._remove(section)
                 self._make(section, profile)
             stages = frame.stages
             wished = in_space(stages, profile.section, profile.curve)
@@ -62,6 +60,13 @@ class AskProfile(QObject):
             for handle, spot in zip(self.handles[section], spots, strict=True):
                 handle.show_at(spot, spot)
 
+    def _remove(self, section: str) -> None:
+        if section in self._curves:
+            self._curves.pop(section).deleteLater()
+        for handle in self.handles.pop(section, ()):
+            handle.put_away()
+            handle.deleteLater()
+
     def _make(self, section: str, profile: Drawn) -> None:
         side = profile.section
         self._curves[section] = WishCurve(self._viewport, side)
@@ -69,7 +74,7 @@ class AskProfile(QObject):
         for number in range(len(profile.handles)):
             name = tr("Handle {number} of the profile, from below").format(number=number + 1)
             handle = BustHandle(self._viewport, side, name, small=True)
-            handle.taken.connect(self.taken)
+            handle.taken.connect(partial(self.taken.emit, section))
             handle.pulled.connect(partial(self.pulled.emit, section, number))
             handle.dropped.connect(self.dropped)
             self.handles[section].append(handle)

@@ -60,6 +60,10 @@ class Wishes:
         self.drawn.pop(key, None)
         self.limit = None if key == PRESSURE else self.limit
 
+    def of_key(self, key: str) -> tuple[object, ...]:
+        """Return all that is wished by a key, to be compared; a free figure is as good as none."""
+        return self.figures.get(key), self.curves.get(key, ()), key in self.drawn
+
     @property
     def asked(self) -> tuple[Goal, ...]:
         """What was wished for by name."""

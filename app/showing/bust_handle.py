@@ -9,6 +9,7 @@ from PySide6.QtGui import QColor, QEnterEvent, QHideEvent, QKeyEvent, QMouseEven
 from PySide6.QtWidgets import QWidget
 
 from app.dress.theme import tokens_of
+from app.seeing.camera import View
 from app.showing.viewport import Viewport
 from app.wording.words import tr
 from core.mesh import Floats
@@ -69,6 +70,13 @@ class BustHandle(QWidget):
         self._wanted = False
         self._stand()
 
+    def lowest_from(self, view: View) -> float | None:
+        """Return how low it reaches in the picture of a view [px]; None where it is not shown from there."""
+        if not (self._wanted and self._viewport.shows_body and faces(view, self.side)):
+            return None
+        spot = view.to_picture(self._place[None], self._viewport.width(), self._viewport.height())[0]
+        return float(spot[1]) + self._size / 2.0
+
     @property
     def held(self) -> bool:
         """Whether it is in a hand."""
@@ -80,7 +88,7 @@ class BustHandle(QWidget):
         return False
 
     def _stand(self) -> None:
-        shown = self._wanted and self._viewport.shows_body and self._faces()
+        shown = self._wanted and self._viewport.shows_body and faces(self._viewport.scene.view, self.side)
         if self._thread is not None:
             self._thread.setVisible(shown)
         if not shown:
@@ -101,9 +109,6 @@ class BustHandle(QWidget):
         self.show()
         self.raise_()
         self.update()
-
-    def _faces(self) -> bool:
-        return faces(self._viewport, self.side)
 
     def _steps(self, over: Floats) -> tuple[float, float]:
         """Return the steps up and out [mm] of a step over the picture, (2,) [px]."""
@@ -213,9 +218,9 @@ class BustHandle(QWidget):
             painter.restore()
 
 
-def faces(viewport: Viewport, side: str) -> bool:
-    """Tell whether the breast of a side is seen, and not only what lies behind it."""
-    return bool(viewport.scene.view.axes[2] @ _FACING[side] > 0.0)
+def faces(view: View, side: str) -> bool:
+    """Tell whether the breast of a side is seen from somewhere, and not only what lies behind it."""
+    return bool(view.axes[2] @ _FACING[side] > 0.0)
 
 
 class _Thread(QWidget):

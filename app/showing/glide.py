@@ -30,6 +30,11 @@ class Glide(QVariantAnimation):
         self.start()
 
     @property
+    def end(self) -> View:
+        """The view that the last way leads to."""
+        return self._ends[1]
+
+    @property
     def running(self) -> bool:
         """Whether the camera is on its way."""
         return self.state() == QVariantAnimation.State.Running

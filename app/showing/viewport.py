@@ -214,9 +214,9 @@ class Viewport(QWidget):
         return self._view if self._scene is None else self._scene.view
 
     @property
-    def gliding(self) -> bool:
-        """Whether the camera is on its way to another view."""
-        return self._glide.running
+    def heading(self) -> View:
+        """Where the camera is on its way to, or where it is."""
+        return self._glide.end if self._glide.running else self.view
 
     def set_view(self, name: str) -> None:
         """Glide to the side called ``name`` in ``app.seeing.camera.VIEWS``."""

@@ -45,7 +45,7 @@ class WishCurve(QWidget):
         return False
 
     def _stand(self) -> None:
-        shown = self._wanted and self._viewport.shows_body and faces(self._viewport, self._side)
+        shown = self._wanted and self._viewport.shows_body and faces(self._viewport.scene.view, self._side)
         if shown and self._canvas is not None:
             self.setGeometry(self._canvas.rect())
         self.setVisible(shown)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from core.aims.curve_file import foremost, overhang, profile_goals
 from core.aims.figure import Goal
@@ -21,6 +22,7 @@ FARTHEST = 60.0
 _FINE = 2.5  # heights at which the outline is read [mm]
 _ENOUGH = 8  # rows of a table on which handles are of use
 _APART = 20.0  # about as far are handles from each other [mm]
+_ALONG = 0.5  # of a step that the handles beside one take along with it [1]
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,9 +30,10 @@ class Drawn:
     """The profile of a section, "left" or "right" or its x [mm], with ``handles`` (h,) on it.
 
     ``base`` (k, 2) [mm] are heights, upwards, and how far the skin stood out there; ``handles`` are places
-    along it and ``steps`` (h, 2) [mm] how far each was pulled up and out. Both ends stay where the control
-    mesh is fixed; where a breast hangs over, the lower end is a handle. One that is ``given`` by a table is
-    asked for as it is; else nothing is as long as no handle was pulled.
+    along it and ``steps`` (h, 2) [mm] how far each has gone up and out; those ``by_hand`` were pulled
+    themselves. Both ends stay where the control mesh is fixed; where a breast hangs over, the lower end is a
+    handle. One that is ``given`` by a table is asked for as it is; else nothing is as long as no handle was
+    pulled.
     """
 
     section: str
@@ -38,11 +41,26 @@ class Drawn:
     handles: Indices
     steps: Floats
     given: bool = False
+    by_hand: frozenset[int] = frozenset()
+
+    @property
+    def is_free(self) -> bool:
+        """Whether nothing is asked for: it is the skin as it stood."""
+        return not self.given and not self.steps.any()
 
     @property
     def curve(self) -> Floats:
-        """The curve as it is pulled, heights and how far out, (k, 2) [mm]."""
-        return self.base + self._shares @ self.steps
+        """The curve as it is pulled, heights and how far out, (k, 2) [mm]: smooth, nowhere beyond handles."""
+        if not len(self.handles):
+            return self.base
+        along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(self.base, axis=0), axis=1))])
+        knots = np.unique(np.concatenate([[0, len(along) - 1], self.handles]))
+        ways = np.zeros((len(knots), 2))
+        ways[np.searchsorted(knots, self.handles)] = self.steps
+        # One more knot beyond each end: the curve leaves its ends without a kink.
+        spots = np.concatenate([[along[0] - 1.0], along[knots], [along[-1] + 1.0]])
+        between = PchipInterpolator(spots, ways[[0, *range(len(knots)), -1]])
+        return np.asarray(self.base + between(along))
 
     @property
     def spots(self) -> Floats:
@@ -50,29 +68,18 @@ class Drawn:
         return self.base[self.handles] + self.steps
 
     def pulled(self, handle: int, up: float, out: float) -> Drawn:
-        """Return it with one handle pulled further [mm]."""
-        steps = self.steps.copy()
-        steps[handle] = np.clip(steps[handle] + [up, out], -FARTHEST, FARTHEST)
-        return replace(self, steps=steps)
+        """Return it with one handle pulled further [mm]; those beside it come along if no hand set them."""
+        ways, by_hand = np.zeros_like(self.steps), self.by_hand | {handle}
+        ways[handle] = up, out
+        for beside in {handle - 1, handle + 1} & (set(range(len(ways))) - by_hand):
+            ways[beside] = _ALONG * ways[handle]
+        return replace(self, steps=np.clip(self.steps + ways, -FARTHEST, FARTHEST), by_hand=by_hand)
 
     def goals(self, stages: Stages) -> tuple[Goal, ...]:
         """Return what is asked for. Raises UserError if it lies nowhere where the body can be reshaped."""
         if not self.steps.any():
-            return profile_goals(stages, self.section, self.base) if self.given else ()
+            return () if self.is_free else profile_goals(stages, self.section, self.base)
         return profile_goals(stages, self.section, foremost(self.curve, STEP))
-
-    @property
-    def _shares(self) -> Floats:
-        """How much of each handle's step each place of the curve takes, (k, h): smooth in between."""
-        along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(self.base, axis=0), axis=1))])
-        knots = along[np.unique(np.concatenate([[0, len(along) - 1], self.handles]))]
-        piece = np.clip(np.searchsorted(knots, along, side="right") - 1, 0, len(knots) - 2)
-        part = (along - knots[piece]) / (knots[piece + 1] - knots[piece])
-        part = part * part * (3.0 - 2.0 * part)
-        shares = np.zeros((len(along), len(knots)))
-        rows = np.arange(len(along))
-        shares[rows, piece], shares[rows, piece + 1] = 1.0 - part, part
-        return shares[:, np.searchsorted(knots, along[self.handles])]
 
 
 def drawn(stages: Stages, section: str, control_points: Points) -> Drawn:
