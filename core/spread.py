@@ -15,7 +15,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from core.advice.assumed import Assumed, assumed
-from core.advice.knobs import Knob, Turned, knobs
+from core.advice.knobs import PLACING, Knob, Turned, beyond, knobs
 from core.advice.propagated import Effect, Propagation, effects
 from core.advice.trials import Trials
 from core.design import Design
@@ -55,7 +55,8 @@ class Spreading:
         """Return the spread by all sources, and the figures with the other skin contact."""
         if self._propagation is None:
             self.quick(progress)
-        whole = self._by([knob for knob in self._knobs if knob.source == LANDMARKS], progress)
+        marks = [knob for knob in self._knobs if knob.source == LANDMARKS]
+        whole = self._by([*marks, *([PLACING] if marks else [])], progress)
         if self.trials.bare:  # the contact of no line makes no difference
             return replace(whole, sources=SOURCES)
         progress("the other contact", 1.0)
@@ -107,7 +108,8 @@ def _spread(propagation: Propagation, found: list[Effect], sizes: Assumed, faile
         for key, step in effect.figures.items():
             of_figure = doubts.setdefault(key, {})
             of_figure[effect.knob.source] = np.hypot(of_figure.get(effect.knob.source, 0.0), step)
-    for key in _UNTOLD:
+    unsure = [f"{kind}:{key}" for kind in (BEFORE, AFTER) for key in beyond(propagation.stages.design)]
+    for key in (*_UNTOLD, *unsure):
         doubts.pop(key, None)
     for key, sd in _of_roots(propagation, sizes).items():
         doubts.setdefault(key, {})[ROOT] = sd

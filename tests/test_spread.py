@@ -13,11 +13,12 @@ from coarse_bodies import coarse_mannequin
 
 from app.wording.samples import sample_design
 from core.advice.assumed import NUMBERS, Assumed, assumed, assuming, origins
-from core.advice.knobs import knobs, turned
+from core.advice.knobs import PLACING, knobs, turned
 from core.advice.propagated import Propagation
 from core.advice.sampled import sampled
 from core.advice.trials import Trials
 from core.answer import answer_of
+from core.design_measures import OwnMeasure
 from core.elastics import find_elastic
 from core.errors import UserError
 from core.measuring.plus_minus import (
@@ -233,6 +234,38 @@ def test_a_force_that_is_off_by_more_than_itself_is_told_from_nothing_on(told: l
     assert nearly.factor(key) is None  # a hundred standard deviations of a logarithm say nothing
     sure = replace(slack, figures={key: 4.0})
     assert sure.plus_minus(key) == pytest.approx(2.0 * hypot(1.0, 0.1))
+
+
+def test_a_line_that_pushes_is_told_between_two_figures_in_order(told: list[Spread]) -> None:
+    key = "tension:mid-bust"
+    pushed = replace(told[-1], doubts={key: Doubt({"tape": 0.4})}, figures={key: -1.0})
+    assert pushed.between(key, -1.0) == pytest.approx((-1.8, -0.2))
+
+
+def test_what_hangs_on_landmarks_of_which_nobody_knows_how_sure_they_are_has_no_spread(plain: Stages) -> None:
+    own = (
+        OwnMeasure("pits", "straight", ("armpit_left", "armpit_right")),
+        OwnMeasure("gap", "straight", ("bust_point_left", "bust_point_right")),
+        OwnMeasure("at a height", "girth", (), 300.0),
+    )
+    quick = Spreading(Trials(build(replace(plain.design, own_measures=own), plain)), SURE).quick()
+    for kind in ("before", "after"):
+        for key in ("high_bust_girth", "high_bust_girth_skin", "own:pits"):
+            assert quick.plus_minus(f"{kind}:{key}") is None
+        for key in ("waist_girth", "own:gap", "own:at a height"):
+            assert quick.plus_minus(f"{kind}:{key}") is not None
+
+
+def test_what_placing_a_landmark_where_it_is_changes_is_in_the_spread(
+    plain: Stages, trials: Trials, told: list[Spread]
+) -> None:
+    there, key = trials(turned(plain, {PLACING: 0.0})).figures, "before:root_length_left"
+    jump = there[key] - trials.rest.before["root_length_left"].value
+    assert abs(jump) > 0.1, "a fold that is placed leads the root another way"
+    propagation = Propagation(trials)
+    turns = [propagation.effect(knob).figures[key] for knob in knobs(plain, SURE) if knob.source == LANDMARKS]
+    of_landmarks = told[-1].doubts[key].by_source[LANDMARKS]
+    assert of_landmarks == pytest.approx(hypot(jump, *turns), rel=1e-6)
 
 
 def test_a_bare_body_is_neither_fitted_nor_solved(plain: Stages, monkeypatch: pytest.MonkeyPatch) -> None:

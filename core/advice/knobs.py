@@ -14,6 +14,7 @@ from core.design import Design
 from core.design_elastics import TISSUE_LIMITS, Elastic
 from core.landmark import SIDES
 from core.lines import RATIO_LIMITS, Line
+from core.measuring.own import OWN
 from core.measuring.plus_minus import ELASTIC, LANDMARKS, LINE, SCAN, TAPE, TISSUE
 from core.mechanics import RANGES
 from core.mesh import Points, unit
@@ -37,13 +38,17 @@ class Knob:
     """One thing that may be off by ``sd``: in mm, or in the logarithm of a stiffness or force.
 
     ``source`` is one of ``SOURCES``; ``name`` that of a landmark, line or elastic; ``way`` (3,) is where a
-    landmark goes.
+    landmark goes, None for ``PLACING``.
     """
 
     source: str
     sd: float
     name: str = ""
     way: Points | None = None
+
+
+PLACING = Knob(LANDMARKS, 1.0)
+"""What placing all landmarks where they were found does by itself: so far are those unsure, too."""
 
 
 def knobs(stages: Stages, assumed: Assumed) -> tuple[Knob, ...]:
@@ -86,6 +91,15 @@ def _of_landmarks(stages: Stages, assumed: Assumed) -> Iterator[Knob]:
             yield Knob(LANDMARKS, sd, name, across)
 
 
+def beyond(design: Design) -> tuple[str, ...]:
+    """Return the keys of measures at rest and as worn whose landmarks have no knobs: how sure, nobody knows.
+
+    Waist and hip are not among them: where they lie a girth hardly changes with the height.
+    """
+    own = [f"{OWN}{own.name}" for own in design.own_measures if not set(own.marks) <= set(NAMES)]
+    return "high_bust_girth", "high_bust_girth_skin", *own
+
+
 @dataclass(frozen=True, eq=False)
 class Turned:
     """A ``design`` with knobs turned, and how much further out all skin lies [mm]."""
@@ -109,8 +123,8 @@ def turned(stages: Stages, turns: Mapping[Knob, float]) -> Turned:
         if knob.source == SCAN:
             skin += off
         elif knob.source == LANDMARKS:
-            assert knob.way is not None
-            marks[knob.name] = marks[knob.name] + off * knob.way
+            if knob.way is not None:
+                marks[knob.name] = marks[knob.name] + off * knob.way
         else:
             design = _TURNS[knob.source](design, knob, off, lines)
     for name, place in marks.items():

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.advice.knobs import Knob, turned
+from core.advice.knobs import PLACING, Knob, turned
 from core.advice.told_figures import (
     Figures,
     apart,
@@ -62,7 +62,19 @@ class Propagation:
         """Return what a knob does. Raises the UserError of a fit that fails to both sides."""
         if knob.source == SCAN:
             return self._of_scan(knob)
+        if knob is PLACING:
+            return self._of_placing()
         return self._of_landmark(knob) if knob.source == LANDMARKS else self._of_lines(knob)
+
+    def _of_placing(self) -> Effect:
+        """A fold that is placed may lead a root another way than one that is found."""
+        trials, stages = self.trials, self.stages
+        here = rested_figures(trials.rest)
+        if not trials.bare:
+            here = measured_figures(stages, trials.steps, trials.rest, self.points) | trials.figures
+        there = trials(turned(stages, {PLACING: 0.0}))
+        skin = apart(stages.body, there.places, self.places, self.normals)
+        return Effect(PLACING, _per(here, there.figures, 1.0), skin)
 
     def _of_scan(self, knob: Knob) -> Effect:
         rest, steps = self.trials.rest.subject, self.trials.steps

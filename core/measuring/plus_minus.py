@@ -23,7 +23,7 @@ FACTORS = (TISSUE, LINE, ELASTIC)
 """Sources that are known to a factor: what goes with them is off by more upwards than downwards."""
 
 FORCES = (TENSION, MEAN_KPA, MAX_KPA)
-"""Kinds of figures that go with such sources, and are never below nothing."""
+"""Kinds of figures that go with such sources; of what pulls they are never below nothing."""
 
 MOST = 3.0
 """Standard deviations of the logarithm, times those that are told, up to which a factor makes sense [1]."""
@@ -106,7 +106,8 @@ class Spread:
             return value / factor, value * factor
         if off is None:
             return None
-        return (max(value - off, 0.0) if _kind(key) in FORCES else value - off), value + off
+        pulls = _kind(key) in FORCES and value > 0.0  # a line that is too long pushes in the model
+        return (max(value - off, 0.0) if pulls else value - off), value + off
 
     def _off(self, key: str) -> float | None:
         doubt = self.doubts.get(key)
