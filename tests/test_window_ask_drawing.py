@@ -22,11 +22,16 @@ def landed(window: MainWindow) -> bool:
     return viewport.heading == viewport.view and not viewport._glide.running
 
 
-def over_the_card(window: MainWindow) -> bool:
-    """Whether all handles of the profile can be taken."""
+def room_below(window: MainWindow) -> int:
+    """Return how far the lowest handle of the profile is over the card [px]."""
     view, card = window.view, window.ask_desk.card
     low = max(handle.mapTo(view, handle.rect().bottomLeft()).y() for handle in handles(window))
-    return all(handle.isVisible() for handle in handles(window)) and low < view.floating.seen(card).top()
+    return view.floating.seen(card).top() - low
+
+
+def over_the_card(window: MainWindow) -> bool:
+    """Whether all handles of the profile can be taken."""
+    return all(handle.isVisible() for handle in handles(window)) and room_below(window) > 0
 
 
 def is_drawn_from_its_side(window: MainWindow) -> Script:
@@ -121,15 +126,17 @@ def is_taken_back_step_by_step(window: MainWindow) -> Script:
 
 def keeps_its_handles_over_the_card(window: MainWindow) -> Script:
     """Also once it has shrunk and grown again."""
-    desk = window.ask_desk
+    desk, viewport = window.ask_desk, window.view.viewport
     desk.begin()
     yield answered(window)
     for _ in range(2):
         desk.card.hand._buttons["profile"].click()
         yield answered(window)
+        viewport.look_from(viewport.view.pan(0.0, room_below(window) - 1.0, viewport.height()))
+        height = desk.card.height()
         drag(handles(window)[1], -4, -4)
         yield answered(window)
-        yield lambda: over_the_card(window)
+        yield lambda: desk.card.height() > height + 10 and over_the_card(window)
         desk.card.wishes["profile left"].remove.click()
         yield answered(window)
     desk.leave()
