@@ -180,4 +180,4 @@ class MeasuresDesk(QObject):
     def _as_table(self) -> list[list[str]]:
         # What was measured on a former body is no measure of this one.
         measured = () if self._panel.stale else self._panel.measured
-        return as_table([*measured, *self._panel.rows])
+        return as_table([*measured, *self._panel.rows], self._panel.doubt)

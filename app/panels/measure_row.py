@@ -8,7 +8,7 @@ from functools import cached_property, lru_cache
 from PySide6.QtCore import QPoint, QRect, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetrics, QPainter
 
-from app.dress.theme import font
+from app.dress.theme import faded, font
 from app.panels.measure_view import MeasureView, plus_minus
 from app.wording.tokens import Tokens
 
@@ -24,7 +24,7 @@ CELLS, BAR = (48, 54, 48), 28
 LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
 RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 _WRAPPED = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap
-_FAINT = 0.5  # of what is of a former shape
+_FAINT = 0.5  # of what is of a former shape, or of none that is a result
 _GAP = 4  # over each paragraph of an open row
 
 
@@ -119,8 +119,11 @@ def cells(width: int, top: float, height: float) -> list[QRectF]:
     return result[::-1]
 
 
-def paint_row(painter: QPainter, tokens: Tokens, spot: Spot, focused: bool) -> None:
-    """Paint a row; an opened one has a ground, and a rim if the keyboard is there."""
+def paint_row(painter: QPainter, tokens: Tokens, spot: Spot, focused: bool, doubtful: bool = False) -> None:
+    """Paint a row; an opened one has a ground, and a rim if the keyboard is there.
+
+    What is ``doubtful`` is no result: figures after and changes are pale, and no bar tells them.
+    """
     view, wide = spot.view, spot.wide
     if spot.opened:
         painter.setPen(QColor(tokens.accent) if focused else Qt.PenStyle.NoPen)
@@ -142,19 +145,20 @@ def paint_row(painter: QPainter, tokens: Tokens, spot: Spot, focused: bool) -> N
         painter.setPen(QColor(tokens.text_caption))
         painter.drawText(name.adjusted(said, 1, 0, 1), LEFT, view.unit)
     if view.known:
-        _paint_figures(painter, tokens, spot)
+        _paint_figures(painter, tokens, spot, doubtful)
     for words, role, room in spot.texts:
         painter.setFont(font(role))
         painter.setPen(QColor(tokens.text_caption if role == "caption" else tokens.text_quiet))
         painter.drawText(room, _WRAPPED, words)
 
 
-def _paint_figures(painter: QPainter, tokens: Tokens, spot: Spot) -> None:
+def _paint_figures(painter: QPainter, tokens: Tokens, spot: Spot, doubtful: bool) -> None:
     view, places = spot.view, cells(spot.width, spot.figures, ROW)
+    pale = faded(tokens.text_caption, tokens.panel, _FAINT).name() if doubtful else ""
     values = (
         (view.before, "body", tokens.text_caption, False),
-        (view.after, "name", tokens.text, False),
-        (view.change, "body", tokens.text_quiet, True),
+        (view.after, "body" if doubtful else "name", pale or tokens.text, False),
+        (view.change, "body", pale or tokens.text_quiet, True),
     )
     for cell, (value, role, color, signed) in zip(places, values, strict=False):
         painter.setFont(font(role, tabular=True))
@@ -162,7 +166,7 @@ def _paint_figures(painter: QPainter, tokens: Tokens, spot: Spot) -> None:
         painter.drawText(cell, RIGHT, view.written(value, signed))
     if view.off:
         _paint_off(painter, tokens, spot)
-    if view.change is not None:
+    if view.change is not None and not doubtful:
         _paint_bar(painter, tokens, places[-1], view.change / _full_bar(view.unit))
 
 

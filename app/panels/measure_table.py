@@ -43,7 +43,7 @@ def keys_in_words() -> list[tuple[str, str]]:
 
 
 class MeasureTable(QWidget):
-    """Measures in groups; those with a key fade while they are ``stale``.
+    """Measures in groups; those with a key fade while they are ``stale``, all after while ``doubtful``.
 
     ``marked`` carries the key of the one that a click or an arrow key goes to and that is opened, empty for
     none; ``framed`` when it is clicked twice. ``changing`` and ``removing`` carry the key of one's own.
@@ -59,7 +59,7 @@ class MeasureTable(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.rows: tuple[MeasureView, ...] = ()
-        self.stale, self.mark = False, ""
+        self.stale, self.doubtful, self.mark = False, False, ""
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self._spots: list[Spot] = []
         self._heads: list[tuple[str, str, int]] = []
@@ -75,11 +75,11 @@ class MeasureTable(QWidget):
         self.tools.setParent(self)
         self.tools.hide()
 
-    def set_rows(self, rows: Sequence[MeasureView], stale: bool = False) -> None:
-        """Show these measures."""
-        if (tuple(rows), stale) == (self.rows, self.stale):
+    def set_rows(self, rows: Sequence[MeasureView], stale: bool = False, doubtful: bool = False) -> None:
+        """Show these measures; if ``doubtful`` those after and changes are no result, and are pale."""
+        if (tuple(rows), stale, doubtful) == (self.rows, self.stale, self.doubtful):
             return
-        self.rows, self.stale = tuple(rows), stale
+        self.rows, self.stale, self.doubtful = tuple(rows), stale, doubtful
         self.setAccessibleName("; ".join(each.spoken() for each in rows))
         self._lay_out()
 
@@ -162,13 +162,14 @@ class MeasureTable(QWidget):
             painter.setFont(font("title"))
             painter.setPen(QColor(tokens.text))
             painter.drawText(line, LEFT, title)
+            said = painter.fontMetrics().horizontalAdvance(title) + 6
             painter.setFont(font("caption"))
             painter.setPen(QColor(tokens.text_caption))
-            painter.drawText(cells(self.width(), top, HEAD)[1], RIGHT, units)
+            painter.drawText(line.adjusted(said, 1, 0, 1), LEFT, units)
         for spot in self._spots:
             if event.rect().intersects(QRect(0, spot.top, self.width(), spot.height)):
                 painter.setOpacity(0.45 if self.stale and spot.view.key else 1.0)
-                paint_row(painter, tokens, spot, self.hasFocus())
+                paint_row(painter, tokens, spot, self.hasFocus(), self.doubtful)
 
     def _lay_out(self) -> None:
         """Find where headings and rows stand, and how high all of it is."""

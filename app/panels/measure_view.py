@@ -17,7 +17,8 @@ class MeasureView:
     that is known. ``key`` is that of a measure of the body, ``own`` if it is the designer's; ``group`` is
     its heading. The change of an ``exact`` one is told elsewhere too: it is the same figure everywhere.
     ``off`` is how far before, after and change may be off, ``off_faint`` if that is of a former shape;
-    ``off_told`` says from what. ``moves`` names how bust points moved, where that is the change.
+    ``off_told`` says from what, or that it is not known. ``moves`` names how bust points moved, where that
+    is the change.
     """
 
     label: str

@@ -168,7 +168,7 @@ class ResultPanel(QStackedWidget):
 
     def _show(self) -> None:
         there = self._table.place_of(self.mark)
-        self._table.set_rows([*self._measured, *self._live], self._stale)
+        self._table.set_rows([*self._measured, *self._live], self._stale, bool(self.doubt))
         if self.mark and there.isNull():  # one's own that was added has come
             self._scroll.start()
 

@@ -57,8 +57,8 @@ def _measured(row: dict[str, Any], told: Mapping[str, str]) -> MeasureView:
     )
 
 
-def as_table(views: Sequence[MeasureView]) -> list[list[str]]:
-    """Return the table as plain cells, with a heading."""
+def as_table(views: Sequence[MeasureView], doubt: str = "") -> list[list[str]]:
+    """Return the table as plain cells, with a heading; each row notes the ``doubt`` why it is no result."""
     heading = [
         tr("Measure"),
         tr("Counted from"),
@@ -74,7 +74,7 @@ def as_table(views: Sequence[MeasureView]) -> list[list[str]]:
             view.reference or view.tip,
             view.unit,
             *("" if each is None else f"{each:.1f}" for each in (view.before, view.after, view.change_at(1))),
-            "" if view.caption == view.reference else view.caption,
+            "; ".join(filter(None, ("" if view.caption == view.reference else view.caption, doubt))),
         ]
         for view in views
     ]

@@ -55,7 +55,8 @@ def _with_off(view: MeasureView, spread: Spread, faint: bool) -> MeasureView:
         for off, value in zip(offs, (view.before, view.after, view.change), strict=True)
     )
     if not any(each is not None for each in told):
-        return view
+        followed = not view.key and spread.whole
+        return replace(view, off_told=(_without_off(),)) if followed else view
     return replace(view, off=told, off_faint=faint, off_told=_shares(keys, told, spread, view.unit))
 
 
@@ -63,6 +64,11 @@ def _keys(view: MeasureView) -> tuple[str | None, str | None, str | None]:
     if view.key:
         return f"{BEFORE}:{view.key}", f"{AFTER}:{view.key}", f"{CHANGE}:{view.key}"
     return None, None, view.moves or None
+
+
+def _without_off() -> str:
+    """Return why the figures that come with every frame have no ±: for most none is worked out."""
+    return tr("Of what is followed while it solves, lengths of lines too, only the bust points have a ±.")
 
 
 def _shares(
@@ -93,7 +99,9 @@ def spread_view(spread: Spread | None, waiting: str, faint: bool) -> SpreadView:
         more = tr("Landmarks are still being added: these are too small.")
         return SpreadView(joined([meaning, more]), faint=faint, short=tr("± is still growing: why"))
     told = tr("± of a former shape: what it means") if faint else tr("± holds 95 % of cases: what it means")
-    return SpreadView(joined([meaning, *map(say, spread.cautions)]), _contact(spread), faint, told)
+    return SpreadView(
+        joined([meaning, _without_off(), *map(say, spread.cautions)]), _contact(spread), faint, told
+    )
 
 
 def _contact(spread: Spread) -> str:
