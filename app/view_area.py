@@ -197,9 +197,9 @@ class ViewArea(QWidget):
     def place(self, panel: QWidget, corner: str, explains: bool = False) -> None:
         """Let a panel float in one of ``app.showing.floating.CORNERS``, over what is there already.
 
-        One that ``explains`` what is seen belongs to a picture of it.
+        One that ``explains`` what is seen belongs to a picture of it, and yields to all others.
         """
-        self.floating.place(panel, corner)
+        self.floating.place(panel, corner, yields=explains)
         if explains:
             self._explaining.append(panel)
 

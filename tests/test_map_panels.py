@@ -8,7 +8,8 @@ from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from app.panels.legend import BAR, Legend
+from app.panels.legend import Legend
+from app.panels.legend_bar import BAR
 from app.panels.profile import STEPS, ProfilePanel
 from app.panels.typed_field import read_figure
 from app.presenting.bust import BustMove, BustStep
@@ -43,6 +44,19 @@ def test_figures_are_read_with_sign_unit_and_full_width_digits() -> None:
         None,
         None,
     ]
+
+
+def test_where_there_is_little_room_the_legend_still_says_what_the_sign_means(legend: Legend) -> None:
+    legend.set_size("small")
+    assert not legend._note.isHidden()
+    assert legend._note.text() == "+ outward  − inward"
+    legend.show_map("strain")
+    assert legend._note.isHidden()
+    assert "of the control mesh" in legend.title.toolTip()
+    legend.set_size("folded")
+    legend.show_map("sides")
+    assert (legend._note.isHidden(), legend.bar.isHidden()) == (True, True)
+    assert legend.title.toolTip().endswith("+ stands out more than the other side")
 
 
 def test_a_typed_end_sets_both_ends_where_values_go_both_ways(legend: Legend) -> None:

@@ -11,7 +11,8 @@ from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QApplication
 
 from app.dress.theme import tokens_of
-from app.panels.legend import BAR, Legend
+from app.panels.legend import Legend
+from app.panels.legend_bar import BAR
 from app.panels.pressure_card import PressureCard
 from app.presenting.maps import map_kinds, ramp_of
 from app.presenting.pressure import light_limits, pressure_summary, pressure_views, side_words

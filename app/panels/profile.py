@@ -25,6 +25,9 @@ STEPS = 2
 NARROW, WIDE = 196, 244
 """Least and largest width of the plot, which leaves the body the rest of the view [px]."""
 
+SPACING = 4
+"""Between the parts of the panel [px]."""
+
 _SHARE = 0.26  # of the view's width that the plot takes between these
 _FLAT = 0.78  # its height by its width
 _ROOMY = 224  # a narrower panel leaves the axis' letter to the slider
@@ -54,7 +57,7 @@ class ProfilePanel(FloatingPanel):
         }
         column = QVBoxLayout()
         column.setContentsMargins(6, 2, 2, 4)
-        column.setSpacing(4)
+        column.setSpacing(SPACING)
         column.addLayout(self._head())
         self.plot = ProfilePlot()
         self.plot.setAccessibleName(tr("Curves of the section in millimetres"))
@@ -67,8 +70,9 @@ class ProfilePanel(FloatingPanel):
         self.readout.setWordWrap(True)
         column.addWidget(self.readout)
         self.row.addLayout(column)
-        self.set_folded(wish("section_folded") == "yes")
+        self._by_hand, self._cramped = wish("section_folded") == "yes", False
         self._fit(WIDE)
+        self._show_fold()
         if parent is not None:
             parent.installEventFilter(self)
 
@@ -79,10 +83,28 @@ class ProfilePanel(FloatingPanel):
 
     def set_folded(self, folded: bool) -> None:
         """Hide or show the curves."""
+        self._by_hand = folded
+        self._show_fold()
+
+    def set_room(self, high: int) -> None:
+        """Hide the curves as long as there is no more room than so high for the visible part [px]."""
+        shadow = self.MARGINS[1] + self.MARGINS[3]
+        full = self.sizeHint().height() - shadow
+        if self.is_folded:
+            full += self.plot.height() + self.keys.height() + self.readout.heightForWidth(self.plot.width())
+            full += 3 * SPACING
+        if self._cramped != (full > high):
+            self._cramped = full > high
+            self._show_fold()
+
+    def _show_fold(self) -> None:
+        folded = self._by_hand or self._cramped
         for part in (self.plot, self.keys, self.readout):
             part.setVisible(not folded)
         self.fold.show_icon("caret-up" if folded else "caret-down")
-        self.fold.setAccessibleName(tr("Show the curves") if folded else tr("Fold the curves away"))
+        self.fold.setEnabled(not self._cramped)
+        said = tr("Show the curves") if folded else tr("Fold the curves away")
+        self.fold.setAccessibleName(tr("No room for the curves here") if self._cramped else said)
         self.fold.setToolTip(self.fold.accessibleName())
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
@@ -138,8 +160,8 @@ class ProfilePanel(FloatingPanel):
         return head
 
     def _turn_fold(self) -> None:
-        self.set_folded(not self.is_folded)
-        wish_for("section_folded", "yes" if self.is_folded else "no")
+        self.set_folded(not self._by_hand)
+        wish_for("section_folded", "yes" if self._by_hand else "no")
 
     def show_plane(self, axis: str, at: float, low: float, high: float) -> None:
         """Show which plane it is, where [mm], and how far it can go; nothing is emitted."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, QMargins, QObject, QPoint, QRect
+from PySide6.QtCore import QEvent, QMargins, QObject, QPoint, QRect, Signal
 from PySide6.QtWidgets import QWidget
 
 from app.dress.parts import FloatingPanel
@@ -21,17 +21,25 @@ class Floating(QObject):
     """Keeps panels in their corners of ``view`` while it, or what they hold, changes its size.
 
     What stands in the middle keeps its place: a panel of a corner that would lie on it moves up or down.
+    A panel that ``yields`` gets its place after all others. ``rearranged``: one of those others came, went,
+    grew or moved.
     """
+
+    rearranged = Signal()
 
     def __init__(self, view: QWidget) -> None:
         super().__init__(view)
         self._view = view
+        self._yielding: set[QWidget] = set()
+        self._firm: list[QRect] = []
         self._piles: dict[str, list[QWidget]] = {corner: [] for corner in CORNERS}
         view.installEventFilter(self)
 
-    def place(self, panel: QWidget, corner: str) -> None:
+    def place(self, panel: QWidget, corner: str, yields: bool = False) -> None:
         """Keep ``panel`` in one of ``CORNERS`` from now on; raises KeyError for another word."""
         pile = self._piles[corner]
+        if yields:
+            self._yielding.add(panel)
         if panel.parentWidget() is not self._view:
             panel.setParent(self._view)
         pile.append(panel)
@@ -70,15 +78,45 @@ class Floating(QObject):
 
     def settle(self) -> None:
         """Put all panels in their places."""
-        for edge in ("bottom", "top"):
-            taken: list[QRect] = []
-            for corner in CORNERS:
-                for panel in self._piles[corner] if corner.startswith(edge) else ():
-                    if not panel.isHidden():
-                        panel.adjustSize()
-                        room = _cleared(self._room(panel, corner), taken, edge == "bottom")
-                        taken.append(room)
-                        panel.move(room.topLeft() - QPoint(_shadow(panel).left(), _shadow(panel).top()))
+        taken: dict[bool, list[QRect]] = {True: [], False: []}
+        self._put(self._shown(yields=False), taken)
+        firm = [*taken[True], *taken[False]]
+        self._put(self._shown(yields=True), taken)
+        if firm != self._firm:
+            self._firm = firm
+            self.rearranged.emit()
+
+    def _put(self, panels: list[tuple[str, QWidget]], taken: dict[bool, list[QRect]]) -> None:
+        """Put panels in their corners, off what is ``taken`` at the lower edge (True) and at the upper."""
+        for corner, panel in panels:
+            low = corner.startswith("bottom")
+            panel.adjustSize()
+            room = _cleared(self._room(panel, corner), taken[low], low)
+            taken[low].append(room)
+            panel.move(room.topLeft() - QPoint(_shadow(panel).left(), _shadow(panel).top()))
+
+    def clashes(self, panel: QWidget) -> int:
+        """Return how many others ``panel`` lies on, and one more if it reaches out of the view."""
+        room = self.seen(panel)
+        shown = [each for yields in (False, True) for _, each in self._shown(yields) if each is not panel]
+        over = sum(room.intersects(self.seen(each)) for each in shown)
+        return over + (not self._view.rect().contains(room))
+
+    def headroom(self, panel: QWidget) -> int:
+        """Return how high the visible part of a panel of the lower edge may be where it stands [px]."""
+        room = self.seen(panel)
+        above = [self.seen(each) for corner, each in self._shown(yields=False) if corner.startswith("top")]
+        low = [
+            each.bottom() + APART
+            for each in above
+            if room.left() <= each.right() and each.left() <= room.right()
+        ]
+        return room.bottom() - max([GAP - 1, *low])
+
+    def _shown(self, yields: bool) -> list[tuple[str, QWidget]]:
+        """Return the panels that are not hidden with their corners, in the order they get their places."""
+        both = [(corner, panel) for corner in CORNERS for panel in self._piles[corner]]
+        return [each for each in both if not each[1].isHidden() and (each[1] in self._yielding) == yields]
 
     def _room(self, panel: QWidget, corner: str) -> QRect:
         """Return where the visible part of a panel belongs, if nothing else is there."""

@@ -1,4 +1,4 @@
-"""Where the legend of a map floats: where it covers no band, label or flag, if there is such a place."""
+"""Where the legend of a map floats: on no other panel, and where it covers no band, label or flag."""
 
 # ruff: noqa: N802 - Qt names its events
 from __future__ import annotations
@@ -7,7 +7,7 @@ import numpy as np
 from PySide6.QtCore import QEvent, QObject, QPointF, QRect, QRectF, QTimer
 from PySide6.QtWidgets import QApplication
 
-from app.panels.legend import Legend
+from app.panels.legend import SIZES, Legend
 from app.showing.value_flags import ValueFlags
 from app.view_area import ViewArea
 from core.mesh import Floats
@@ -21,7 +21,10 @@ _AIR = 6  # least distance from what it must not cover [px]
 
 
 class LegendPlace(QObject):
-    """Moves a legend once what is seen rests; it stays where it covers nothing, and else becomes smaller."""
+    """Moves a legend once what is seen rests; it stays where it covers nothing, and else becomes smaller.
+
+    It folds where even the smaller one would lie on another panel or reach out of the view.
+    """
 
     def __init__(self, view: ViewArea, legend: Legend, flags: ValueFlags) -> None:
         super().__init__(legend)
@@ -30,6 +33,7 @@ class LegendPlace(QObject):
         self._clock.timeout.connect(self.choose)
         view.viewport.view_changed.connect(self.consider)
         view.compared.connect(self.consider)
+        view.floating.rearranged.connect(self.consider)
         view.installEventFilter(self)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
@@ -44,25 +48,41 @@ class LegendPlace(QObject):
             self._clock.start()
 
     def choose(self) -> None:
-        """Go to the first place where it covers nothing, else, smaller, to where it covers least."""
+        """Stay where it covers nothing, else go to the first such place, else to where it covers least.
+
+        Between places that all cover something it stays, unless another covers a quarter less.
+        """
         if self._legend.isHidden():
             return
         if QApplication.mouseButtons().value:  # it must not go from under the pointer
             self._clock.start()
             return
-        floating = self._view.floating
-        here = floating.corner_of(self._legend)
+        size, here = self._legend.size_taken(), self._view.floating.corner_of(self._legend)
         order = sorted(CORNERS, key=lambda corner: corner != here)
         places, words = self._places(), self._words()
-        covered = {}
-        for small in (False, True):
-            self._legend.set_small(small)
-            for corner in order:
-                floating.move(self._legend, corner)
-                covered[corner] = _covered(floating.seen(self._legend), places, words)
-                if not covered[corner]:
-                    return
-        floating.move(self._legend, min(order, key=covered.__getitem__))
+        full, small, folded = ([(each, corner) for corner in order] for each in SIZES)
+        first = [full[0], (size, here)] if size != SIZES[-1] else []
+        costs: dict[tuple[str, str], tuple[int, int]] = {}
+        for spot in dict.fromkeys((*first, *full, *small)):
+            costs[spot] = self._cost(*spot, places, words)
+            if costs[spot] == (0, 0):
+                return
+        free = [spot for spot in small if not costs[spot][0]]
+        if not free:
+            free, costs = folded, {spot: self._cost(*spot, places, words) for spot in folded}
+        best, stays = min(free, key=costs.__getitem__), free[0]
+        (clashes, covered), (fewest, least) = costs[stays], costs[best]
+        self._go(*(best if clashes > fewest or 0.75 * covered > least else stays))
+
+    def _go(self, size: str, corner: str) -> None:
+        self._legend.set_size(size)
+        self._view.floating.move(self._legend, corner)
+
+    def _cost(self, size: str, corner: str, places: Floats, words: list[QRectF]) -> tuple[int, int]:
+        """Return how many panels the legend lies on there, and how much else it covers; it stays there."""
+        self._go(size, corner)
+        room = self._view.floating.seen(self._legend)
+        return self._view.floating.clashes(self._legend), _covered(room, places, words)
 
     def _places(self) -> Floats:
         """Return places along all bands that are seen, shape (k, 2) [px of the view]."""

@@ -69,6 +69,11 @@ class SectionDesk(QObject):
         panel.export_asked.connect(self.export)
         panel.closed.connect(lambda: self.set_on(False))
         panel.plot.pointed.connect(self._point)
+        self._view.floating.rearranged.connect(self._give_room)
+
+    def _give_room(self) -> None:
+        if not self.panel.isHidden():
+            self.panel.set_room(self._view.floating.headroom(self.panel))
 
     # -- what is asked
 
