@@ -7,16 +7,16 @@ from core.mesh import Points
 from core.pipeline import Stages, read_body
 from core.progress import Progress, quiet
 from core.worn_scan.aligning import Alignment, align
-from core.worn_scan.calibrating import Found, calibrate, refuse_bare
-from core.worn_scan.comparing import THICKEST, Difference, Figures, Worn, compare, laid_on
+from core.worn_scan.calibrating import CalibrationResult, calibrate, refuse_bare
+from core.worn_scan.comparing import THICKEST, Difference, Figures, Worn, compare, laid_on, refuse_mirrored
 from core.worn_scan.fit import exact_answer
 
 __all__ = [
     "THICKEST",
     "Alignment",
+    "CalibrationResult",
     "Difference",
     "Figures",
-    "Found",
     "Worn",
     "calibrate",
     "compare",
@@ -35,7 +35,9 @@ def read_worn(stages: Stages, source: ScanSource, progress: Progress = quiet) ->
     """
     scan, body = read_body(source, lambda what, share: progress(what, _READ * share))
     alignment = align(stages, body, lambda what, share: progress(what, _READ + (1.0 - _READ) * share))
-    return laid_on(scan.name, body, alignment)
+    worn = laid_on(scan.name, body, alignment)
+    refuse_mirrored(stages, worn)
+    return worn
 
 
 def predicted(stages: Stages) -> Points:

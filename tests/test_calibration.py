@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from app.presenting.worn import better_words
 from benchmarks.worn_pairs import scanned, worn_mesh, written
-from core.calibration import Found, Worn, calibrate, read_worn
+from core.calibration import CalibrationResult, Worn, calibrate, read_worn
 from core.design import Design, ScanSource
 from core.design_calibration import Calibration, FoundNumber
 from core.design_text import from_json, to_json
@@ -19,7 +20,9 @@ from core.errors import ProjectError, UserError
 from core.pipeline import Stages, build
 from core.progress import Cancelled
 from core.project import open_project
+from core.worn_scan.aligning import align
 from core.worn_scan.fit import exact_answer
+from core.worn_scan.gap import WornSkin
 from core.worn_scan.least_squares import Normal
 from core.worn_scan.numbers import MOST, Number, candidates, precision_before, rates_by
 from core.worn_scan.telling import not_told
@@ -76,11 +79,13 @@ def pair(tmp_path_factory: pytest.TempPathFactory) -> tuple[Stages, Worn, Design
 
 
 @pytest.fixture(scope="module")
-def found(pair: tuple[Stages, Worn, Design]) -> Found:
+def found(pair: tuple[Stages, Worn, Design]) -> CalibrationResult:
     return calibrate(*pair[:2])
 
 
-def test_the_numbers_of_a_made_pair_are_found(pair: tuple[Stages, Worn, Design], found: Found) -> None:
+def test_the_numbers_of_a_made_pair_are_found(
+    pair: tuple[Stages, Worn, Design], found: CalibrationResult
+) -> None:
     _, _, truth = pair
     assert found.helped
     assert found.after.all_of_it.rms < 0.35 < found.before.all_of_it.rms
@@ -92,7 +97,7 @@ def test_the_numbers_of_a_made_pair_are_found(pair: tuple[Stages, Worn, Design],
 
 
 def test_lines_of_one_roll_share_a_stiffness_that_is_told_better(
-    pair: tuple[Stages, Worn, Design], found: Found
+    pair: tuple[Stages, Worn, Design], found: CalibrationResult
 ) -> None:
     one = calibrate(*pair[:2], one_roll=True)
     told = {number.name: number for number in one.calibration.numbers}
@@ -103,7 +108,7 @@ def test_lines_of_one_roll_share_a_stiffness_that_is_told_better(
     assert told["line_stiffness"].after == pytest.approx(pair[2].line_stiffness, rel=2.0 * share)
 
 
-def test_the_design_has_the_numbers_and_a_record(found: Found) -> None:
+def test_the_design_has_the_numbers_and_a_record(found: CalibrationResult) -> None:
     kept = found.design.calibration
     assert kept is not None
     assert kept.worn == "worn.ply"
@@ -115,7 +120,7 @@ def test_the_design_has_the_numbers_and_a_record(found: Found) -> None:
 
 
 def test_what_was_found_is_found_again_and_helps_no_more(
-    pair: tuple[Stages, Worn, Design], found: Found
+    pair: tuple[Stages, Worn, Design], found: CalibrationResult
 ) -> None:
     stages = build(found.design, pair[0])
     again = calibrate(stages, pair[1])
@@ -138,6 +143,16 @@ def test_without_a_line_that_moves_the_body_nothing_is_found(pair: tuple[Stages,
     bare = build(replace(pair[0].design, lines=()), pair[0])
     with pytest.raises(UserError, match="No line that moves the body is worn"):
         calibrate(bare, pair[1])
+
+
+def test_the_scan_without_the_garment_tells_nothing_of_its_lines(pair: tuple[Stages, Worn, Design]) -> None:
+    stages = pair[0]
+    worn = Worn("bare.ply", stages.body, align(stages, stages.body), WornSkin(stages.body.mesh), {}, {})
+    found = calibrate(stages, worn)
+    assert found.after.all_of_it.rms < 0.5 * found.before.all_of_it.rms, "it fits, by numbers of no line"
+    assert found.at_end
+    assert not found.helped
+    assert better_words(found, stages.design).startswith("Not found: ")
 
 
 def test_a_calibration_is_cancelled(pair: tuple[Stages, Worn, Design]) -> None:

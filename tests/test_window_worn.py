@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,13 +13,15 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QScrollArea
 from window_tools import Script, run_main, settled, undrawn
 
+import app.keeping.worn_desk
 from app.main_window import MainWindow
 from app.presenting.worn import bust_words, number_title
 from app.wording.samples import sample_design
 from app.wording.words import speaking
 from benchmarks.worn_pairs import scanned, worn_mesh, written
-from core.calibration import Difference, Figures
+from core.calibration import Difference, Figures, calibrate, compare
 from core.document import Document
+from core.errors import UserError
 from core.own_lines import ready_made
 from core.pipeline import build
 from core.project import open_project, save_project
@@ -155,3 +158,55 @@ def test_a_number_that_linked_lines_share_is_called_as_their_row() -> None:
     assert number_title("stiffness of mid-bust", linked) == "Stiffness of Mid-bust"
     with speaking("ja"):
         assert "左" not in number_title("stiffness of strap left", linked)
+
+
+def test_what_is_begun_with_another_thickness_is_never_shown(
+    pair: tuple[str, str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    project, scan, _ = pair
+    gate = threading.Event()
+
+    def held_up(*args: object, **told: object) -> object:
+        gate.wait(30.0)
+        return compare(*args, **told)
+
+    def failing(*args: object, **told: object) -> object:
+        gate.wait(30.0)
+        if told["thickness"] == 2.0:
+            raise UserError("The worn scan shows too little.", "Scan the front too.")
+        return calibrate(*args, **told)
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        desk, page = window.worn_desk, window.worn_desk.page
+        desk.show_page()
+        gate.set()
+        desk.read(scan)
+        yield lambda: bool(page.view.rows) and not page.view.faint
+        gate.clear()
+        page.thickness.entered.emit(8.0)
+        page.thickness.entered.emit(2.0)  # while it is compared with the first
+        gate.set()
+        yield lambda: bool(page.view.rows) and not page.view.faint
+        assert 1.0 < float(page.view.rows[0].mean) < 3.0, "not that of 8 mm"
+        gate.clear()
+        page.calibrate.click()
+        gate.set()
+        yield lambda: "too little" in said(window)
+        assert page.calibrate.isEnabled(), "it can be tried again"
+        gate.clear()
+        page.thickness.entered.emit(0.0)
+        gate.set()
+        yield lambda: page.view.ready
+        gate.clear()
+        page.calibrate.click()
+        page.thickness.entered.emit(1.0)  # while numbers are sought for none
+        gate.set()
+        yield lambda: not window.jobs._threads and page.view.ready
+        assert page.view.numbers == ()
+        window.session.undo_stack.setClean()
+
+    monkeypatch.setattr(app.keeping.worn_desk, "compare", held_up)
+    monkeypatch.setattr(app.keeping.worn_desk, "calibrate", failing)
+    assert run_main([project], script) == 0

@@ -13,13 +13,14 @@ from benchmarks.worn_pairs import only, other_mesh, scanned, worn_mesh
 from core.body import Body
 from core.calibration import compare, predicted
 from core.errors import ScanError
-from core.mesh import Mesh
+from core.mesh import MIRROR, Mesh
+from core.moving import moving_faces
 from core.pipeline import Stages, build
 from core.project import open_project
 from core.standing.upright import Pose
 from core.worn_scan import feet
 from core.worn_scan.aligning import align, turned
-from core.worn_scan.comparing import Worn, laid_on
+from core.worn_scan.comparing import Worn, laid_on, refuse_mirrored
 from core.worn_scan.feet import Ground
 from core.worn_scan.gap import WornSkin, curvature
 from core.worn_scan.least_squares import Beforehand, cost, normal, spread_of
@@ -206,6 +207,23 @@ def test_another_person_another_size_and_too_little_are_refused(stages: Stages) 
     front = only(mesh, mesh.vertices[:, 1] < stages.control.mesh.vertices[:, 1].min() + 60.0)
     with pytest.raises(ScanError, match=r"shows \d+ % of the skin that no line moves"):
         align(stages, as_body(front))
+
+
+def test_a_mirror_image_is_refused_where_left_and_right_differ(stages: Stages) -> None:
+    mesh, moving = stages.body.mesh, stages.moving.vertices[: stages.moving.count]
+    places, left = mesh.vertices.copy(), moving[mesh.vertices[moving, 0] > stages.moving.middle]
+    places[left, 1] -= 12.0 * stages.patch.fade[left]  # one breast stands out more
+    uneven = mesh.moved(places)
+    first = replace(stages, moving=moving_faces(uneven, stages.binding.moving, stages.moving.middle))
+    flipped = Mesh(places * MIRROR, mesh.faces[:, ::-1])
+    for there, fits in ((uneven, True), (flipped, False)):
+        body = as_body(there)
+        worn = laid_on("worn.ply", body, align(stages, body))
+        if fits:
+            refuse_mirrored(first, worn)
+        else:
+            with pytest.raises(ScanError, match="mirror image"):
+                refuse_mirrored(first, worn)
 
 
 def test_arms_held_otherwise_matter_little(stages: Stages) -> None:

@@ -11,7 +11,16 @@ import numpy as np
 
 from app.commands.settings import dressed, made_of
 from core import __version__
-from core.calibration import THICKEST, Difference, Figures, Found, Worn, calibrate, read_worn, refuse_bare
+from core.calibration import (
+    THICKEST,
+    CalibrationResult,
+    Difference,
+    Figures,
+    Worn,
+    calibrate,
+    read_worn,
+    refuse_bare,
+)
 from core.design import Design, ScanSource
 from core.design_calibration import WELL, FoundNumber
 from core.document import Document
@@ -44,7 +53,7 @@ class Calibrated:
 
     stages: Stages
     worn: Worn
-    found: Found
+    found: CalibrationResult
     out: str
 
 
@@ -108,13 +117,18 @@ def _plain(done: Calibrated) -> Iterator[str]:
             yield stays(number, found.confused.get(number.name, ""), design)
     yield "± is 95 % of what noise of the scans makes; another posture or breath is not in it."
     yield "The numbers hold for this person and this garment."
-    if not found.helped:
+    for name in found.at_end:
+        yield (
+            f"{spoken(name)} went to the end of what may be: is this the scan with the garment on, "
+            "and are these its lines?"
+        )
+    if not found.helped and not found.at_end:
         yield "It did not help: no number moved by more than its ±, or the prediction came no nearer."
     if done.out:
         yield f"written to {done.out}"
 
 
-def told(found: Found) -> str:
+def told(found: CalibrationResult) -> str:
     """Return how many of the numbers that were found are told well."""
     sought = [number for number in found.calibration.numbers if not number.kept]
     well = sum(number.told for number in sought)
@@ -199,6 +213,7 @@ def _figures(done: Calibrated) -> dict[str, Any]:
         "singular_values": list(found.singular),
         "thickness_mm": found.calibration.thickness,
         "helped": found.helped,
+        "at_end": list(found.at_end),
         "written_to": done.out or None,
         "versions": {"busk": __version__},
     }

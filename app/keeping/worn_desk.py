@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from PySide6.QtCore import QObject, Signal
@@ -15,7 +14,7 @@ from app.panels.worn_page import WornPage, WornView
 from app.presenting import worn as words
 from app.wording.words import tr
 from core.body import Body
-from core.calibration import Difference, Found, Worn, calibrate, compare, read_worn
+from core.calibration import CalibrationResult, Difference, Worn, calibrate, compare, read_worn
 from core.design import Design, ScanSource
 from core.live import Frame
 from core.mesh import Floats
@@ -44,10 +43,10 @@ class WornDesk(QObject):
         self.door = Door(tr("Compare with a worn scan"))
         panel.doors.addWidget(self.door)
         self.worn: Worn | None = None
-        self._of: Body | None = None
+        self._of: Body | None = None  # the body that a scan was chosen for
         self._path, self._unit, self._thickness = "", "", 0.0
         self._difference: tuple[Frame, Difference] | None = None
-        self._found: tuple[Design, Found] | None = None
+        self._found: tuple[Design, CalibrationResult] | None = None
         self._reading: Job | None = None
         self._comparing: tuple[Job, Frame] | None = None
         self._fitting: tuple[Job, Design] | None = None
@@ -93,13 +92,13 @@ class WornDesk(QObject):
         if frame is None:
             return
         self._window.jobs.cancel(self._reading)
-        self._path = path
+        self._path, self._of = path, frame.stages.body
         self._window.notices.withdraw(_REFUSED)
         source = ScanSource(path, unit=self._unit or None)
         self._reading = self._window.jobs.run(
             tr("Reading the worn scan"),
             lambda progress: read_worn(frame.stages, source, progress),
-            lambda worn: self._take(cast(Worn, worn), frame.stages.body),
+            lambda worn: self._take(cast(Worn, worn)),
             lambda error: self._window.desk.show_failure(error, _REFUSED),
             waited=True,
         )
@@ -113,21 +112,26 @@ class WornDesk(QObject):
         job = self._window.jobs.run(
             tr("Calibrating"),
             lambda progress: calibrate(frame.stages, worn, thickness=thickness, progress=progress),
-            lambda found: self._take_found(design, cast(Found, found)),
-            self._window.desk.show_failure,
+            lambda found: self._take_found(design, cast(CalibrationResult, found)),
+            self._fail_to_fit,
             waited=True,
             left=self.follow,
         )
         self._fitting = job, design
         self.follow()
 
+    def _fail_to_fit(self, error: Exception) -> None:
+        self._fitting = None
+        self._window.desk.show_failure(error)
+        self.follow()
+
     def apply(self) -> None:
         """Give the design the numbers that were found, as one undo step."""
         if self._found is None or self._found[0] is not self._window.session.design:
             return
-        after, self._found = self._found[1].design, None
-        said = tr("Calibrated on {file}").format(file=Path(self._path).name)
-        self._window.session.edit(lambda _: after, said)
+        found, self._found = self._found[1], None
+        said = tr("Calibrated on {file}").format(file=found.calibration.worn)
+        self._window.session.edit(lambda _: found.design, said)
 
     def _tell_unit(self, unit: str) -> None:
         self._unit = unit
@@ -135,7 +139,8 @@ class WornDesk(QObject):
             self.read(self._path)
 
     def _thicken(self, mm: float) -> None:
-        self._thickness, self._difference, self._found = mm, None, None
+        self._thickness = mm
+        self._begin_anew()
         self.page.thickness.show_value(mm)
         self.follow()
 
@@ -171,13 +176,18 @@ class WornDesk(QObject):
         )
         self._comparing = job, frame
 
-    def _take(self, worn: Worn, of: Body) -> None:
-        self._reading = None
-        frame = self._window.session.frame
-        if frame is None or frame.stages.body is not of:
-            return  # another body is shown by now
-        self.worn, self._of, self._difference, self._found = worn, of, None, None
+    def _take(self, worn: Worn) -> None:
+        self._reading, self.worn = None, worn
+        self._begin_anew()
         self.follow()
+
+    def _begin_anew(self) -> None:
+        """Let go of all that was found, or is being looked for, with another scan or thickness."""
+        for begun in (self._comparing, self._fitting):
+            if begun is not None:
+                self._window.jobs.cancel(begun[0])
+        self._comparing = self._fitting = self._difference = self._found = None
+        self.compared.emit()
 
     def _take_difference(self, frame: Frame, found: Difference) -> None:
         self._comparing = None
@@ -185,7 +195,7 @@ class WornDesk(QObject):
         self.follow()
         self.compared.emit()
 
-    def _take_found(self, design: Design, found: Found) -> None:
+    def _take_found(self, design: Design, found: CalibrationResult) -> None:
         self._fitting = None
         if design is self._window.session.design:
             self._found = design, found
@@ -207,11 +217,12 @@ class WornDesk(QObject):
 
     def _let_go(self, frame: Frame, design: Design) -> None:
         if self._of is not None and frame.stages.body is not self._of:
-            self.worn = self._of = self._difference = None
+            self._window.jobs.cancel(self._reading)
+            self._reading = self.worn = self._of = None
             self._path = ""
             if self._window.map_desk.name == MAP:
                 self._window.map_desk.choose("")  # of a body that is gone
-            self.compared.emit()
+            self._begin_anew()
         if self._found is not None and self._found[0] is not design:
             self._found = None
         if self._fitting is not None and self._fitting[1] is not design:
@@ -229,7 +240,7 @@ class WornDesk(QObject):
             numbers=words.number_rows(found, design) if found else (),
             surely=words.surely_words(found, design) if found else "",
             kept=words.kept_words(found, design) if found else "",
-            better=words.better_words(found) if found else "",
+            better=words.better_words(found, design) if found else "",
             record=words.record_words(design.calibration),
             faint=faint,
             ready=bool(worn) and self._window.is_settled() and not at_work and not faint,

@@ -9,7 +9,7 @@ import numpy as np
 from app.panels.worn_page import FigureRow, NumberRow
 from app.presenting.lines import told_title
 from app.wording.words import joined, listed, number, tr
-from core.calibration import Difference, Figures, Found, Worn
+from core.calibration import CalibrationResult, Difference, Figures, Worn
 from core.design import Design
 from core.design_calibration import WELL, Calibration, FoundNumber
 from core.mesh import Floats
@@ -89,7 +89,7 @@ def shown_words(difference: Difference) -> str:
     return "" if share > 0.9 else said
 
 
-def number_rows(found: Found, design: Design) -> tuple[NumberRow, ...]:
+def number_rows(found: CalibrationResult, design: Design) -> tuple[NumberRow, ...]:
     """Return the numbers that were found, in rows."""
     return tuple(
         NumberRow(
@@ -104,7 +104,7 @@ def number_rows(found: Found, design: Design) -> tuple[NumberRow, ...]:
     )
 
 
-def surely_words(found: Found, design: Design) -> str:
+def surely_words(found: CalibrationResult, design: Design) -> str:
     """Return which of the numbers that were found are told well, and which are not."""
     sought = [each for each in found.calibration.numbers if not each.kept]
     well, weak = (
@@ -118,7 +118,7 @@ def surely_words(found: Found, design: Design) -> str:
     return joined([first, tr("Told weakly, as ± says: {numbers}.").format(numbers=weak)])
 
 
-def kept_words(found: Found, design: Design) -> str:
+def kept_words(found: CalibrationResult, design: Design) -> str:
     """Return which numbers stay as they are, since the scans do not tell them."""
     names = [number_title(each.name, design) for each in found.calibration.numbers if each.kept]
     return tr("As they were, since these scans do not tell them: {numbers}.").format(
@@ -150,8 +150,14 @@ def value_words(of: FoundNumber, value: float) -> str:
     return number(value, 3 if of.name == FIRM_CHEST else 1)
 
 
-def better_words(found: Found) -> str:
-    """Return by how much the prediction comes nearer to the worn scan."""
+def better_words(found: CalibrationResult, design: Design) -> str:
+    """Return by how much the prediction comes nearer to the worn scan, or why that counts for nothing."""
+    if found.at_end:
+        names = listed([number_title(name, design) for name in found.at_end])
+        return tr(
+            "Not found: {numbers} went to the end of what may be. Is this the scan with the garment on, and "
+            "are these its lines?"
+        ).format(numbers=names)
     before, after = (number(each.all_of_it.rms, 1) for each in (found.before, found.after))
     if not found.helped:
         return tr("No number moved by more than its ±: it stays at {before} mm.").format(before=before)

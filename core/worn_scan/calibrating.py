@@ -32,13 +32,14 @@ SURE = 2.0
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class CalibrationResult:
     """What was found: ``design`` with its numbers and record, compared ``before`` and ``after``.
 
     ``points`` (n, 3) [mm] are the control points that it predicts; ``met`` points of the worn scan were on
     the moving skin. ``confused`` tells for numbers that stayed what they cannot be told from. ``singular``
     are the singular values of the slopes in units of what is known before: below 1 that tells more of a
-    combination of numbers than the scans. ``solves`` exact answers were needed.
+    combination of numbers than the scans. ``solves`` exact answers were needed. ``at_end`` names numbers that
+    went as far as they may: what the scan shows is not what these lines do.
     """
 
     design: Design
@@ -49,6 +50,7 @@ class Found:
     met: int
     singular: tuple[float, ...]
     solves: int
+    at_end: tuple[str, ...] = ()
 
     @property
     def calibration(self) -> Calibration:
@@ -58,13 +60,13 @@ class Found:
 
     @property
     def helped(self) -> bool:
-        """Whether a number moved by more than its ±, and prediction and scan came nearer to each other."""
+        """Whether a number moved by more than its ±, none to its end, and the prediction came nearer."""
         moved = any(
             abs(number.after - number.before) > number.plus_minus
             for number in self.calibration.numbers
             if not number.kept
         )
-        return moved and self.after.all_of_it.rms < self.before.all_of_it.rms
+        return moved and not self.at_end and self.after.all_of_it.rms < self.before.all_of_it.rms
 
 
 def refuse_bare(stages: Stages) -> None:
@@ -81,7 +83,7 @@ def calibrate(
     lengths: bool = False,
     one_roll: bool = False,
     progress: Progress = quiet,
-) -> Found:
+) -> CalibrationResult:
     """Find the numbers of a design at which it predicts a worn scan best.
 
     The cloth is taken to be ``thickness`` [mm] thick; ``lengths`` tells that lines may have been cut to other
@@ -113,7 +115,14 @@ def calibrate(
     design = replace(last.stages.design, calibration=record)
     confused = {numbers[at].name: confused_with(sure, numbers, at) for at in np.flatnonzero(stays).tolist()}
     singular = singular_values(first.slopes[seen, : len(numbers)], numbers)
-    return Found(design, last.points, before, after, confused, int(seen.sum()), singular, fit.solves)
+    at_end = tuple(
+        number.name
+        for number, kept in zip(numbers, stays.tolist(), strict=True)
+        if not kept and number.at_end(design)
+    )
+    return CalibrationResult(
+        design, last.points, before, after, confused, int(seen.sum()), singular, fit.solves, at_end
+    )
 
 
 def _sure(fit: Fit, look: Look) -> Normal:

@@ -10,10 +10,10 @@ import numpy as np
 
 from core.advice.assumed import assumed
 from core.body import Body
-from core.errors import LandmarkError
+from core.errors import LandmarkError, ScanError
 from core.landmark import CERTAIN, SIDES, Landmark
 from core.landmarks import find_landmarks
-from core.mesh import Floats, Points
+from core.mesh import MIRROR, Floats, Mesh, Points
 from core.pipeline import Stages
 from core.worn_scan.aligning import Alignment, moved
 from core.worn_scan.feet import Ground
@@ -22,6 +22,10 @@ from core.worn_scan.gap import WornSkin, curvature, known
 THICKEST = 20.0
 """Cloth is not thicker than this [mm]."""
 
+_MIRRORED = 2.0
+"""A worn scan whose mirror image lies so many times nearer to the moving skin is one itself [1]."""
+
+_OFF = 2.0  # and which lies at least this far from it [mm]: less is no matter
 _SEVERAL = 2.0  # points round a vertex, counted by their share of it, whose mean tells more than one triangle
 _ANY = 0.25  # and where no triangle is met
 
@@ -83,6 +87,20 @@ def laid_on(name: str, body: Body, alignment: Alignment) -> Worn:
             points[side] = moved(alignment.matrix, mark.position[None])[0]
             sure[side] = mark.confidence
     return Worn(name, body, alignment, WornSkin(alignment.laid(body.mesh), body.noise), points, sure)
+
+
+def refuse_mirrored(stages: Stages, worn: Worn) -> None:
+    """Raise ScanError for a scan that fits far better left for right: still skin may be too even to tell."""
+    points, mesh = stages.control.mesh.vertices, worn.skin.mesh
+    across = np.array([2.0 * stages.moving.middle, 0.0, 0.0])
+    other = Mesh(across + mesh.vertices * MIRROR, mesh.faces[:, ::-1])
+    skins = worn.skin, WornSkin(other, worn.skin.noise)
+    off, mirrored = (figures(gaps_at(stages, points, skin, 0.0)).rms for skin in skins)
+    if off > max(_OFF, _MIRRORED * mirrored):
+        raise ScanError(
+            "The worn scan looks like the mirror image of the first: its left lies on her right.",
+            "Export it again without mirroring it.",
+        )
 
 
 def gaps_at(stages: Stages, points: Points, skin: WornSkin, thickness: float) -> Floats:

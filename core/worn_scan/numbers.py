@@ -46,6 +46,7 @@ _BEFORE = {
 }
 """How far off a number may be before any scan tells it: a standard deviation, as it is sought."""
 
+_END = 1.0 - 1e-6  # of the largest number, where one counts as at the end
 _OWN = 0.5
 """And how far the stiffness of one line from that of the others, its logarithm [1]."""
 
@@ -89,6 +90,12 @@ class Number:
             own = design.traits_of(self.lines[0]).stiffness
             return design.line_stiffness if own is None else own
         return float(getattr(design, self.kind))
+
+    def at_end(self, design: Design) -> bool:
+        """Tell whether it is as small or large as a design allows; a chest that is not firm may be true."""
+        low, high = self.range
+        value = self.of(design)
+        return value > _END * high or (value < low / _END and self.kind != FIRM_CHEST)
 
     def put(self, design: Design, value: float) -> Design:
         """Return the design with another one."""
