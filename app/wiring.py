@@ -176,7 +176,8 @@ def _connect_view(window: MainWindow) -> None:
 def _connect_maps(window: MainWindow) -> None:
     maps, section, view = window.map_desk, window.section_desk, window.view
     tools = view.tools.actions_by_name
-    tools["map"].triggered.connect(maps.cycle)
+    tools["map"].triggered.connect(maps.toggle)
+    tools["next-map"].triggered.connect(maps.cycle)
     tools["section"].triggered.connect(section.set_on)
     maps.changed.connect(section.refresh)
     maps.changed.connect(window.even_desk.follow_map)

@@ -35,14 +35,18 @@ class Toolbar(FloatingPanel):
     def _add(
         self, name: str, drawing: str, title: str, key: str, *, size: int = 20, checkable: bool = False
     ) -> None:
-        action = QAction(title, self)
-        action.setShortcut(key)
+        action = self._add_action(name, title, key)
         action.setCheckable(checkable)
-        action.setToolTip(f"{title}  {key}")
-        self.actions_by_name[name] = action
         tool = ToolButton(drawing, size=size, room=34, action=action)
         tool.setAccessibleName(title)
         self.row.addWidget(tool)
+
+    def _add_action(self, name: str, title: str, key: str) -> QAction:
+        """Return an action that menus and keys have, without a button."""
+        action = self.actions_by_name[name] = QAction(title, self)
+        action.setShortcut(key)
+        action.setToolTip(f"{title}  {key}")
+        return action
 
     def _rule(self) -> None:
         rule = hairline(vertical=True)
@@ -86,6 +90,7 @@ class ViewTools(Toolbar):
         self._add_layer("bands", "bands", tr("Bands"), "B")
         self._add("section", "section-plane", tr("Section plane"), "P", checkable=True)
         self._add("map", "palette", tr("Map on the body"), "C", checkable=True)
+        self._add_action("next-map", tr("Next map"), "Shift+C")
         self._add("picture", "camera", tr("Save a picture"), "Ctrl+Shift+P")
         self.actions_by_name["picture"].triggered.connect(self.picture_asked)
 

@@ -23,7 +23,7 @@ LINE_MAPS = ("pull", "pressure")
 """Maps that lie on the bands."""
 
 MAPS = ("displacement", "strain", "sides", "worn", *LINE_MAPS)
-"""Maps in the order in which a key goes through them."""
+"""Maps in the order in which a key goes through them, the first one first seen."""
 
 BOTH_WAYS = ("displacement", "sides", "worn")
 """Maps whose values go both ways from zero."""

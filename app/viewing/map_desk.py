@@ -50,7 +50,7 @@ class MapDesk(QObject):
         super().__init__(window)
         self._window, self._view = window, window.view
         self._kinds = {kind.name: kind for kind in map_kinds()}
-        self.name = ""
+        self.name, self._last = "", MAPS[0]
         desks = window.pressure_desk, window.even_desk, window.worn_desk
         self._seen = MapValues(self._view.beside, *desks)
         self.pinned: tuple[Pinned, ...] = ()
@@ -89,10 +89,14 @@ class MapDesk(QObject):
 
     # -- what is asked
 
+    def toggle(self) -> None:
+        """Take the map off, or lay the one that was seen last over the body again."""
+        self.choose("" if self.name else self._last)
+
     def cycle(self) -> None:
-        """Go on to the next map, and after the last one to none."""
-        names = ("", *(name for name in MAPS if name != "worn" or self._window.worn_desk.worn))
-        self.choose(names[(names.index(self.name) + 1) % len(names)])
+        """Go on to the next map, and after the last one to the first."""
+        names = [name for name in MAPS if name != "worn" or self._window.worn_desk.worn]
+        self.choose(names[(names.index(self.name) + 1) % len(names) if self.name in names else 0])
 
     def choose(self, name: str) -> None:
         """Show a map by name, or none; what is pinned stays on its spot and tells the new map's value."""
@@ -100,6 +104,7 @@ class MapDesk(QObject):
         if name in LINE_MAPS:
             self._view.set_layer("bands", True)
         if name:
+            self._last = name
             self.legend.show_map(name)
         self.refresh()
         self.changed.emit()
