@@ -47,7 +47,10 @@ def test_it_tells_finds_and_saves(pair: tuple[str, str], tmp_path: Path, capsys)
     design = open_project(out).design
     assert design.calibration is not None
     assert design.line_stiffness == pytest.approx(6.0, rel=0.15)
-    assert main(["calibrate", out, pair[1], "--json"]) == 3, "a second time it does not help"
+    again = str(tmp_path / "again.busk")
+    arguments = ["calibrate", out, pair[1], "--json", "--out", again]
+    assert main(arguments) == 3, "a second time it does not help"
+    assert open_project(again).design.line_stiffness == design.line_stiffness, "saved as it was"
     told = json.loads(capsys.readouterr().out)
     assert told["helped"] is False
     assert told["alignment"]["met"] == pytest.approx(1.0, abs=0.01)

@@ -77,8 +77,9 @@ def run_calibrate(
     thickness, lengths_too = told.thickness, told.lengths
     found = calibrate(stages, worn, thickness=thickness, lengths=lengths_too, one_roll=told.one_roll)
     if told.out:
-        document = open_project(source) if is_project(source) else Document.of(found.design)
-        save_project(told.out, document.with_design(found.design), stages.scan, None)
+        taken = found.design if found.helped else stages.design  # as in the window
+        document = open_project(source) if is_project(source) else Document.of(taken)
+        save_project(told.out, document.with_design(taken), stages.scan, None)
     return Calibrated(stages, worn, found, told.out)
 
 
@@ -119,13 +120,13 @@ def _plain(done: Calibrated) -> Iterator[str]:
     yield "The numbers hold for this person and this garment."
     for name in found.at_end:
         yield (
-            f"{spoken(name)} went to the end of what may be: is this the scan with the garment on, "
+            f"{spoken(name, design)} went to the end of what may be: is this the scan with the garment on, "
             "and are these its lines?"
         )
     if not found.helped and not found.at_end:
         yield "It did not help: no number moved by more than its ±, or the prediction came no nearer."
     if done.out:
-        yield f"written to {done.out}"
+        yield f"written to {done.out}{'' if found.helped else ', as it was'}"
 
 
 def told(found: CalibrationResult) -> str:
