@@ -15,7 +15,7 @@ from threadpoolctl import threadpool_limits
 
 from core.aims.answers import Look, exact_points
 from core.aims.figure import Goal
-from core.aims.reaching import LOOSEST, Bounds, Found, Search
+from core.aims.reaching import LOOSEST, Bounds, Candidate, Search
 from core.aims.readings import Figures
 from core.aims.wanted import NEAR
 from core.answer import NoBalanceError
@@ -233,12 +233,12 @@ class Asking:
         seen = {line.name for line in lines} & set(self._made)
         return {name: worn[name].largest for name in sorted(seen) if not tensions[name].estimate}
 
-    def _kept(self, search: Search, found: Found, *, agreed: bool) -> Reply:
+    def _kept(self, search: Search, found: Candidate, *, agreed: bool) -> Reply:
         """Return what was found, and go on from there when the next wish is in a hurry."""
         search.start, self._search = found.lengths, search
         return self._reply(found, agreed=agreed)
 
-    def _reply(self, found: Found, *, agreed: bool) -> Reply:
+    def _reply(self, found: Candidate, *, agreed: bool) -> Reply:
         design, limit = found.design, self._limit / _TOO_MUCH**2
         values = found.look.values.tolist()
         return Reply(
@@ -259,5 +259,5 @@ class Asking:
             found.look.points,
         )
 
-    def _miss(self, found: Found) -> float:
+    def _miss(self, found: Candidate) -> float:
         return float(np.abs(found.look.values - [goal.value for goal in self._goals]).max())

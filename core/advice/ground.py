@@ -30,7 +30,7 @@ _ROUNDS = 4  # two are the rule
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class PathPoint:
     """An answer with the line at ``ratio`` [1]: the ``model`` and its exact ``balance``.
 
     Lines made of elastics pull as their curves say at ``elongations`` [1], by line; ``log_ea`` (e,) are the
@@ -50,7 +50,7 @@ class Found:
         """The control points, shape (n, 3) [mm]."""
         return self.model.tensegric.expand(self.balance.state.moved)
 
-    def mixed(self, other: Found, share: float) -> Found:
+    def mixed(self, other: PathPoint, share: float) -> PathPoint:
         """Return the place between two answers, or beyond, ``share`` of the way to the other."""
 
         def mix(a: Floats, b: Floats) -> Floats:
@@ -81,7 +81,7 @@ class Ground:
     progress: Progress = quiet
     body_change: BodyChange | None = None
 
-    def from_rest(self, ratio: float) -> Found | None:
+    def from_rest(self, ratio: float) -> PathPoint | None:
         """Return the answer that rest leads to, or None if there is none."""
         ratios = self._with(ratio)
         solve = partial(self._solved, ratios=ratios)
@@ -90,7 +90,7 @@ class Ground:
         balance = solve(self.model)
         return self._found(ratio, self.model, balance, np.zeros(0), {}) if balance.found else None
 
-    def near(self, ratio: float, start: Found) -> Found | None:
+    def near(self, ratio: float, start: PathPoint) -> PathPoint | None:
         """Return the answer if a few steps lead there from ``start``."""
         ratios, here, excess = self._with(ratio), start.balance, start.excess
         enough = 0.0 if self.elastics else _NEAR_ENOUGH
@@ -142,7 +142,7 @@ class Ground:
         steps = (sliding_steps if slides else energy_steps)(potential, start, _FEW_STEPS)
         return next((step for step in steps if step.found or step.residual < enough), None)
 
-    def _fitted(self, ratio: float, fitted: Fitted) -> Found | None:
+    def _fitted(self, ratio: float, fitted: Fitted) -> PathPoint | None:
         if not fitted.agreed:
             return None
         return self._found(ratio, fitted.model, fitted.balance, fitted.log_ea, fitted.elongations)
@@ -154,11 +154,11 @@ class Ground:
         balance: Balance,
         log_ea: Floats,
         elongations: Mapping[str, float],
-    ) -> Found:
+    ) -> PathPoint:
         excess = np.zeros(2)
         if self.body_change is not None:
             excess = model.volume.side_volumes(model.tensegric.expand(balance.state.moved)) - model.rest_sides
-        return Found(ratio, self._with(ratio), model, balance, log_ea, elongations, excess)
+        return PathPoint(ratio, self._with(ratio), model, balance, log_ea, elongations, excess)
 
     def _wish(self, ratios: tuple[float, ...]) -> ElasticLines:
         named = {line.name: ratio for line, ratio in zip(self.model.lines, ratios, strict=True)}

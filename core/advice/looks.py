@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from types import MappingProxyType
 
-from core.advice.ground import Found
+from core.advice.ground import PathPoint
 from core.comparison import shape_of
 from core.cutting import goes_on
 from core.design_elastics import Elastic
@@ -24,7 +24,7 @@ from core.solving.gain import Swing, gain_limit
 from core.solving.newton import balance_at
 from core.solving.potential import Potential
 
-Look = Callable[[Found], float]
+Look = Callable[[PathPoint], float]
 """How far an answer is from showing a sign; 0 or less where it does [1]."""
 
 OF_SHAPE = ("strained", "overstrained", "folded", "inverted")
@@ -81,10 +81,10 @@ class _Last:
     """The condition of the answer that was looked at last: four looks ask for it in a row."""
 
     condition: Callable[..., Condition]
-    found: Found | None = None
+    found: PathPoint | None = None
     value: Condition | None = None
 
-    def __call__(self, found: Found) -> Condition:
+    def __call__(self, found: PathPoint) -> Condition:
         if self.value is None or found is not self.found:
             self.found, self.value = found, self.condition(found.points)
         return self.value
@@ -97,7 +97,7 @@ class _Vibrating:
         self._gain = gain
         self._swing: tuple[ConstrainedModel, Swing, float] | None = None
 
-    def margin(self, found: Found) -> float:
+    def margin(self, found: PathPoint) -> float:
         """Return by how much the gain limit there is above the gain, over the gain [1]."""
         if self._swing is None or found.model is not self._swing[0]:
             swing = Swing(found.model)
@@ -112,7 +112,7 @@ class _Vibrating:
         return min(swing.limit(potential, there) / gain - 1.0, _CALM)
 
 
-def _rest(found: Found) -> float:
+def _rest(found: PathPoint) -> float:
     """Return how far turns are from a swing that no volume control ends; see ``Swing.overshoot`` [1]."""
     return 1.0 - 0.5 * Swing(found.model).overshoot(Potential(found.model, found.ratios), found.balance)
 
@@ -125,7 +125,7 @@ def _limit_at_rest(model: ConstrainedModel, swing: Swing) -> float:
     return swing.limit(potential, balance_at(potential, at_rest(model).moved))
 
 
-def _pull(found: Found, together: tuple[int, ...]) -> float:
+def _pull(found: PathPoint, together: tuple[int, ...]) -> float:
     """Return how far the slackest tried line is stretched, over its rest length; negative: it pushes."""
     model = found.model
     rest = [line.rest_length for line in model.lines]
@@ -136,12 +136,12 @@ def _pull(found: Found, together: tuple[int, ...]) -> float:
     return min(lengths[at] / rest[at] - found.ratio for at in together)
 
 
-def _room_in_curves(found: Found, elastics: Mapping[str, Elastic]) -> float:
+def _room_in_curves(found: PathPoint, elastics: Mapping[str, Elastic]) -> float:
     """Return how much further the elastic can be stretched that is nearest to the end of its curve [1]."""
     return min(elastics[name].reach - elongation for name, elongation in found.elongations.items())
 
 
-def _pressing(found: Found, stages: Stages, names: tuple[str, ...]) -> float:
+def _pressing(found: PathPoint, stages: Stages, names: tuple[str, ...]) -> float:
     """Return by how much the lines ``names`` press less than the red light begins with, over that [1]."""
     design = stages.design
     tried = {line.name: ratio for line, ratio in zip(found.model.lines, found.ratios, strict=True)}

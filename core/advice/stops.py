@@ -6,7 +6,7 @@ from bisect import bisect
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from core.advice.ground import Found
+from core.advice.ground import PathPoint
 from core.advice.looks import Look
 
 _HAIR = 1e-9  # what is not there and what round-off makes of it [1]
@@ -33,7 +33,7 @@ class Stop:
     """A balance on the way, and what is looked at there, each when it is first asked for."""
 
     length: Length
-    found: Found
+    found: PathPoint
     looks: Mapping[str, Look]
     known: dict[str, float] = field(default_factory=dict)
 
@@ -55,7 +55,7 @@ def nearest(stops: Sequence[Stop], ratio: float, count: int) -> Sequence[Stop]:
     return stops[begin : begin + count]
 
 
-def guess(stops: Sequence[Stop], ratio: float) -> Found:
+def guess(stops: Sequence[Stop], ratio: float) -> PathPoint:
     """Return where the way through ``stops`` leads at ``ratio``: two on a line, three on a parabola."""
     if len(stops) == 1:
         return stops[0].found

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from core.advice.ground import Found, Ground
+from core.advice.ground import Ground, PathPoint
 from core.advice.looks import Look
 from core.advice.stops import Length, Stop, guess
 from core.lines import RATIO_LIMITS, Line
@@ -59,7 +59,7 @@ class Walk:
         found = self._ground.from_rest(ratio)
         return None if found is None else self._stop(found)
 
-    def near(self, ratio: float, start: Found) -> Stop | None:
+    def near(self, ratio: float, start: PathPoint) -> Stop | None:
         """Return the balance at ``ratio`` if a few steps lead there from ``start``."""
         found = self._ground.near(ratio, start)
         return None if found is None else self._stop(found)
@@ -109,7 +109,7 @@ class Walk:
         tries = (self.solved(ratio) for ratio in ratios if ratio >= RATIO_LIMITS[0])
         return next((there for there in tries if there is not None), None)
 
-    def _stop(self, found: Found) -> Stop:
+    def _stop(self, found: PathPoint) -> Stop:
         return Stop(Length(found.ratio, self._line.length(found.points)), found, self._looks)
 
 
@@ -126,12 +126,12 @@ def _next_stride(stride: float, off: float | None) -> float:
     return max(stride / 1.5, min(stride, _STRIDE)) if off > _OTHERWISE else stride
 
 
-def _astray(stops: list[Stop], start: Found, found: Found) -> bool:
+def _astray(stops: list[Stop], start: PathPoint, found: PathPoint) -> bool:
     """Tell whether an answer lies elsewhere than the way through ``stops`` leads: on another branch."""
     led = _off(stops[-1].found, start)
     return len(stops) > 1 and _off(start, found) > _OFF_WAY * led + _OFF_ANYWAY
 
 
-def _off(start: Found, found: Found) -> float:
+def _off(start: PathPoint, found: PathPoint) -> float:
     """Return how far the points of a guess are off, at most [mm]."""
     return float(np.abs(start.balance.state.moved - found.balance.state.moved).max(initial=0.0))

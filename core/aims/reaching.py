@@ -59,7 +59,7 @@ class Bounds:
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class Candidate:
     """A design with the ``lengths`` that were found [%], the exact answer there, and what keeps it there.
 
     ``reached`` tells whether the answer is what was asked for. ``at_end`` names the lines as short or as long
@@ -99,7 +99,7 @@ class Search:
             )
         read = Figures(stages).of([goal.name for goal in goals]) if read is None else read
         self._answers = Answers(stages, self._groups, read)
-        self.nearer: Callable[[Found], object] = lambda found: None
+        self.nearer: Callable[[Candidate], object] = lambda found: None
         low = [
             max(RATIO_LIMITS[0], *(bounds.shortest.get(name, 0.0) for name in each)) for each in self._groups
         ]
@@ -231,7 +231,7 @@ class Search:
         less = _tension(after, unit)[0] < _tension(before, unit)[0]
         return found if self._wanted.is_met(after) and less else start
 
-    def found(self, lengths: Floats) -> Found:
+    def found(self, lengths: Floats) -> Candidate:
         """Return what was found at ``lengths``."""
         look = self.at(lengths)
         set_ = [round(float(length) * PERCENT, 6) for length in lengths]
@@ -244,7 +244,7 @@ class Search:
         )
         strain, *pulls = (self._wanted.room(look)[0] < _AT_LIMIT).tolist()
         pulled = tuple(name for name, there in zip(self._wanted.hardest, pulls, strict=True) if there)
-        return Found(design, lengths, look, self._wanted.is_met(look), at_end, pulled, strain)
+        return Candidate(design, lengths, look, self._wanted.is_met(look), at_end, pulled, strain)
 
     def _look(self, lengths: Floats) -> Look | None:
         try:
