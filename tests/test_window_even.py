@@ -174,6 +174,9 @@ def makes_even(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> Script:
     begun: list[object] = []
     monkeypatch.setattr(desk, "begin", lambda *_: begun.append(_))
     card.make.click()
+    making = window.even_desk._making
+    card.make.click()
+    assert window.even_desk._making is making, "it is looked for already"
     window.session.edit(lambda d: d.with_line("mid-bust", 0.96), "Another")
     yield lambda: is_fresh(window)
     assert not begun, "what was looked for was for another design"

@@ -12,6 +12,7 @@ import core.spread
 from app.main_window import MainWindow
 from app.presenting.spread import left_out_sentences
 from core.advice.assumed import assumed
+from core.errors import UserError
 from tests.window_tools import Script, run_main, settled, undrawn
 
 
@@ -63,5 +64,27 @@ def test_it_is_told_where_it_is_looked_at_and_fades_while_a_line_moves() -> None
         assert desk.shown[1], "of a former shape"
         window.session.cancel_preview()
         yield lambda: whole(window)
+
+    run_main([], script)
+
+
+def test_where_it_is_given_up_there_is_none_and_the_reason_stands_there(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def refused(*_: object) -> object:
+        raise UserError("No balance was found with the lines at these lengths.", "Set them nearer to 100 %.")
+
+    monkeypatch.setattr(core.spread.Spreading, "whole", refused)
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        desk, card = window.spread_desk, window.spread_desk.card
+        window.desk.go_to("result")
+        yield lambda: "No balance was found" in card.meaning.text()
+        assert card.meaning.text().startswith("How far they may be off was not worked out.")
+        assert desk.shown == (None, True), "the quick part alone would be too small for good"
+        yield lambda: bool(window.result.measured)
+        assert all(view.off == () for view in window.result.measured)
 
     run_main([], script)

@@ -115,16 +115,25 @@ class EvenDesk(QObject):
     def _ask(self) -> None:
         """Look for what makes the shown design even, beside; then it is asked for in the card of wishes."""
         frame = self._window.session.frame
-        if frame is None or not self._window.is_settled():
+        if frame is None or not self._window.is_settled() or self._makes_even:
             return
         job = self._window.jobs.run(
             tr("Making left and right even"),
             lambda progress: _made_even(frame.stages, progress),
             lambda made: self._begin(frame.stages.design, cast("Evened", made)),
-            self._window.desk.show_failure,
+            self._fail,
             waited=True,
         )
         self._making = job, frame.stages.design
+
+    @property
+    def _makes_even(self) -> bool:
+        """Whether it is looked for already; a second press asks for nothing more."""
+        return self._making is not None and self._making[0].wanted
+
+    def _fail(self, error: Exception) -> None:
+        self._making = None
+        self._window.desk.show_failure(error)
 
     def _begin(self, design: Design, made: Evened) -> None:
         """Fill the wishes in; what has to be parted for them is parted when they are taken, not before."""

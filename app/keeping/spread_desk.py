@@ -13,9 +13,10 @@ from app.panels.result import ResultPanel
 from app.panels.spread_card import SpreadCard
 from app.presenting.spread import left_out_sentences, source_sentences, spread_view
 from app.presenting.verdict import doubt_of
-from app.wording.words import tr
+from app.wording.words import joined, say, tr
 from core.advice.trials import Trials
 from core.design import Design
+from core.errors import UserError
 from core.live import Frame
 from core.measuring.plus_minus import Spread
 from core.progress import Progress
@@ -52,7 +53,7 @@ class SpreadDesk(QObject):
         self._body: object = None
         self._job: Job | None = None
         self._asked: Design | None = None
-        self._given_up: Design | None = None
+        self._given_up: tuple[Design, str] | None = None  # and why, where that is known
         self._clock = QTimer(self, interval=PAUSE, singleShot=True)
         self._clock.timeout.connect(self._begin)
         panel.opened.connect(self.follow)
@@ -63,9 +64,10 @@ class SpreadDesk(QObject):
         """What is known of the design that is shown, else of the last one, and whether that is faint."""
         frame = self._window.session.frame
         known = None if frame is None else self.of(frame)
-        if known is None:
-            return (self._last if frame is not None and not doubt_of(frame) else None), True
-        return known, not known.whole
+        if known is not None:
+            return known, not known.whole
+        comes = frame is not None and not doubt_of(frame) and self._why_not(frame.stages.design) is None
+        return (self._last if comes else None), True
 
     def of(self, frame: Frame) -> Spread | None:
         """Return how far the figures of a frame may be off, if that is known and it is a result."""
@@ -93,7 +95,7 @@ class SpreadDesk(QObject):
         missing = known is None or not known.whole
         if not (self._looked_at and self._window.is_settled() and not doubt_of(frame)):
             self._clock.stop()
-        elif missing and self._asked is None and self._given_up is not design:
+        elif missing and self._asked is None and self._why_not(design) is None:
             self._clock.start()
         self.found.emit()
 
@@ -137,11 +139,23 @@ class SpreadDesk(QObject):
 
     def _fail(self, error: Exception) -> None:
         logging.error("how sure figures are was not found", exc_info=error)
-        self._leave_off()
+        self._give_up(say(error.message) if isinstance(error, UserError) else "")
 
     def _leave_off(self) -> None:
-        self._given_up, self._job, self._asked = self._asked, None, None
+        self._give_up("")
+
+    def _give_up(self, why: str) -> None:
+        """Tell no ± of a design at all: what is known of it already lacks the landmarks, and is too small."""
+        if self._asked is not None:
+            self._given_up = self._asked, why
+            if self._known.pop(self._asked, None) is self._last:
+                self._last = None
+        self._job = self._asked = None
         self.found.emit()
+
+    def _why_not(self, design: Design) -> str | None:
+        """Return why there will be no ± of a design, None if it was not given up."""
+        return self._given_up[1] if self._given_up is not None and self._given_up[0] is design else None
 
     def _show(self) -> None:
         """Tell below the measures what the ± means, or why there is none."""
@@ -149,8 +163,9 @@ class SpreadDesk(QObject):
         if frame is None or not self._panel.isVisible():
             return
         spread, faint = self.shown
-        given_up = self._given_up is not None and self._given_up is self._window.session.design
-        waiting = tr("How far they may be off was not worked out.") if given_up else ""
+        design, waiting = self._window.session.design, ""
+        if design is not None and (why := self._why_not(design)) is not None:
+            waiting = joined((tr("How far they may be off was not worked out."), why))
         waiting = waiting or tr("How far they may be off is worked out once the run rests.")
         view = spread_view(spread, "" if doubt_of(frame) else waiting, faint)
         self.card.show_view(view)
