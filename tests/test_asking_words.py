@@ -11,6 +11,7 @@ from app.presenting.asking import (
     change_words,
     figure_title,
     is_met,
+    is_near,
     kept_words,
     off_words,
     step_words,
@@ -74,8 +75,16 @@ def test_of_a_profile_it_is_told_how_far_it_is_off() -> None:
     heights = [profile_name("left", 300.0), profile_name("left", 310.0)]
     goals = [Goal(name, 100.0) for name in heights]
     answer = reply(reached={heights[0]: 103.0, heights[1]: 96.0})
-    said = "Profile through the left bust point off by 3.5 mm in the mean, 4.0 mm at most"
-    assert said in answer_words(answer, goals)
+    because = "because these lines do not move the body that way."
+    said = "Not reachable: nearest is a profile off by 3.5 mm on average (4.0 mm at most), "
+    assert answer_words(answer, goals) == said + because
+    with speaking("ja"):
+        assert "最も近いのは 輪郭のずれが平均 3.5 mm（最大 4.0 mm）の結果。理由：" in answer_words(
+            answer, goals
+        )
+    both = [*goals, Goal(profile_name("right", 300.0), 100.0)]
+    answer = replace(answer, reached={**answer.reached, both[-1].name: 106.0})
+    assert "nearest is Profile through the left bust point: off by 3.5 mm on " in answer_words(answer, both)
     assert step_words([*GOALS, *goals]) == (
         "Asked for: Bust point up +5.0 mm, Profile through the left bust point"
     )
@@ -115,3 +124,24 @@ def test_a_profile_that_is_nearly_met_is_reached_within_so_much() -> None:
     assert not is_met(near, [*goals[:1], Goal(names[1], 201.0)])
     both = replace(near, reached={**near.reached, "lift": 4.0})
     assert not is_met(both, [*goals, Goal("lift", 4.2)]), "a figure is met within less"
+
+
+def test_what_a_hand_draws_is_met_on_average() -> None:
+    goals = [Goal(profile_name("left", 300.0 + 10.0 * at), 200.0) for at in range(10)]
+
+    def off_by(least: float, most: float, **others: float) -> Reply:
+        reached = {goal.name: 200.0 + least for goal in goals} | {goals[0].name: 200.0 + most} | others
+        return reply(reached=reached)
+
+    near = off_by(-0.1, 3.0)
+    assert answer_words(near, goals) == "Met within 0.4 mm on average, 3.0 mm at most."
+    assert (is_near(near, goals), is_met(near, goals)) == (True, False)
+    with speaking("ja"):
+        assert answer_words(near, goals) == "平均 0.4 mm、最大 3.0 mm のずれで到達できます。"
+    assert not is_near(off_by(1.1, 1.0), goals), "a millimetre is seen"
+    assert not is_near(off_by(0.1, 5.2), goals), "nor is one place far off"
+    assert not is_near(replace(near, agreed=False), goals)
+    wish = Goal("lift", 4.0)
+    assert is_near(off_by(-0.1, 3.0, lift=4.02), [*goals, wish])
+    assert not is_near(off_by(-0.1, 3.0, lift=4.2), [*goals, wish])
+    assert not is_near(reply(reached={"lift": 4.0}), [wish]), "of profiles alone"

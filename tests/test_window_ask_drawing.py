@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from ask_tools import answered, drag, type_wish, wear
+from PySide6.QtCore import QPoint
 from window_tools import Script, run_main, settled, undrawn
 
 from app.main_window import MainWindow
@@ -32,6 +35,11 @@ def room_below(window: MainWindow) -> int:
 def over_the_card(window: MainWindow) -> bool:
     """Whether all handles of the profile can be taken."""
     return all(handle.isVisible() for handle in handles(window)) and room_below(window) > 0
+
+
+def laid(window: MainWindow) -> Callable[[], bool]:
+    """The card is as high as what it holds."""
+    return lambda: window.ask_desk.card.height() == window.ask_desk.card.sizeHint().height()
 
 
 def is_drawn_from_its_side(window: MainWindow) -> Script:
@@ -129,16 +137,23 @@ def keeps_its_handles_over_the_card(window: MainWindow) -> Script:
     desk, viewport = window.ask_desk, window.view.viewport
     desk.begin()
     yield answered(window)
+    spots = []
     for _ in range(2):
         desk.card.hand._buttons["profile"].click()
         yield answered(window)
-        viewport.look_from(viewport.view.pan(0.0, room_below(window) - 1.0, viewport.height()))
+        yield laid(window)
+        spots.append(desk.card.hand.mapTo(window, QPoint()))
         height = desk.card.height()
+        viewport.look_from(viewport.view.pan(0.0, room_below(window) - 1.0, viewport.height()))
         drag(handles(window)[1], -4, -4)
         yield answered(window)
-        yield lambda: desk.card.height() > height + 10 and over_the_card(window)
+        yield lambda: over_the_card(window)
+        yield laid(window)
+        assert desk.card.height() > height + 10
+        spots.append(desk.card.hand.mapTo(window, QPoint()))
         desk.card.wishes["profile left"].remove.click()
         yield answered(window)
+    assert len(set(map(QPoint.toTuple, spots))) == 1, "what is pressed keeps its place"
     desk.leave()
     yield settled(window)
 

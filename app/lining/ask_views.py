@@ -12,6 +12,7 @@ from app.presenting.asking import (
     change_words,
     figure_title,
     is_met,
+    is_near,
     is_signed,
     kept_words,
     off_words,
@@ -41,7 +42,8 @@ def show_answer(
         if asks_to_be_even(asked) and wishes.only_limit is None:
             said, why = evened_words(reply, asked, answer.now, answer.then)
         changes = "\n".join(filter(None, (why, listed(change_words(design, reply)))))
-        card.show_answer(said, "ok" if met else "warn", changes, note, can_apply=True)
+        tone = "ok" if met else "" if is_near(reply, asked) else "warn"
+        card.show_answer(said, tone, changes, note, can_apply=True)
 
 
 def wish_views(design: Design, wishes: Wishes, answer: Answer | None) -> Iterator[WishView]:

@@ -112,6 +112,7 @@ class AskCard(OverCard):
         for at in range(_COLUMNS):
             self._grid.setColumnStretch(at, 1)
         column.addLayout(self._grid)
+        column.addLayout(self._said())
         column.addLayout(self._foot())
         self.row.setContentsMargins(30, 20, 30, 30)
         self.row.addLayout(column)
@@ -124,30 +125,33 @@ class AskCard(OverCard):
         head.addWidget(IconLabel("target", "accent", 18))
         head.addWidget(label(tr("Ask for the result"), "heading"))
         head.addStretch(1)
+        close = ToolButton("x", tr("Leave without a change (Esc)"), size=14, room=26)
+        close.clicked.connect(self.left)
+        head.addWidget(close)
+        return head
+
+    def _said(self) -> QVBoxLayout:
+        said = QVBoxLayout()
+        said.setSpacing(2)
+        self.answer, self.changes, self.note = sentence("", "name"), sentence(""), sentence("", "caption")
+        for part in (self.answer, self.changes, self.note):
+            said.addWidget(part)
+        return said
+
+    def _foot(self) -> QHBoxLayout:
+        """Return the row of what is pressed: the card grows upwards from it, so it keeps its place."""
+        foot = QHBoxLayout()
+        foot.setSpacing(4)
         hands = [("bust", tr("Bust point")), ("apex", tr("Foremost place")), ("profile", tr("Profile"))]
         self.hand = Segment(hands, small=True)
         self.hand.setAccessibleName(tr("What is dragged on the body"))
         self.hand.chosen.connect(self.hand_chosen)
-        head.addWidget(self.hand)
         self.link = ToolButton("link", tr("Drag left and right together"), size=16, room=28)
         self.link.setCheckable(True)
         self.link.setChecked(True)
         self.link.toggled.connect(self.linked)
         self.add = button(tr("Add a wish"), "quiet")
         self.add.clicked.connect(self.add_asked)
-        close = ToolButton("x", tr("Leave without a change (Esc)"), size=14, room=26)
-        close.clicked.connect(self.left)
-        for part in (self.link, self.add, close):
-            head.addWidget(part)
-        return head
-
-    def _foot(self) -> QHBoxLayout:
-        foot, said, done = QHBoxLayout(), QVBoxLayout(), QHBoxLayout()
-        foot.setSpacing(16)
-        said.setSpacing(2)
-        self.answer, self.changes, self.note = sentence("", "name"), sentence(""), sentence("", "caption")
-        for part in (self.answer, self.changes, self.note):
-            said.addWidget(part)
         self.help_ = button(tr("Choose lines"), "secondary")
         self.help_.clicked.connect(self.helped)
         self.help_.hide()
@@ -155,11 +159,11 @@ class AskCard(OverCard):
         self.apply.clicked.connect(self.applied)
         self.cancel = button(tr("Cancel"), "quiet")
         self.cancel.clicked.connect(self.left)
-        done.setSpacing(4)
-        for each in (self.help_, self.apply, self.cancel):
-            done.addWidget(each, alignment=Qt.AlignmentFlag.AlignBottom)
-        foot.addLayout(said, 1)
-        foot.addLayout(done)
+        for part in (self.hand, self.link, self.add):
+            foot.addWidget(part)
+        foot.addStretch(1)
+        for part in (self.help_, self.apply, self.cancel):
+            foot.addWidget(part)
         return foot
 
     # -- what it shows
@@ -228,11 +232,8 @@ class AskCard(OverCard):
 
     def _fit(self) -> None:
         parts: list[QLabel] = [self._hint, self.answer, self.changes, self.note]
-        buttons = [each for each in (self.help_, self.apply, self.cancel) if not each.isHidden()]
-        beside = sum(each.sizeHint().width() + 4 for each in buttons) + 16
         for part in parts:
             # A sentence that wraps is as high as it is at the width that it really gets.
-            width = WIDTH - (0 if part is self._hint else beside)
-            part.setMinimumHeight(part.heightForWidth(width) if part.text() else 0)
+            part.setMinimumHeight(part.heightForWidth(WIDTH) if part.text() else 0)
             part.updateGeometry()
         self.adjustSize()

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 _MET = 0.05  # [mm]
 _LIKE = 0.5  # of a profile [mm]
+_NEAR, _NEAREST = 1.0, 5.0  # of one that is as good as met, on average and anywhere: less is not drawn [mm]
 _ABOUT = 1.015  # of a limit that counts as kept
 SAME = 5e-4
 """Ratios that are this near to each other read the same [1]."""
@@ -84,6 +85,10 @@ def answer_words(reply: Reply, goals: Sequence[Goal], limit: float | None = None
     if is_met(reply, goals):
         most = max(float(np.abs(off).max()) for off in profiles_off(goals, reply.reached).values())
         return tr("Reached within {mm} mm.").format(mm=number(most))
+    if is_near(reply, goals):
+        offs = profiles_off(goals, reply.reached).values()
+        said = tr("Met within {mean} mm on average, {most} mm at most.")
+        return said.format(**_mean_and_most(max(offs, key=lambda off: float(np.abs(off).mean()))))
     nearest = listed(_nearest(reply, goals))
     if not reply.agreed:
         said = tr("Nearest so far: {nearest}. Lengths, elastics and pressures did not come to agree.")
@@ -106,10 +111,12 @@ def _nearest(reply: Reply, goals: Sequence[Goal]) -> Iterable[str]:
     missed = [goal for goal in missed if abs(reply.reached[goal.name] - goal.value) > _MET] or missed
     for goal in missed:
         yield figure_words(goal.name, reply.reached[goal.name])
-    for section, off in profiles_off(goals, reply.reached).items():
-        said = tr("{profile} off by {mean} mm in the mean, {most} mm at most")
-        mean, most = _mean_and_most(off)
-        yield said.format(profile=figure_title(section + " 0"), mean=mean, most=most)
+    profiles = profiles_off(goals, reply.reached)
+    for section, off in profiles.items():
+        said = tr("a profile off by {mean} mm on average ({most} mm at most)")
+        if len(profiles) > 1:
+            said = tr("{profile}: off by {mean} mm on average ({most} mm at most)")
+        yield said.format(profile=figure_title(section), **_mean_and_most(off))
 
 
 def off_words(goals: Sequence[Goal], reached: Mapping[str, float], section: str) -> str:
@@ -117,8 +124,7 @@ def off_words(goals: Sequence[Goal], reached: Mapping[str, float], section: str)
     off = profiles_off(goals, reached).get(section)
     if off is None:
         return ""
-    mean, most = _mean_and_most(off)
-    return tr("off by {mean} mm, at most {most}").format(mean=mean, most=most)
+    return tr("off by {mean} mm, at most {most}").format(**_mean_and_most(off))
 
 
 def is_met(reply: Reply, goals: Sequence[Goal]) -> bool:
@@ -128,8 +134,17 @@ def is_met(reply: Reply, goals: Sequence[Goal]) -> bool:
     return reply.reachable or (reply.agreed and not reply.pressing and within)
 
 
-def _mean_and_most(off: Floats) -> tuple[str, str]:
-    return number(float(np.abs(off).mean())), number(float(np.abs(off).max()))
+def is_near(reply: Reply, goals: Sequence[Goal]) -> bool:
+    """Tell whether all but profiles is met, and these as nearly as a hand draws them."""
+    offs = [np.abs(off) for off in profiles_off(goals, reply.reached).values()]
+    single = [goal for goal in goals if not section_of(goal.name)]
+    met = all(abs(reply.reached[goal.name] - goal.value) <= _MET for goal in single)
+    near = all(off.mean() < _NEAR and off.max() < _NEAREST for off in offs)
+    return bool(reply.agreed and offs and met and near)
+
+
+def _mean_and_most(off: Floats) -> dict[str, str]:
+    return {"mean": number(float(np.abs(off).mean())), "most": number(float(np.abs(off).max()))}
 
 
 def reasons_words(reply: Reply) -> str:
