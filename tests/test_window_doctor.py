@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled, undrawn
 
 from app.desks.doctor_desk import ABOUT
@@ -186,5 +188,41 @@ def test_what_was_edited_meanwhile_is_not_told_of() -> None:
         assert job is not None
         assert not job.wanted
         assert window.notices.notice() is None
+
+    run_main([], script)
+
+
+def test_the_pill_opens_what_the_button_ends_and_what_will_still_be_strained() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        chip = window.strip.chip
+        assert chip.focusPolicy() == Qt.FocusPolicy.NoFocus, "calm, there is nothing to press"
+        window.lines_desk.commit_length("mid-bust", 0.848)
+        yield lambda: told(window)
+        (said,) = words(window)
+        assert said.startswith("Lengthen Mid-bust by ")
+        assert said.endswith(" mm, then strained")
+        window.notices._buttons[0].click()
+        yield settled(window)
+        assert window.session.undo_stack.undoText() == said.removesuffix(", then strained")
+        yield lambda: chip.state() == "strained"
+        assert window.notices.notice() is None
+        assert "what ends it" in chip.toolTip()
+        chip.setFocus()
+        QTest.keyClick(chip, Qt.Key.Key_Space)
+        yield lambda: told(window)
+        notice = notice_of(window)
+        assert (notice.tone, notice.lasting) == ("info", True), "who asks is not hurried"
+        assert "pull against each other: skin is pressed" in notice.sentence
+        assert "apart in what they do to the skin" in notice.details.splitlines()[0]
+        assert "it ends as" in notice.details.splitlines()[1]
+        window.notices.unfold.click()
+        yield window.notices.details.isVisible
+        text = window.notices.details
+        lines = round(text.document().size().height())
+        assert lines > 6
+        high = min(lines, 10) * text.fontMetrics().lineSpacing()
+        assert high <= text.viewport().height() - 2 * text.document().documentMargin() < high + 4
 
     run_main([], script)

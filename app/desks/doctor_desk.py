@@ -70,6 +70,7 @@ class DoctorDesk(QObject):
         window.notices.closed.connect(self._note_closed)
         self._later = QTimer(self, interval=PATIENCE, singleShot=True)
         self._later.timeout.connect(self._look)
+        window.strip.why_asked.connect(self.ask)
         said = tr("Say what fights in this design, and what ends it")
         window.actions_.add("solve", tr("What is wrong here?"), tip=said, do=self.ask, of_document=True)
 
@@ -149,7 +150,7 @@ class DoctorDesk(QObject):
         hint = tr("No garment does that: what is seen here is no result.")
         self._show("warn", plain_sentence(frame), hint, [], "", _Trouble(state_of(frame)))
 
-    def _found(self, frame: Frame, found: object) -> None:
+    def _found(self, frame: Frame, found: object, *, asked: bool = False) -> None:
         """Tell what was found in place of what was told at once."""
         assert isinstance(found, Diagnosis)
         self._job = None
@@ -162,13 +163,13 @@ class DoctorDesk(QObject):
         worst = found.fight.worst
         trouble = _Trouble(found.complaint, (worst.one.lines, worst.other.lines) if worst else ())
         said = words.sentence(found, swing)
-        self._show(tone, said, words.hint(found), actions, words.details(found), trouble)
+        self._show(tone, said, words.hint(found), actions, words.details(found), trouble, asked)
 
     def _answer(self, frame: Frame, found: object) -> None:
         """Tell what was asked for, well or not."""
         assert isinstance(found, Diagnosis)
         if found.complaint:
-            self._found(frame, found)
+            self._found(frame, found, asked=True)
             return
         self._job = None
         said = tr("Nothing is wrong: the calculation comes to rest, and the skin is calm.")
@@ -201,12 +202,16 @@ class DoctorDesk(QObject):
         actions: list[Action],
         details: str,
         trouble: _Trouble | None,
+        asked: bool = False,
     ) -> None:
-        """Show a notice in place of the last, unless the same ``trouble`` was closed by hand."""
+        """Show a notice in place of the last, unless the same ``trouble`` was closed by hand.
+
+        What was ``asked`` for stays till it is closed.
+        """
         if trouble and self._closed and trouble.is_that(self._closed):
             return
         self._withdraw()
-        lasting = tone == "warn"
+        lasting = asked or tone == "warn"
         self._window.notices.show_notice(tone, sentence, hint, actions, lasting, details, ABOUT)
         self._said = trouble if lasting else None
 
@@ -223,7 +228,7 @@ class DoctorDesk(QObject):
         if found.cure is None:
             return []
         said, cured = words.change_words(found, found.cure.change), found.cure.change.design
-        return [(said, partial(self._apply, said, cured))]
+        return [(words.button_words(found, found.cure), partial(self._apply, said, cured))]
 
     def _apply(self, said: str, cured: Design) -> None:
         """Make the change as one step, whatever was only called otherwise since."""

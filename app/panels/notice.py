@@ -28,6 +28,7 @@ REFUSED, FILES = "refused", "files"
 
 _LEAVES_AFTER_MS = 8000
 _MOST_ROOM = 0.4  # of the width that buttons take beside the words
+_MOST_LINES = 10  # of details that are seen at once: below them lies the body
 _BUTTON_KINDS = ("primary", "secondary", "quiet")
 
 
@@ -156,7 +157,8 @@ class NoticeBar(QWidget):
         close.clicked.connect(self.close_notice)
         row.addWidget(close)
         self.details = reading("", tr("Details"), code=True)
-        self.details.setFixedHeight(120)
+        layout = self.details.document().documentLayout()
+        layout.documentSizeChanged.connect(lambda size: self._fit_details(round(size.height())))
         column.addWidget(self.details)
 
     def _next(self) -> None:
@@ -178,6 +180,12 @@ class NoticeBar(QWidget):
             self._timer.start(_LEAVES_AFTER_MS)
         self.show()
         self.update()
+
+    def _fit_details(self, lines: int) -> None:
+        """Give the details room for all their lines, or for the first of them, and cut none in half."""
+        line, margin = self.details.fontMetrics().lineSpacing(), self.details.document().documentMargin()
+        frame = self.details.height() - self.details.contentsRect().height()
+        self.details.setFixedHeight(round(min(lines, _MOST_LINES) * line + 2 * margin) + frame)
 
     def _show_details(self, shown: bool) -> None:
         self.details.setVisible(shown)

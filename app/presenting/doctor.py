@@ -76,8 +76,15 @@ def hint(found: Diagnosis) -> str:
     return joined(said)
 
 
+def button_words(found: Diagnosis, cure: Cure) -> str:
+    """Return what a cure does, and that it leaves strain behind if it does."""
+    said = change_words(found, cure.change)
+    strained = cure.standing.verdict.told == "strained"
+    return tr("{change}, then strained").format(change=said) if strained else said
+
+
 def change_words(found: Diagnosis, change: Change) -> str:
-    """Return what a change does, as on a button."""
+    """Return what a change does, as an undo step is called."""
     choice = {
         ("volume", "adaptive"): tr("Use Adaptive"),
         ("volume", "exact"): tr("Use Exact"),
@@ -108,8 +115,18 @@ def change_words(found: Diagnosis, change: Change) -> str:
 
 
 def details(found: Diagnosis) -> str:
-    """Return all figures, a line each."""
-    return "\n".join([*_run(found), *_forces(found), *_changes(found)])
+    """Return all figures, a line each: what fights and what ends it stand first."""
+    pair = [_pair(found)] if found.complaint else []
+    return "\n".join([*pair, *_changes(found), *_run(found), *_forces(found)])
+
+
+def _pair(found: Diagnosis) -> str:
+    worst = found.fight.worst
+    if worst is None:
+        return tr("No two of them stand out as pulling against each other.")
+    words = tr("{one} and {other}: {angle}° apart in what they do to the skin")
+    one, other = (_name(found, pull) for pull in (worst.one, worst.other))
+    return words.format(one=one, other=other, angle=number(worst.angle, 0))
 
 
 def _run(found: Diagnosis) -> Iterator[str]:
@@ -148,12 +165,6 @@ def _forces(found: Diagnosis) -> Iterator[str]:
     if fight.pulls:
         yield "  " + tr("The skin itself: {newtons} N").format(newtons=number(fight.skin))
         yield "  " + tr("Forces at all points added up: what a line pulls with along itself is in Garment.")
-    if fight.worst is None:
-        yield tr("No two of them stand out as pulling against each other.")
-        return
-    words = tr("{one} and {other}: {angle}° apart in what they do to the skin")
-    one, other = (_name(found, pull) for pull in (fight.worst.one, fight.worst.other))
-    yield words.format(one=one, other=other, angle=number(fight.worst.angle, 0))
 
 
 def _force(found: Diagnosis, pull: Pull) -> str:

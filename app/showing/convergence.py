@@ -48,19 +48,23 @@ class VerdictView(Protocol):
 class Strip(QWidget):
     """Verdict and method on the left, volume error and a height over the turns live beside it.
 
-    ``export_asked`` carries csv, png or svg; ``quantity_chosen`` the name of what a plot shows now.
+    ``export_asked`` carries csv, png or svg; ``quantity_chosen`` the name of what a plot shows now;
+    ``why_asked`` wants to know more of a verdict that is no good.
     """
 
     control_chosen = Signal(str)
     quantity_chosen = Signal(str)
     export_asked = Signal(str)
     folded = Signal(bool)
+    why_asked = Signal()
 
     def __init__(self) -> None:
         super().__init__()
         self._state, self._settling = "stale", False
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
         self.chip, self._small_chip = VerdictChip(), VerdictChip(small=True)
+        for chip in (self.chip, self._small_chip):
+            chip.clicked.connect(self.why_asked)
         self.error_plot, self.height_plot = LivePlot(error_quantities()), LivePlot(height_quantities())
         self._run: tuple[Mapping[str, Track], str, Exact | None] = ({}, "adaptive", None)
         self._events: tuple[Event, ...] = ()

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import QElapsedTimer, QRectF, QSize, Qt, QTimer
-from PySide6.QtGui import QColor, QHideEvent, QPainter, QPaintEvent, QShowEvent
-from PySide6.QtWidgets import QLabel, QSizePolicy, QWidget
+from PySide6.QtCore import QElapsedTimer, QPointF, QRectF, QSize, Qt, QTimer
+from PySide6.QtGui import QColor, QHideEvent, QPainter, QPaintEvent, QPen, QShowEvent
+from PySide6.QtWidgets import QAbstractButton, QLabel, QSizePolicy
 
-from app.dress.icons import paint_icon
+from app.dress.icons import paint_icon, pixmap
 from app.dress.theme import font, tokens_of
 from app.wording.words import tr
 
@@ -26,10 +26,14 @@ TONES = {
 }
 """Tone and drawing of each state of a run."""
 
+TROUBLED = ("strained", "overstrained", "folded", "vibrating", "diverging")
+"""States that there is more to say of: a click asks for it."""
+
 SHORTEST_SHOW_MS = 250
 """A state stays at least so long, so that the chip does not flicker."""
 
 _TURN_MS, _STEP_MS = 1200, 150
+_CARET = 11
 _GAP = "     "
 
 
@@ -48,13 +52,14 @@ def state_title(state: str) -> str:
     }[state]
 
 
-class VerdictChip(QWidget):
-    """The pill; 32 pixels high, or 22 when ``small``."""
+class VerdictChip(QAbstractButton):
+    """The pill; 32 pixels high, or 22 when ``small``. It can be pressed in the states that are TROUBLED."""
 
     def __init__(self, small: bool = False) -> None:
         super().__init__()
         self._small = small
         self._state = self._next = "stale"
+        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
         self._angle = 0.0
         self._since = QElapsedTimer()
         self._change, self._spin = QTimer(self), QTimer(self)
@@ -87,7 +92,8 @@ class VerdictChip(QWidget):
 
     def sizeHint(self) -> QSize:
         word = self.fontMetrics().horizontalAdvance(state_title(self._state))
-        return QSize(word + (36 if self._small else 50), 22 if self._small else 32)
+        room = (36 if self._small else 50) + (_CARET + 5 if self._state in TROUBLED else 0)
+        return QSize(word + room, 22 if self._small else 32)
 
     def showEvent(self, event: QShowEvent) -> None:
         self._run_spin()
@@ -101,9 +107,12 @@ class VerdictChip(QWidget):
         ink = tokens.text_quiet if tone == "plain" else getattr(tokens, tone)
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(Qt.PenStyle.NoPen)
+        lit = self._state in TROUBLED and (self.underMouse() or self.hasFocus())
+        rim = QColor(tokens.accent if self.hasFocus() else ink)
+        painter.setPen(QPen(rim, 2.0 if self.hasFocus() else 1.0) if lit else Qt.PenStyle.NoPen)
         painter.setBrush(QColor(tokens.pressed if tone == "plain" else getattr(tokens, f"{tone}_fill")))
-        painter.drawRoundedRect(QRectF(self.rect()), self.height() / 2, self.height() / 2)
+        ground = QRectF(self.rect()).adjusted(1, 1, -1, -1) if lit else QRectF(self.rect())
+        painter.drawRoundedRect(ground, ground.height() / 2, ground.height() / 2)
         size, left = (14.0, 8.0) if self._small else (19.0, 11.0)
         painter.save()
         painter.translate(left + size / 2, self.height() / 2)
@@ -116,6 +125,9 @@ class VerdictChip(QWidget):
         painter.drawText(
             word, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, state_title(self._state)
         )
+        if self._state in TROUBLED:
+            place = QPointF(self.width() - _CARET - 9.0, 0.5 * (self.height() - _CARET))
+            painter.drawPixmap(place, pixmap("caret-right", ink, _CARET, self.devicePixelRatioF()))
 
     def _take(self) -> None:
         self._change.stop()
@@ -125,9 +137,16 @@ class VerdictChip(QWidget):
             self._since.restart()
         self._state = self._next
         self.setAccessibleName(state_title(self._state))
+        self._let_press(self._state in TROUBLED)
         self._run_spin()
         self.setFixedSize(self.sizeHint())
         self.update()
+
+    def _let_press(self, on: bool) -> None:
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents, not on)
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus if on else Qt.FocusPolicy.NoFocus)
+        self.setCursor(Qt.CursorShape.PointingHandCursor if on else Qt.CursorShape.ArrowCursor)
+        self.setToolTip(tr("Say what fights in this design, and what ends it") if on else "")
 
     def _run_spin(self) -> None:
         if self._state == "settling" and self.isVisible():
