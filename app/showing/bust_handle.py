@@ -4,21 +4,19 @@
 from __future__ import annotations
 
 import numpy as np
-from PySide6.QtCore import QEvent, QObject, QPointF, Qt, Signal
-from PySide6.QtGui import QColor, QEnterEvent, QHideEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen
+from PySide6.QtCore import QPointF, Qt, Signal
+from PySide6.QtGui import QColor, QHideEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
 from app.dress.theme import tokens_of
 from app.seeing.camera import View
+from app.showing.knob import Knob
 from app.showing.viewport import Viewport
 from app.wording.words import tr
 from core.mesh import Floats
 
 SIZE, SMALL = 48, 26
 """Width and height of a handle with its arrows, and of one without [px]."""
-
-FINE = 0.1
-"""What is left of a drag while Shift is held [1]."""
 
 NEAR, FAR = 1.0, 5.0
 """What an arrow key moves it by, and with Shift [mm]."""
@@ -28,47 +26,37 @@ _FLATTEST = 0.35  # a way seen shorter than this part of a mm across points at t
 _FACING = {"left": np.array([0.42, -0.91, 0.0]), "right": np.array([-0.42, -0.91, 0.0])}  # of each breast
 
 
-class BustHandle(QWidget):
+class BustHandle(Knob):
     """A knob where a place of the breast on a ``side`` is wished, with a thread to where it is.
 
     ``name`` is heard. A ``small`` one has neither arrows nor thread.
 
-    ``taken`` and ``dropped`` when a hand closes and opens; ``pulled`` carries each step up and out [mm]: of
-    the two ways those that do not point at the eye. Arrow keys are such steps too, between ``taken`` and
-    ``dropped``.
+    ``pulled`` carries each step up and out [mm]: of the two ways those that do not point at the eye. Arrow
+    keys are such steps too, between ``taken`` and ``dropped``.
     """
 
-    taken = Signal()
     pulled = Signal(float, float)
-    dropped = Signal()
 
     def __init__(self, viewport: Viewport, side: str, name: str, *, small: bool = False) -> None:
-        self._canvas = viewport.overlay.parentWidget()
-        super().__init__(self._canvas)
-        self._viewport, self.side, self._small = viewport, side, small
+        self._size = SMALL if small else SIZE
+        tip = tr("Drag to where it is to be; Shift: finer, Esc: back. Arrows: 1 mm")
+        super().__init__(viewport, self._size, name, tip)
+        self.side, self._small = side, small
         self._place, self._foot = np.zeros(3), np.zeros(3)
         self._ways = np.zeros((2, 2))  # of one mm up and out over the picture, as columns [px]
-        self._last: QPointF | None = None
-        self._hovered = self._wanted = False
-        self._thread = None if small else _Thread(self._canvas)
-        self._size = SMALL if small else SIZE
-        self.setFixedSize(self._size, self._size)
+        self._wanted = False
+        self._thread = None if small else _Thread(self.parentWidget())
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.setAccessibleName(name)
-        self.setToolTip(tr("Drag to where it is to be; Shift: finer, Esc: back. Arrows: 1 mm"))
-        viewport.view_changed.connect(self._stand)
-        viewport.installEventFilter(self)
-        self.hide()
 
     def show_at(self, place: Floats, foot: Floats) -> None:
         """Stand at ``place`` (3,) [mm], with what it moves at ``foot`` (3,) [mm] now."""
         self._place, self._foot, self._wanted = place, foot, True
-        self._stand()
+        self._stand_anew()
 
     def put_away(self) -> None:
         """Show it no longer."""
         self._wanted = False
-        self._stand()
+        self._stand_anew()
 
     def lowest_from(self, view: View) -> float | None:
         """Return how low it reaches in the picture of a view [px]; None where it is not shown from there."""
@@ -77,17 +65,7 @@ class BustHandle(QWidget):
         spot = view.to_picture(self._place[None], self._viewport.width(), self._viewport.height())[0]
         return float(spot[1]) + self._size / 2.0
 
-    @property
-    def held(self) -> bool:
-        """Whether it is in a hand."""
-        return self._last is not None
-
-    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        if event.type() == QEvent.Type.Resize:
-            self._stand()
-        return False
-
-    def _stand(self) -> None:
+    def _stand_anew(self) -> None:
         shown = self._wanted and self._viewport.shows_body and faces(self._viewport.scene.view, self.side)
         if self._thread is not None:
             self._thread.setVisible(shown)
@@ -110,50 +88,21 @@ class BustHandle(QWidget):
         self.raise_()
         self.update()
 
-    def _steps(self, over: Floats) -> tuple[float, float]:
-        """Return the steps up and out [mm] of a step over the picture, (2,) [px]."""
+    def _pull(self, over: Floats) -> None:
         up, out = np.linalg.lstsq(self._ways, over, rcond=1e-6)[0] if self._ways.any() else (0.0, 0.0)
-        return float(up), float(out)
+        self.pulled.emit(float(up), float(out))
 
     # -- the hand
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        if event.button() != Qt.MouseButton.LeftButton:
-            event.ignore()
-            return
-        self._last = event.globalPosition()
-        self.setFocus(Qt.FocusReason.MouseFocusReason)
-        self._show_cursor()
-        self.taken.emit()
-        self.update()
-
-    def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        if self._last is None:
-            event.ignore()
-            return
-        step, self._last = event.globalPosition() - self._last, event.globalPosition()
-        fine = FINE if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else 1.0
-        self.pulled.emit(*self._steps(fine * np.array([step.x(), step.y()])))
-
-    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        if self._last is None or event.button() != Qt.MouseButton.LeftButton:
-            event.ignore()
-            return
-        self.open_hand()
-        self.dropped.emit()
-
-    def open_hand(self) -> None:
-        """Hold it no longer, without a word."""
-        self._last = None
-        self._show_cursor()
-        self.update()
+        if event.button() == Qt.MouseButton.LeftButton:
+            self.setFocus(Qt.FocusReason.MouseFocusReason)
+        super().mousePressEvent(event)
 
     def hideEvent(self, event: QHideEvent) -> None:
         if self._thread is not None:
             self._thread.hide()
-        if self._last is not None:  # the hand will open over something else
-            self._last = None
-            self.dropped.emit()
+        super().hideEvent(event)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         far = FAR if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else NEAR
@@ -169,18 +118,6 @@ class BustHandle(QWidget):
         self.taken.emit()
         self.pulled.emit(*step)
         self.dropped.emit()
-
-    def enterEvent(self, event: QEnterEvent) -> None:
-        self._hovered = True
-        self.update()
-
-    def leaveEvent(self, event: QEvent) -> None:
-        self._hovered = False
-        self.update()
-
-    def _show_cursor(self) -> None:
-        held = self._last is not None
-        self.setCursor(Qt.CursorShape.ClosedHandCursor if held else Qt.CursorShape.OpenHandCursor)
 
     # -- painting
 

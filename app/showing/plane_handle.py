@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 import numpy as np
-from PySide6.QtCore import QEvent, QObject, QPointF, Qt, Signal
-from PySide6.QtGui import QColor, QEnterEvent, QHideEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QPolygonF
-from PySide6.QtWidgets import QWidget
+from PySide6.QtCore import QPointF, Qt, Signal
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QPolygonF
 
 from app.dress.theme import tokens_of
 from app.seeing.framing import sheet_ends
+from app.showing.knob import Knob
 from app.showing.viewport import Viewport
 from app.wording.words import tr
 from core.mesh import Floats, Points
@@ -18,42 +18,28 @@ from core.profile import Plane
 SIZE = 48
 """Width and height of the handle with its arrows [px]."""
 
-FINE = 0.1
-"""What is left of a drag while Shift is held [1]."""
-
 _HOME = np.array([0.72, 0.2])  # where it stands if the sheet is seen there, as shares of the view
 _MARGIN = 30.0  # from the edges of the view [px]
 _CELLS = 24  # the sheet is looked through in so many rows and columns, then its best cell again
 _FLATTEST = 0.35  # a normal seen shorter than this points at the eye: the drag then goes up and down
 
 
-class PlaneHandle(QWidget):
+class PlaneHandle(Knob):
     """A knob that stands on the plane's sheet and stays there until the camera moves.
 
-    ``taken`` and ``dropped`` when a hand closes and opens; ``pulled`` carries each step along the normal
-    [mm], a tenth of it while Shift is held. Where the normal points at the eye, up is away from it.
+    ``pulled`` carries each step along the normal [mm], a tenth of it while Shift is held. Where the normal
+    points at the eye, up is away from it.
     """
 
-    taken = Signal()
     pulled = Signal(float)
-    dropped = Signal()
 
     def __init__(self, viewport: Viewport) -> None:
-        super().__init__(viewport.overlay.parentWidget())
-        self._viewport = viewport
+        name = tr("Handle of the section plane")
+        super().__init__(viewport, SIZE, name, tr("Drag to move the section plane; Shift: finer, Esc: back"))
         self._plane = Plane("x", 0.0)
         self._ends = np.zeros(2), np.zeros(2)
         self._flat: Floats | None = None  # where it stands on the plane [mm]
         self._way = np.array([1.0, 0.0])  # of one mm along the normal over the view [px]
-        self._last: QPointF | None = None
-        self._hovered = False
-        self.setFixedSize(SIZE, SIZE)
-        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self.setAccessibleName(tr("Handle of the section plane"))
-        self.setToolTip(tr("Drag to move the section plane; Shift: finer, Esc: back"))
-        viewport.view_changed.connect(self._stand_anew)
-        viewport.installEventFilter(self)
-        self.hide()
 
     def show_plane(self, plane: Plane, low: Floats, high: Floats) -> None:
         """Stand on a plane through the box from ``low`` to ``high``, each (3,) [mm]."""
@@ -62,11 +48,6 @@ class PlaneHandle(QWidget):
         self._plane, self._ends = plane, sheet_ends(plane, low, high)
         self.show()
         self._stand()
-
-    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        if event.type() == QEvent.Type.Resize:
-            self._stand_anew()
-        return False
 
     # -- where it stands
 
@@ -127,49 +108,12 @@ class PlaneHandle(QWidget):
 
     # -- the hand
 
-    def mousePressEvent(self, event: QMouseEvent) -> None:
-        if event.button() != Qt.MouseButton.LeftButton:
-            event.ignore()
-            return
-        self._last = event.globalPosition()
-        self._show_cursor()
-        self.taken.emit()
-        self.update()
+    def _pull(self, over: Floats) -> None:
+        self.pulled.emit(float(self._way @ over) / max(float(self._way @ self._way), 1e-6))
 
-    def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        if self._last is None:
-            event.ignore()
-            return
-        step, self._last = event.globalPosition() - self._last, event.globalPosition()
-        fine = FINE if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else 1.0
-        along = self._way @ [step.x(), step.y()] / max(float(self._way @ self._way), 1e-6)
-        self.pulled.emit(fine * float(along))
-
-    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        if self._last is None or event.button() != Qt.MouseButton.LeftButton:
-            event.ignore()
-            return
+    def open_hand(self) -> None:
         self._last = None
-        self._stand()
-        self.dropped.emit()
-
-    def hideEvent(self, event: QHideEvent) -> None:
-        if self._last is not None:  # the hand will open over something else
-            self._last = None
-            self._show_cursor()
-            self.dropped.emit()
-
-    def enterEvent(self, event: QEnterEvent) -> None:
-        self._hovered = True
-        self.update()
-
-    def leaveEvent(self, event: QEvent) -> None:
-        self._hovered = False
-        self.update()
-
-    def _show_cursor(self) -> None:
-        held = self._last is not None
-        self.setCursor(Qt.CursorShape.ClosedHandCursor if held else Qt.CursorShape.OpenHandCursor)
+        self._stand()  # elsewhere on the plane, if it was dragged out of the picture
 
     # -- painting
 
