@@ -173,11 +173,25 @@ def is_the_skin_as_long_as_it_is_free(window: MainWindow) -> Script:
     assert np.abs(curve._wished - curve._reached).max() < 0.01
     now = desk.drawn["profile left"].base
     assert np.abs(np.interp(was[:, 0], *now.T) - was[:, 1]).max() > 1.0, "the body has moved"
+    section = window.section_desk
+    section.set_on(True)
+    section.go_through("left")
+    assert section.panel.keys._roles == ["before", "after"]
     drag(handles(window)[1], -4, -4)
     yield answered(window)
     assert desk.card._hint.isHidden()
+    # The section through the same place has it too.
+    section.refresh()
+    (wished,) = section.panel.plot._drawn.curves["wished"]
+    assert wished == pytest.approx(desk.drawn["profile left"].curve[:, ::-1])
+    assert section.panel.keys._roles == ["before", "after", "wished"]
+    section.go_through("right")
+    assert section.panel.keys._roles == ["before", "after"]
+    section.go_through("left")
     desk.leave()
     yield settled(window)
+    section.refresh()
+    assert section.panel.keys._roles == ["before", "after"]
 
 
 def test_a_profile_is_drawn_from_its_side_and_taken_back() -> None:

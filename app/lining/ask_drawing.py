@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -18,9 +19,12 @@ if TYPE_CHECKING:
     from app.main_window import MainWindow
     from core.aims.drawn import Drawn
     from core.frame import Frame
+    from core.mesh import Floats
+    from core.profile import Plane
 
 _BESIDE = 20.0  # what is seen above and below a profile [mm]
 _LEVEL = 0.05  # part of the way to the side from which on it is looked at from there [1]
+_THROUGH = 0.5  # a plane that is this near goes through the same place [mm]
 _SIDEWAYS = 0.8  # of a view from the side: what is seen from less of it is not drawn on [1]
 
 
@@ -106,6 +110,17 @@ class AskDrawing(QObject):
             if profile.is_free:
                 fresh = drawn(frame.stages, profile.section, frame.control_points)
                 self._desk.wish_curve(section, (), fresh)
+
+    def in_plane(self, plane: Plane) -> dict[str, Sequence[Floats]]:
+        """Return the profiles that are wished in a plane, if any are, as flat places (k, 2) [mm]."""
+        from core.aims.drawn import in_space  # noqa: PLC0415 (few ever ask)
+
+        frame, drawn = self._window.session.frame, self._desk.drawn.values()
+        if frame is None or not self._desk.is_open or plane.axis != "x":
+            return {}
+        wished = [in_space(frame.stages, p.section, p.curve) for p in drawn if not p.is_free]
+        found = [plane.flat(places) for places in wished if abs(places[0, 0] - plane.at) < _THROUGH]
+        return {"wished": found} if found else {}
 
     def is_from_side(self, section: str) -> bool:
         """Tell whether a profile is looked at from about its side: else up and out cannot be told by hand."""

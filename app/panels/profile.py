@@ -215,7 +215,7 @@ class PlaneSlider(QSlider):
 class CurveKeys(QWidget):
     """What each kind of curve is."""
 
-    ROLES = ("before", "after", "other")
+    ROLES = ("before", "after", "wished", "other")
 
     def __init__(self) -> None:
         super().__init__()
@@ -223,6 +223,7 @@ class CurveKeys(QWidget):
         self._words = {
             "before": tr("Before"),
             "after": tr("After"),
+            "wished": tr("Wished"),
             "other": tr("other side, mirrored"),
             "band": tr("may be off"),
         }
@@ -244,14 +245,14 @@ class CurveKeys(QWidget):
         painter, tokens = QPainter(self), tokens_of(self)
         painter.setFont(font("caption"))
         inks = {"before": tokens.ghost_curve, "after": tokens.accent, "other": tokens.warn_mark}
-        inks["band"] = tokens.accent
+        inks["band"] = inks["wished"] = tokens.accent
         x, y = 2.0, self.height() / 2.0
         wide = [painter.fontMetrics().horizontalAdvance(self._words[role]) for role in self._roles]
         roomy = sum(wide) + 37.0 * len(wide) - 12.0 < self.width()
         long, gap = (18.0, 14.0) if roomy else (12.0, 7.0)
         for role, advance in zip(self._roles, wide, strict=True):
             pen = QPen(QColor(inks[role]), 2.0)
-            if role == "before":
+            if role in ("before", "wished"):
                 pen.setDashPattern([3.0, 2.0])
             if role == "band":
                 swatch = QPainterPath()

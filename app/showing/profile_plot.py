@@ -40,9 +40,10 @@ _FINEST = 22.0  # grid lines are never nearer to each other [px]
 class Drawn:
     """What is drawn: curves of (k, 2) places [mm] by role, and pairs of marks (former, present), each (2,).
 
-    Roles: "before" is dashed, "after" strong, "other" the mirrored side. ``home``, shape (2, 2) [mm], is the
-    box that is seen first. ``bands`` are outlines, by role, of where the skin may lie; ``faint`` until all of
-    it is known. ``most`` is where that is widest: the place and the way out, both (2,), and how far in words.
+    Roles: "before" is dashed, "after" strong, "other" the mirrored side, "wished" what is asked for.
+    ``home``, shape (2, 2) [mm], is the box that is seen first. ``bands`` are outlines, by role, of where the
+    skin may lie; ``faint`` until all of it is known. ``most`` is where that is widest: the place and the way
+    out, both (2,), and how far in words.
     """
 
     curves: dict[str, Sequence[Floats]] = field(default_factory=dict)
@@ -129,6 +130,7 @@ class ProfilePlot(QWidget):
             "other": QPen(QColor(tokens.warn_mark), 1.6),
             # Within its band a curve is thin, else it would cover what it stands in.
             "after": QPen(QColor(tokens.accent), 1.2 if self._drawn.bands else 2.2),
+            "wished": QPen(QColor(tokens.accent), 1.6, Qt.PenStyle.DashLine),
         }
         for role, outlines in self._drawn.bands.items():
             for outline in outlines:

@@ -242,8 +242,9 @@ class SectionDesk(QObject):
         roles = ("after", "other") if sides else ("before", "after")
         pairs = apex_pairs(now, plane, curves["other"], curves["after"]) if sides else bust_points(now, plane)
         spread = None if sides else self._window.spread_desk.of(now.frame)
+        shown = self._window.ask_desk.drawing.in_plane(plane)
         drawn = Drawn(
-            {role: [curve.places for curve in curves[role]] for role in roles},
+            shown | {role: [curve.places for curve in curves[role]] for role in roles},
             pairs,
             home(now, plane),
             bands(now, self._slicer, curves, spread),
