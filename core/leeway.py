@@ -94,12 +94,15 @@ class Leeway:
         return first.long if first.tone == RED else None
 
 
-def leeway_of(stages: Stages, name: str, progress: Progress = quiet) -> Leeway | None:
+def leeway_of(
+    stages: Stages, name: str, progress: Progress = quiet, *, through: bool = False
+) -> Leeway | None:
     """Return the leeway of a line that moves anything, worn or not, the others being as they are set.
 
-    None where the other lines leave no balance at any length. Raises Cancelled.
+    ``through``: look on where it is red, and tell what else is wrong there. None where the other lines leave
+    no balance at any length. Raises Cancelled.
     """
-    return leeway(limits_of(stages, name, progress, through=False))
+    return leeway(limits_of(stages, name, progress, through=through))
 
 
 def leeway(limits: Limits) -> Leeway | None:
@@ -150,7 +153,13 @@ def _red_on(way: list[Zone]) -> list[Zone]:
     """Return the zones of a way from rest with all of them red from where it comes into the red."""
     calm = next((at for at, zone in enumerate(way) if zone.tone != RED), len(way))
     entry = next((at for at in range(calm, len(way)) if way[at].tone == RED), len(way))
-    return [*way[:entry], *(replace(zone, tone=RED, reasons=way[entry].reasons) for zone in way[entry:])]
+    return [*way[:entry], *(_red_after(way[entry], zone) for zone in way[entry:])]
+
+
+def _red_after(entry: Zone, zone: Zone) -> Zone:
+    """Return a zone as red for what is red at the ``entry``, and for what is besides."""
+    more = (reason for reason in zone.reasons if reason.tone == RED)
+    return replace(zone, tone=RED, reasons=tuple(dict.fromkeys((*entry.reasons, *more))))
 
 
 def _joined(zones: list[Zone]) -> Zone:

@@ -51,6 +51,28 @@ def test_the_hover_tells_zone_number_and_reason() -> None:
     assert plain(hint(LEEWAY, 1.1)) == "Slack above 98.1 %: it would have to push, which no band can."
 
 
+def test_a_line_that_is_folded_is_told_so_and_its_slider_says_how_far_it_reaches() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        row = window.lines.rows["mid-bust"]
+        yield lambda: row.view.leeway is not None and not row.view.stale
+        assert "folds" not in plain(key(row.view.leeway)["red"]), "its slider does not reach there"
+        assert row.slider.toolTip().startswith("Length of the front part, 80 to 112 % of its rest.")
+        window.lines_desk.commit_length("mid-bust", 0.55)
+        yield settled(window)
+        yield lambda: row.view.leeway is not None and not row.view.stale
+        frame, leeway = window.session.frame, row.view.leeway
+        assert frame is not None
+        assert leeway is not None
+        assert frame.verdict.told == "folded"
+        assert leeway.at(0.55).tone == "red"
+        assert plain(key(leeway)["red"]) == "Overstrained below 85.8 % \N{MIDDLE DOT} folds below 67.7 %"
+        assert "Folds below 67.7 %: a triangle" in plain(hint(leeway, 0.55))
+        assert row.slider.toolTip().startswith("Length of the front part, 50 to 112 % of its rest.")
+
+    run_main([], script)
+
+
 def test_where_pressure_is_known_nothing_is_said_of_it_but_where_it_is_too_much() -> None:
     pressing = Zone("amber", 0.5, 0.78, (Reason("pressing", 0.5, 0.78),))
     known = Leeway("waist", (pressing, Zone("green", 0.78, 1.3)), pressure_known=True)
@@ -164,10 +186,10 @@ def test_zones_follow_an_edit_while_the_model_still_settles(monkeypatch: pytest.
     seen = threading.Event()  # the zones of before, faint: new ones may be too quick for a look
     seen.set()
 
-    def noted(stages, name, progress):  # type: ignore[no-untyped-def]
+    def noted(stages, name, progress, **how):  # type: ignore[no-untyped-def]
         order.append(name)
         seen.wait(20.0)
-        return work_out(stages, name, progress)
+        return work_out(stages, name, progress, **how)
 
     monkeypatch.setattr(app.lining.limits_desk, "leeway_of", noted)
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.asking.jobs import Job
+from app.panels.length_groove import SHORTEST
 from app.presenting.lines import Shown
 from app.wording.words import tr
 from core.design import Design
@@ -29,7 +30,7 @@ KEPT = 400
 HAND_RESTS = 120
 """Milliseconds without a new frame of a drag after which the other lines' leeways are worth working out."""
 
-Key = tuple[Design, str]
+Key = tuple[Design, str, bool]
 
 
 class LimitsDesk(QObject):
@@ -115,7 +116,7 @@ class LimitsDesk(QObject):
         for at, key in enumerate(keys):
             hear = partial(_part, progress, at / len(keys))
             try:
-                leeway = leeway_of(stages, key[1], hear)
+                leeway = leeway_of(stages, key[1], hear, through=key[2])
             except Cancelled:
                 raise
             except Exception:  # the others may have theirs
@@ -147,7 +148,10 @@ def _part(progress: Progress, begun: float, what: str, share: float) -> None:
 
 
 def _key(design: Design, name: str) -> Key:
-    """Return what the leeway of a line hangs on: all that its answers do, but its own length."""
+    """Return what the leeway of a line hangs on: all that its answers do, but its own length.
+
+    Of that only whether it is so short that its slider reaches far into what may be red.
+    """
     both = design.linked(name)
     others = tuple(line for line in design.lines if line.name not in both)
-    return replace(design, lines=others, volume="exact"), name
+    return replace(design, lines=others, volume="exact"), name, design.ratio(name) < SHORTEST

@@ -21,7 +21,7 @@ def tone_at(leeway: Leeway | None, ratio: float) -> str:
 def key(leeway: Leeway) -> dict[str, str]:
     """Return what zones of each tone mean and from where to where they go, of those that the line has.
 
-    Of all that is red it is what comes first.
+    Of all that is red it is what comes first, and where it folds if that is known.
     """
     told = {tone: _in_key(leeway, tone) for tone in KEY_ORDER}
     return {tone: _glued(_upper(" \N{MIDDLE DOT} ".join(words))) for tone, words in told.items() if words}
@@ -33,8 +33,9 @@ def _in_key(leeway: Leeway, tone: str) -> list[str]:
         return [_range(tr("without trouble"), zone.short, zone.long) for zone in zones]
     reasons = sorted({reason for zone in zones for reason in _told(zone)}, key=lambda each: -each.long)
     if tone == RED:  # what is worse lies below
-        first = [reason for zone in zones for reason in _told(zone)][:1]
-        return [placed(reason) for reason in first]
+        red = [reason for zone in zones for reason in _told(zone)]
+        folds = [reason for reason in red[1:] if reason.why in ("folded", "inverted")]
+        return [placed(reason) for reason in (*red[:1], *folds[:1])]
     return [placed(reason) for reason in reasons]
 
 
@@ -53,6 +54,12 @@ def hint(leeway: Leeway, ratio: float) -> str:
     if zone.tone == GREEN and not leeway.pressure_known:
         lines.append(tr("Pressure is not looked at: it is made of no elastic."))
     return "\n".join(_glued(line) for line in lines)
+
+
+def length_tip(short: float, long: float) -> str:
+    """Return what a slider from ``short`` to ``long`` [1] means, and its keys."""
+    said = tr("Length of the front part, {short} to {long} % of its rest.\n← → 0.1 %, Shift 1 %, Alt 0.01 %")
+    return said.format(short=number(100.0 * short, 0), long=number(100.0 * long, 0))
 
 
 def refusal(leeway: Leeway | None) -> str:

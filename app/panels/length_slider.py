@@ -80,6 +80,10 @@ class LengthSlider(QAbstractSlider):
     def minimumSizeHint(self) -> QSize:
         return QSize(120, 28)
 
+    def ends(self) -> tuple[float, float]:
+        """Return from where to where it goes, as shares of the rest length [1]."""
+        return self._ends
+
     def ratio(self) -> float:
         """Return the set length as a share of the rest length [1]."""
         return self.value() / STEPS_TO_ONE

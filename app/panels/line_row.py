@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QApplication, QFrame, QHBoxLayout, QVBoxLayout, QW
 from app.dress.parts import ToolButton, sentence
 from app.dress.spoken import speak_value
 from app.dress.theme import label, set_tag, set_tip, tokens_of
+from app.panels.leeway_words import length_tip
 from app.panels.length_slider import LengthSlider
 from app.panels.line_details import LineDetails
 from app.panels.line_parts import LEAST, LineChip, LineTitle, SideMark
@@ -68,6 +69,7 @@ class LineRow(QFrame):
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus if view.settable else Qt.FocusPolicy.TabFocus)
         if kept and not view.settable:
             self.setFocus(Qt.FocusReason.OtherFocusReason)
+        self._tips[self.slider] = length_tip(*self.slider.ends())  # a typed length makes it reach further
         for each in (self.slider, self.percent, self.millimetres):
             each.setVisible(view.constrained)
             each.setEnabled(view.settable)
@@ -182,12 +184,7 @@ class LineRow(QFrame):
             head.addWidget(part)
         self._note = sentence("", "caption")
         self._note.setContentsMargins(20, 0, 0, 2)
-        self.slider.setToolTip(
-            tr("Length of the front part, 80 to 112 % of its rest.\n← → 0.1 %, Shift 1 %, Alt 0.01 %")
-        )
-        self._tips: dict[QWidget, str] = {
-            each: each.toolTip() for each in (self.slider, self.percent, self.millimetres)
-        }
+        self._tips: dict[QWidget, str] = {each: each.toolTip() for each in (self.percent, self.millimetres)}
         column.addLayout(head)
         for below in (self.slider, self._note, self.details):
             column.addWidget(below)
