@@ -19,8 +19,22 @@ from app.commands.reported import SheetWishes, run_report
 from app.dress.theme import load_fonts
 from app.reporting.handout import SHOTS, Handout
 from app.reporting.pages import pages_of
+from app.reporting.telling import cut_views
 from app.wording.samples import sample_design
-from core.measuring.plus_minus import AFTER, BEFORE, CHANGE, LIFT, OUT, SOURCES, Doubt, Spread
+from core.elastics import find_elastic
+from core.measuring.plus_minus import (
+    AFTER,
+    BEFORE,
+    CHANGE,
+    CUT,
+    LIFT,
+    MAX_KPA,
+    OUT,
+    SOURCES,
+    TENSION,
+    Doubt,
+    Spread,
+)
 from core.pipeline import Stages, build
 from core.presets import built_in, with_preset
 from core.report import Shown
@@ -77,7 +91,12 @@ def everywhere(stages: Stages, sheet: Sheet) -> Spread:
     """What is off by as much as on a usual body, at every figure."""
     keys = [f"{kind}:{row['key']}" for row in sheet.measures for kind in (BEFORE, AFTER, CHANGE)]
     doubts = {key: Doubt({"scan": 4.0}) for key in (*keys, LIFT, OUT)}
-    return Spread(doubts, np.full(len(stages.body.mesh.vertices), 1.0), 0.2, 2.0, SOURCES, {}, "sliding")
+    doubts |= {f"{CUT}:{row.line}": Doubt({"tape": 4.0}) for row in sheet.cuts.rows}
+    figures = {f"{TENSION}:{row.line}": row.tension_n for row in sheet.cuts.rows if row.tension_n}
+    figures |= {f"{MAX_KPA}:{row.line}": row.max_kpa for row in sheet.pressures if row.max_kpa}
+    doubts |= {key: Doubt({"tissue": 0.5 * value}) for key, value in figures.items()}
+    skin = np.full(len(stages.body.mesh.vertices), 1.0)
+    return Spread(doubts, skin, 0.2, 2.0, SOURCES, {}, "sliding", figures=figures)
 
 
 @pytest.mark.parametrize("body", ["mannequin", "person"])
@@ -94,6 +113,26 @@ def test_a_usual_design_has_room_on_two_pages(
     pictures = {name: QImage(40, 80, QImage.Format.Format_RGB32) for name in SHOTS}
     for language in ("en", "ja"):
         assert pages_of(Handout(sheet, pictures, {}), language).count == 2
+
+
+def test_pieces_tell_how_far_they_may_be_off(built: Callable[[str], Stages]) -> None:
+    stages = built("mannequin")
+    made = stages.design.with_line("mid-bust", 0.75).with_elastic("mid-bust", find_elastic("plush 12"))
+    shown = run(build(made, stages))
+    plain = sheet_of(shown, shown.records, Heading("anna", "2026-01-31"))
+    assert not any("95 %" in note for note in cut_views(plain, [])[1])
+    sheet = with_spread(plain, shown.stages, shown.control_points, everywhere(shown.stages, plain))
+    newtons, kpa = plain.cuts.rows[0].tension_n, plain.pressures[0].max_kpa
+    ends = [f"{value * each:.1f}" for value in (newtons, kpa) for each in (np.exp(-1.0), np.exp(1.0))]
+    (note,) = (note for note in cut_views(sheet, [])[1] if "95 %" in note)
+    assert note == (
+        f"In 95 % of cases: cut ± 8.0 mm, tension {ends[0]} to {ends[1]} N, "
+        f"largest pressure {ends[2]} to {ends[3]} kPa."
+    )
+    rows = {row["key"]: row for row in csv.DictReader(io.StringIO(sheet_csv(sheet)))}
+    assert float(rows["mid-bust: cut"]["off_after"]) == 8.0
+    assert float(rows["mid-bust: tension"]["off_factor"]) == pytest.approx(np.e)
+    assert rows["mid-bust: width"]["off_after"] == ""
 
 
 def test_it_stands_on_paper(mannequin: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

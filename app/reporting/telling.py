@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 from typing import Any
@@ -17,7 +17,7 @@ from core.cutting import CutRow
 from core.design_lines import partner_of
 from core.measuring.definitions import definition_of
 from core.measuring.own import OWN
-from core.measuring.plus_minus import AFTER, BEFORE, CHANGE
+from core.measuring.plus_minus import AFTER, BEFORE, CHANGE, CUT, MAX_KPA, TENSION
 from core.press_list import PressRow
 from core.sewing.comfort import comfort
 from core.sheet import Sheet
@@ -106,11 +106,37 @@ def cut_views(sheet: Sheet, order: Sequence[str]) -> tuple[list[CutView], list[s
     views = []
     rows = zip(sheet.cuts.rows, sheet.pressures, strict=True)
     for cut, press in sorted(rows, key=lambda row: _place(row[0].line, order)):
-        notes = list(dict.fromkeys(map(say, (*cut.notes, *press.notes)))) if sheet.sound else []
+        told = (*map(say, (*cut.notes, *press.notes)), *_within_words(cut, press, sheet))
+        notes = list(dict.fromkeys(told)) if sheet.sound else []
         footnotes += [note for note in notes if note not in footnotes]
         view = _cut_view(cut, press, tuple(footnotes.index(note) + 1 for note in notes))
         views.append(view if sheet.sound else _without_figures(view))
     return views, footnotes
+
+
+def _within_words(cut: CutRow, press: PressRow, sheet: Sheet) -> Iterator[str]:
+    """Yield where the figures of a piece lie in 95 % of cases, if that was worked out."""
+    parts, off = [], sheet.off.get(f"{CUT}:{cut.line}")
+    if off is not None and cut.cut_mm is not None:
+        parts.append(tr("cut {off} mm").format(off=plus_minus(off)))
+    for key, value, words in (
+        (f"{TENSION}:{cut.line}", cut.tension_n, tr("tension {low} to {high} N")),
+        (f"{MAX_KPA}:{cut.line}", press.max_kpa, tr("largest pressure {low} to {high} kPa")),
+    ):
+        ends = _ends(sheet, key, value)
+        if ends is not None:
+            low, high = (number(each, 1) for each in ends)
+            parts.append(words.format(low=low, high=high))
+    if parts:
+        yield tr("In 95 % of cases: {figures}.").format(figures=listed(parts))
+
+
+def _ends(sheet: Sheet, key: str, value: float | None) -> tuple[float, float] | None:
+    """Return between what a force or pressure may lie, None where that is not known."""
+    off, factor = sheet.off.get(key), sheet.off_factor.get(key)
+    if value is not None and factor is not None:
+        return value / factor, value * factor
+    return None if value is None or off is None else (value - off, value + off)
 
 
 def cut_pieces(sheet: Sheet, order: Sequence[str]) -> list[tuple[str, str, str]]:

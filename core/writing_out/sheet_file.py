@@ -6,13 +6,23 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
-from core.measuring.plus_minus import AFTER, BEFORE, CHANGE, LIFT, OUT
+from core.measuring.plus_minus import (
+    AFTER,
+    BEFORE,
+    CHANGE,
+    CUT,
+    LIFT,
+    MAX_KPA,
+    MEAN_KPA,
+    OUT,
+    TENSION,
+)
 from core.sheet import Sheet
 from core.writing_out.cells import csv_text
 
 COLUMNS = (
     *("section", "key", "title", "unit", "before", "after", "difference", "plus_minus", "note"),
-    *("off_before", "off_after", "off_difference"),
+    *("off_before", "off_after", "off_difference", "off_factor"),
 )
 """The columns of the table; what is told of the body as it is worn stands under *after*."""
 
@@ -70,17 +80,17 @@ def _shape_rows(sheet: Sheet) -> Iterator[Row]:
 def _cut_rows(sheet: Sheet) -> Iterator[Row]:
     for row in sheet.cuts.rows:
         about = " ".join(filter(None, (row.elastic, *row.notes)))
-        for key, unit, value in (
-            ("cut", "mm", row.cut_mm),
-            ("width", "mm", row.width_mm),
-            ("reached front", "mm", row.reached_front_mm),
-            ("reached whole", "mm", row.reached_whole_mm),
-            ("stretch", "%", None if row.elongation is None else 100.0 * row.elongation),
-            ("tension", "N", row.tension_n),
+        for key, unit, value, kind in (
+            ("cut", "mm", row.cut_mm, CUT),
+            ("width", "mm", row.width_mm, ""),
+            ("reached front", "mm", row.reached_front_mm, ""),
+            ("reached whole", "mm", row.reached_whole_mm, ""),
+            ("stretch", "%", None if row.elongation is None else 100.0 * row.elongation, ""),
+            ("tension", "N", row.tension_n, TENSION),
         ):
             title = f"{row.title}: {key}"
             told = {"key": f"{row.line}: {key}", "title": title, "unit": unit, "after": value}
-            yield {"section": "cut", **told, "note": about}
+            yield {"section": "cut", **told, "note": about, **_off(sheet, kind, row.line)}
     for number, note in enumerate(sheet.cuts.notes, start=1):
         yield {"section": "cut", "key": str(number), "note": note}
 
@@ -88,13 +98,20 @@ def _cut_rows(sheet: Sheet) -> Iterator[Row]:
 def _pressure_rows(sheet: Sheet) -> Iterator[Row]:
     for row in sheet.pressures:
         note = " ".join(filter(None, (row.light, row.where, *row.notes)))
-        for key, unit, value in (
-            ("largest pressure", "kPa", row.max_kpa),
-            ("largest pressure", "mmHg", row.max_mmhg),
-            ("mean pressure", "kPa", row.mean_kpa),
-            ("mean pressure", "mmHg", row.mean_mmhg),
-            ("force", "N", row.force_n),
-            ("bridged", "mm", row.bridged_mm),
+        for key, unit, value, kind in (
+            ("largest pressure", "kPa", row.max_kpa, MAX_KPA),
+            ("largest pressure", "mmHg", row.max_mmhg, ""),
+            ("mean pressure", "kPa", row.mean_kpa, MEAN_KPA),
+            ("mean pressure", "mmHg", row.mean_mmhg, ""),
+            ("force", "N", row.force_n, ""),
+            ("bridged", "mm", row.bridged_mm, ""),
         ):
             told = {"key": f"{row.line}: {key} {unit}", "title": f"{row.title}: {key}", "unit": unit}
+            told |= _off(sheet, kind, row.line)
             yield {"section": "pressure", **told, "after": value, "note": note}
+
+
+def _off(sheet: Sheet, kind: str, line: str) -> Row:
+    """Return how far a figure of a line may be off, in its unit or as a factor [1]; None where not known."""
+    key = f"{kind}:{line}"
+    return {"off_after": sheet.off.get(key), "off_factor": sheet.off_factor.get(key)}
