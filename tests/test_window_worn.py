@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QScrollArea
+from PySide6.QtWidgets import QLabel, QScrollArea
 from window_tools import Script, run_main, settled, undrawn
 
 import app.keeping.worn_desk
@@ -71,6 +71,8 @@ def test_a_worn_scan_is_compared_and_learnt_from(pair: tuple[str, str, str]) -> 
         assert area is not None
         assert area.widget().width() <= area.viewport().width(), "nothing is cut off at the right"
         assert page.view.file == "worn.ply"
+        heads = [each.text() for each in page.findChildren(QLabel) if each.isVisible()]
+        assert "Predicted less real [mm]" in heads, "its figures have no unit of their own"
         assert page.view.lies.startswith("100 % of the skin that no line moves")
         frame = window.session.frame
         assert frame is not None

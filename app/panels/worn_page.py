@@ -149,7 +149,7 @@ class WornPage(QWidget):
         column.setContentsMargins(0, 4, 0, 0)
         column.setSpacing(6)
         column.addWidget(hairline())
-        column.addWidget(label(tr("Predicted less real"), "name"))
+        column.addWidget(label(f"{tr('Predicted less real')} [mm]", "name"))
         column.addLayout(self._figures)
         column.addWidget(self.bust)
         row = QHBoxLayout()
