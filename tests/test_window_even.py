@@ -152,6 +152,10 @@ def makes_even(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> Script:
         ]
         assert {"lift", "out"} <= set(desk.card.wishes), "what moves besides is seen"
         assert desk.card.note.text() == "Left and right apart: Full bust, Mid-bust"
+        first, *nearer = desk.card.answer.text().splitlines()
+        assert first in ("Reached.", "Not reachable. Nearest:")
+        assert nearer[0].startswith("Right higher: 11.8 → "), "from where to where, with no sign"
+        assert "Mid-bust (left) 95.0 → " in desk.card.changes.text()
         assert window.session.design is before, "seen, not taken"
         assert window.session.undo_stack.count() == count
         end()
