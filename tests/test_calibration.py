@@ -21,6 +21,7 @@ from core.pipeline import Stages, build
 from core.progress import Cancelled
 from core.project import open_project
 from core.worn_scan.aligning import align
+from core.worn_scan.comparing import laid_on
 from core.worn_scan.fit import exact_answer
 from core.worn_scan.gap import WornSkin
 from core.worn_scan.least_squares import Normal
@@ -153,6 +154,17 @@ def test_the_scan_without_the_garment_tells_nothing_of_its_lines(pair: tuple[Sta
     assert found.at_end
     assert not found.helped
     assert better_words(found, stages.design).startswith("Not found: ")
+
+
+def test_where_most_remains_it_is_not_of_the_numbers(
+    pair: tuple[Stages, Worn, Design], found: CalibrationResult
+) -> None:
+    stages, worn, _ = pair
+    wider = worn.body.mesh.moved(worn.body.mesh.vertices * (1.02, 1.02, 1.0))
+    body = replace(worn.body, mesh=wider)
+    other = calibrate(stages, laid_on("wider.ply", body, align(stages, body)))
+    assert other.explains_little
+    assert not found.explains_little
 
 
 def test_a_calibration_is_cancelled(pair: tuple[Stages, Worn, Design]) -> None:

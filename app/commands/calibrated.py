@@ -125,6 +125,8 @@ def _plain(done: Calibrated) -> Iterator[str]:
         )
     if not found.helped and not found.at_end:
         yield "It did not help: no number moved by more than its ±, or the prediction came no nearer."
+    if found.helped and found.explains_little:
+        yield "Most of predicted less real remains: posture, breath or cloth may have made these numbers."
     if done.out:
         yield f"written to {done.out}{'' if found.helped else ', as it was'}"
 
@@ -215,6 +217,7 @@ def _figures(done: Calibrated) -> dict[str, Any]:
         "thickness_mm": found.calibration.thickness,
         "helped": found.helped,
         "at_end": list(found.at_end),
+        "explains_little": found.explains_little,
         "written_to": done.out or None,
         "versions": {"busk": __version__},
     }

@@ -161,7 +161,9 @@ def better_words(found: CalibrationResult, design: Design) -> str:
     before, after = (number(each.all_of_it.rms, 1) for each in (found.before, found.after))
     if not found.helped:
         return tr("No number moved by more than its ±: it stays at {before} mm.").format(before=before)
-    return tr("Predicted less real: {before} → {after} mm.").format(before=before, after=after)
+    nearer = tr("Predicted less real: {before} → {after} mm.").format(before=before, after=after)
+    left = tr("Most of it remains: posture, breath or cloth may have made these numbers.")
+    return joined([nearer, left if found.explains_little else ""])
 
 
 def record_words(record: Calibration | None) -> str:

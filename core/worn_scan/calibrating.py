@@ -31,6 +31,10 @@ SURE = 2.0
 """A ± is so many standard deviations: 95 % of what chance makes [1]."""
 
 
+MUCH_LEFT = 0.5
+"""Where more than this of predicted less real remains something else made it: posture, breath, cloth [1]."""
+
+
 @dataclass(frozen=True, eq=False)
 class CalibrationResult:
     """What was found: ``design`` with its numbers and record, compared ``before`` and ``after``.
@@ -39,7 +43,7 @@ class CalibrationResult:
     the moving skin. ``confused`` tells for numbers that stayed what they cannot be told from. ``singular``
     are the singular values of the slopes in units of what is known before: below 1 that tells more of a
     combination of numbers than the scans. ``solves`` exact answers were needed. ``at_end`` names numbers that
-    went as far as they may: what the scan shows is not what these lines do.
+    went as far as they may: what the scan shows is not what these lines do. ``noise`` [mm] is the scan's.
     """
 
     design: Design
@@ -51,6 +55,7 @@ class CalibrationResult:
     singular: tuple[float, ...]
     solves: int
     at_end: tuple[str, ...] = ()
+    noise: float = 0.0
 
     @property
     def calibration(self) -> Calibration:
@@ -67,6 +72,12 @@ class CalibrationResult:
             if not number.kept
         )
         return moved and not self.at_end and self.after.all_of_it.rms < self.before.all_of_it.rms
+
+    @property
+    def explains_little(self) -> bool:
+        """Whether more than ``MUCH_LEFT`` of predicted less real remains, beyond the scan's noise."""
+        before, after = (each.all_of_it.rms**2 - self.noise**2 for each in (self.before, self.after))
+        return after > (MUCH_LEFT**2) * max(before, 0.0)
 
 
 def refuse_bare(stages: Stages) -> None:
@@ -121,7 +132,16 @@ def calibrate(
         if not kept and number.at_end(design)
     )
     return CalibrationResult(
-        design, last.points, before, after, confused, int(seen.sum()), singular, fit.solves, at_end
+        design,
+        last.points,
+        before,
+        after,
+        confused,
+        int(seen.sum()),
+        singular,
+        fit.solves,
+        at_end,
+        worn.skin.noise,
     )
 
 
