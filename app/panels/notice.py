@@ -3,6 +3,7 @@
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -157,8 +158,7 @@ class NoticeBar(QWidget):
         close.clicked.connect(self.close_notice)
         row.addWidget(close)
         self.details = reading("", tr("Details"), code=True)
-        layout = self.details.document().documentLayout()
-        layout.documentSizeChanged.connect(lambda size: self._fit_details(round(size.height())))
+        self.details.document().documentLayout().documentSizeChanged.connect(self._fit_details)
         column.addWidget(self.details)
 
     def _next(self) -> None:
@@ -181,11 +181,16 @@ class NoticeBar(QWidget):
         self.show()
         self.update()
 
-    def _fit_details(self, lines: int) -> None:
+    def _fit_details(self) -> None:
         """Give the details room for all their lines, or for the first of them, and cut none in half."""
-        line, margin = self.details.fontMetrics().lineSpacing(), self.details.document().documentMargin()
+        document, high, lines = self.details.document(), 0.0, 0
+        block = document.begin()
+        while block.isValid() and lines + block.lineCount() <= _MOST_LINES:
+            lines += block.lineCount()
+            high += document.documentLayout().blockBoundingRect(block).height()
+            block = block.next()
         frame = self.details.height() - self.details.contentsRect().height()
-        self.details.setFixedHeight(round(min(lines, _MOST_LINES) * line + 2 * margin) + frame)
+        self.details.setFixedHeight(math.ceil(high + 2 * document.documentMargin()) + frame)
 
     def _show_details(self, shown: bool) -> None:
         self.details.setVisible(shown)
