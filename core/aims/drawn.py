@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from core.aims.curve_file import foremost, overhang, profile_goals
 from core.aims.figure import Goal
@@ -51,6 +50,8 @@ class Drawn:
     @property
     def curve(self) -> Floats:
         """The curve as it is pulled, heights and how far out, (k, 2) [mm]: smooth, nowhere beyond handles."""
+        from scipy.interpolate import PchipInterpolator  # noqa: PLC0415 (half a second, no start needs it)
+
         if not len(self.handles):
             return self.base
         along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(self.base, axis=0), axis=1))])
