@@ -10,6 +10,7 @@ from scenes import HOUSE, bra, wait_for
 
 from app.main_window import MainWindow
 from core.aims.figure import Goal
+from core.aims.outline import skin_of
 from core.answer import answer_of
 from core.export import write_mesh
 from core.pipeline import Stages, build
@@ -29,19 +30,23 @@ def wishing(window: MainWindow) -> None:
 
 
 def drawing_a_profile(window: MainWindow) -> None:
-    """Ask for a fuller profile, drawn on the body, and wait for the answer."""
+    """Ask for a profile, drawn on the body as other lengths would make it, and wait for the answer."""
     wait_for(window.is_settled)
     desk = window.ask_desk
     desk.begin()
     wait_for(lambda: desk.answer is not None and not desk.work.at_work)
     desk.drawing.begin("left")
     profile = desk.drawn["profile left"]
-    foremost = int(profile.spots[:, 1].argmax())
-    desk.drawing.draw("profile left", profile.pulled(foremost, 2.0, 2.5).pulled(foremost + 1, 1.0, 2.0))
+    stages = window.session.frame.stages
+    other = bra().with_line("strap left", 0.88).with_line("strap right", 0.88).with_line("mid-bust", 0.98)
+    outs, _ = skin_of(stages, "left", profile.spots[:, 0])(answer_of(build(other, stages)).place.points)
+    steps = np.stack([np.zeros(len(outs)), outs - profile.spots[:, 1]], axis=1)
+    desk.drawing.draw("profile left", replace(profile, steps=steps, by_hand=frozenset(range(len(outs)))))
     desk.ask()
     wait_for(lambda: desk.answer.reply is not None and not desk.work.at_work)
     wanted = desk.answer.reply.design
     wait_for(lambda: window.session.frame.stages.design == wanted)
+    wait_for(lambda: window.is_at_rest() and not window.jobs.at_work())
 
 
 def sure(window: MainWindow) -> None:

@@ -138,6 +138,11 @@ def test_what_a_hand_draws_is_met_on_average() -> None:
     assert (is_near(near, goals), is_met(near, goals)) == (True, False)
     with speaking("ja"):
         assert answer_words(near, goals) == "平均 0.4 mm、最大 3.0 mm のずれで到達できます。"
+    now = {goal.name: 200.9 for goal in goals}
+    assert answer_words(near, goals, None, now) == "Met within 0.4 mm on average, 3.0 mm at most."
+    now = {goal.name: 200.5 for goal in goals}
+    said = "Nearest is 0.4 mm off on average, 3.0 mm at most (was 0.5 mm)."
+    assert answer_words(near, goals, None, now) == said, "what hardly comes nearer is not met"
     assert not is_near(off_by(1.1, 1.0), goals), "a millimetre is seen"
     assert not is_near(off_by(0.1, 5.2), goals), "nor is one place far off"
     assert not is_near(replace(near, agreed=False), goals)

@@ -11,7 +11,9 @@ from app.wording.samples import sample_design
 from core.aims.drawn import FARTHEST, Drawn, drawn, from_table, outline
 from core.aims.outline import profile_name
 from core.aims.readings import reading
+from core.answer import answer_of
 from core.pipeline import Stages, build
+from core.presets import built_in, with_preset
 
 
 def body(name: str) -> Stages:
@@ -85,6 +87,13 @@ def test_where_a_breast_hangs_over_the_lower_end_is_a_handle() -> None:
     assert profile.handles[0] == 0
     assert profile.base[0, 0] > stages.control.mesh.vertices[~stages.control.fixed, 2].min() + 2.0
     assert profile.pulled(0, 0.0, 5.0).curve[0, 1] == pytest.approx(profile.base[0, 1] + 5.0)
+    # Lifted it hangs over further up: its outline ends there, and does not jump to the chest.
+    lifted = with_preset(stages.design, next(each for each in built_in() if each.title == "Bra"))
+    for name in ("strap left", "strap right"):
+        lifted = lifted.with_line(name, 0.86)
+    places = outline(stages, profile, answer_of(build(lifted, stages)).place.points)
+    assert len(places) > 0.5 * len(profile.base)
+    assert np.abs(np.diff(places[:, 1])).max() < 3.0 * np.diff(places[:, 2]).max()
 
 
 def test_a_table_is_asked_for_as_it_is_and_can_be_dragged_on(stages: Stages, profile: Drawn) -> None:

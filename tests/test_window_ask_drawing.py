@@ -81,6 +81,7 @@ def is_not_dragged_from_elsewhere(window: MainWindow) -> Script:
     drag(handles(window)[1], -4, -4)
     yield answered(window)
     assert len(desk.goals()) > 10
+    assert {goal.name for goal in desk.goals()} <= set(desk.answer.now), "it is known how far it was off"
     assert over_the_card(window)
     # Who has turned the view himself keeps it.
     viewport.set_view("front")

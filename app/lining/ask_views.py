@@ -38,7 +38,7 @@ def show_answer(
     else:
         reply, asked = answer.reply, answer.question.goals
         met = is_met(reply, asked) or (wishes.only_limit is not None and reply.agreed)
-        said, why = answer_words(reply, asked, wishes.only_limit), ""
+        said, why = answer_words(reply, asked, wishes.only_limit, answer.now), ""
         if asks_to_be_even(asked) and wishes.only_limit is None:
             said, why = evened_words(reply, asked, answer.now, answer.then)
         changes = "\n".join(filter(None, (why, listed(change_words(design, reply)))))

@@ -131,7 +131,9 @@ class AskWork(QObject):
             known = self._known
             if known is None or known.design is not question.design or known.most_kpa != question.most_kpa:
                 known = self._known = self._open(question, progress)
-            missing = [name for name in question.figures if name not in known.now]
+            # What is asked for is known as it was too, once there is time.
+            asked = () if question.hurried else (goal.name for goal in question.goals)
+            missing = [name for name in dict.fromkeys((*question.figures, *asked)) if name not in known.now]
             if missing or not known.now:
                 now, known.presses = known.asking.now(missing)
                 known.now |= now

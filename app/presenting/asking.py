@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 _MET = 0.05  # [mm]
 _LIKE = 0.5  # of a profile [mm]
 _NEAR, _NEAREST = 1.0, 5.0  # of one that is as good as met, on average and anywhere: less is not drawn [mm]
+_MUCH = 0.5  # of what a profile was off: an answer that leaves more has hardly brought it nearer [1]
 _ABOUT = 1.015  # of a limit that counts as kept
 SAME = 5e-4
 """Ratios that are this near to each other read the same [1]."""
@@ -71,10 +72,13 @@ def wishes_words(goals: Sequence[Goal]) -> str:
     return listed((*single, *dict.fromkeys(figure_title(g.name) for g in goals if section_of(g.name))))
 
 
-def answer_words(reply: Reply, goals: Sequence[Goal], limit: float | None = None) -> str:
+def answer_words(
+    reply: Reply, goals: Sequence[Goal], limit: float | None = None, now: Mapping[str, float] | None = None
+) -> str:
     """Return in a sentence whether it can be reached, else what is nearest and why.
 
-    With a ``limit`` [kPa] it was asked for that alone; ``goals`` are then what is to stay.
+    With a ``limit`` [kPa] it was asked for that alone; ``goals`` are then what is to stay. ``now`` [mm] is
+    what figures were before, if that is known.
     """
     most = max(reply.pressure.values(), default=0.0)
     if limit is not None and reply.agreed and most < _ABOUT * limit:
@@ -86,15 +90,26 @@ def answer_words(reply: Reply, goals: Sequence[Goal], limit: float | None = None
         most = max(float(np.abs(off).max()) for off in profiles_off(goals, reply.reached).values())
         return tr("Reached within {mm} mm.").format(mm=number(most))
     if is_near(reply, goals):
-        offs = profiles_off(goals, reply.reached).values()
-        said = tr("Met within {mean} mm on average, {most} mm at most.")
-        return said.format(**_mean_and_most(max(offs, key=lambda off: float(np.abs(off).mean()))))
+        return _near_words(reply, goals, now or {})
     nearest = listed(_nearest(reply, goals))
     if not reply.agreed:
         said = tr("Nearest so far: {nearest}. Lengths, elastics and pressures did not come to agree.")
         return said.format(nearest=nearest)
     said = tr("Not reachable: nearest is {nearest}, because {reasons}.")
     return said.format(nearest=nearest, reasons=reasons_words(reply))
+
+
+def _near_words(reply: Reply, goals: Sequence[Goal], now: Mapping[str, float]) -> str:
+    """Return how nearly profiles are met, and what they were off if that was hardly more."""
+    offs = profiles_off(goals, reply.reached)
+    section = max(offs, key=lambda each: float(np.abs(offs[each]).mean()))
+    there = [goal for goal in goals if section_of(goal.name) == section]
+    before = [abs(now[goal.name] - goal.value) for goal in there if goal.name in now]
+    if not before or float(np.abs(offs[section]).mean()) <= _MUCH * float(np.mean(before)):
+        said = tr("Met within {mean} mm on average, {most} mm at most.")
+    else:
+        said = tr("Nearest is {mean} mm off on average, {most} mm at most (was {before} mm).")
+    return said.format(**_mean_and_most(offs[section]), before=number(float(np.mean(before or [0.0]))))
 
 
 def _come(reply: Reply, goals: Sequence[Goal]) -> Iterable[str]:

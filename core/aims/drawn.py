@@ -104,11 +104,14 @@ def from_table(stages: Stages, section: str, curve: Floats) -> Drawn:
 
 
 def outline(stages: Stages, profile: Drawn, control_points: Points) -> Points:
-    """Return the skin's outline at the heights of a profile, (k, 3) [mm], at control points (n, 3) [mm]."""
+    """Return the skin's outline at the heights of a profile, (k, 3) [mm], at control points (n, 3) [mm].
+
+    It ends where a breast hangs over.
+    """
     heights = profile.base[:, 0]
     outs, _ = skin_of(stages, profile.section, heights)(control_points)
-    there = np.isfinite(outs)
-    return in_space(stages, profile.section, np.stack([heights[there], outs[there]], axis=1))
+    curve = np.stack([heights, outs], axis=1)[np.isfinite(outs)]
+    return in_space(stages, profile.section, curve[curve[:, 0] > overhang(stages, profile.section, curve)])
 
 
 def in_space(stages: Stages, section: str, curve: Floats) -> Points:
