@@ -14,7 +14,7 @@ from core.cutting import CutList, cut_list
 from core.doubts import doubts
 from core.measures import Measures, before_after, measure_rows
 from core.measuring.definitions import DEFINITIONS
-from core.measuring.plus_minus import BEFORE, Spread
+from core.measuring.plus_minus import BEFORE, SOURCES, Spread
 from core.mesh import Floats, Mesh, Points
 from core.pipeline import Stages
 from core.press_list import PressRow, press_list
@@ -124,7 +124,7 @@ class Sheet:
     should be looked at before landmarks are trusted. ``off`` is how far figures may be off, by the keys of
     ``core.measuring.plus_minus``, in their units: nothing where that was not worked out; see ``with_spread``.
     ``off_factor`` tells of others how many times smaller or larger they may be [1], ``off_notes`` where all
-    of this says less than it seems to.
+    of this says less than it seems to, ``off_sources`` what any of it comes from.
     """
 
     heading: Heading
@@ -152,6 +152,7 @@ class Sheet:
     off: Mapping[str, float] = field(default_factory=dict)
     off_factor: Mapping[str, float] = field(default_factory=dict)
     off_notes: tuple[str, ...] = ()
+    off_sources: tuple[str, ...] = ()
 
     @property
     def sound(self) -> bool:
@@ -212,8 +213,9 @@ def with_spread(sheet: Sheet, stages: Stages, control_points: Points, spread: Sp
     off = {key: off for key in spread.doubts if (off := spread.plus_minus(key)) is not None}
     factors = {key: factor for key in spread.doubts if (factor := spread.factor(key)) is not None}
     told = with_nearby(sheet.sizes, *(off.get(f"{BEFORE}:{key}") for key in GIRTHS_OF_SIZES))
-    notes = spread.cautions
-    return replace(sheet, off=off, off_factor=factors, off_notes=notes, sections=tuple(sections), sizes=told)
+    within = {name for doubt in spread.doubts.values() for name in doubt.by_source}
+    sheet = replace(sheet, off=off, off_factor=factors, sections=tuple(sections), sizes=told)
+    return replace(sheet, off_notes=spread.cautions, off_sources=tuple(s for s in SOURCES if s in within))
 
 
 def _sizes(before: Measures, heading: Heading) -> tuple[tuple[dict[str, Any], ...], str]:

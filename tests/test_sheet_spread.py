@@ -17,6 +17,7 @@ from PySide6.QtGui import QImage
 from app.commands import reported
 from app.commands.reported import SheetWishes, run_report
 from app.dress.theme import load_fonts
+from app.reporting.grounds import note_groups
 from app.reporting.handout import SHOTS, Handout
 from app.reporting.pages import pages_of
 from app.reporting.telling import cut_views
@@ -130,6 +131,9 @@ def test_pieces_tell_how_far_they_may_be_off(built: Callable[[str], Stages]) -> 
         f"largest pressure {ends[2]} to {ends[3]} kPa."
     )
     rows = {row["key"]: row for row in csv.DictReader(io.StringIO(sheet_csv(sheet)))}
+    assert sheet.off_sources == ("scan", "tissue", "tape"), "no elastic, no landmark: it holds none of them"
+    (meaning,) = (each for _, notes in note_groups(sheet) for each in notes if "It holds" in each)
+    assert "It holds: scan, tissue, cutting and sewing." in meaning
     assert float(rows["mid-bust: cut"]["off_after"]) == 8.0
     assert float(rows["mid-bust: tension"]["off_factor"]) == pytest.approx(np.e)
     assert rows["mid-bust: width"]["off_after"] == ""

@@ -10,7 +10,6 @@ from app.reporting.telling import known, system_word
 from app.wording.words import colon, joined, language, listed, say, tr
 from core.measuring.definitions import GIRTHS, TAPE, definition_of
 from core.measuring.own import OWN
-from core.measuring.plus_minus import SOURCES
 from core.sewing.comfort import comfort
 from core.sheet import Sheet
 from core.sizes import built_in
@@ -78,7 +77,7 @@ def _meaning(sheet: Sheet) -> list[str]:
     """Return what ± means, if it stands on the sheet."""
     if not (sheet.off and sheet.sound):
         return []
-    sources = listed([source_words(each) for each in SOURCES])
+    sources = listed([source_words(each) for each in sheet.off_sources])
     means = tr("± is twice the standard deviation: 95 % of all cases, if errors are normal.")
     holds = tr("It holds: {sources}. Whether lines stick or slide is no part of it.").format(sources=sources)
     return [joined([means, holds]), *map(say, sheet.off_notes)]
