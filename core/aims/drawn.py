@@ -50,18 +50,13 @@ class Drawn:
     @property
     def curve(self) -> Floats:
         """The curve as it is pulled, heights and how far out, (k, 2) [mm]: smooth, nowhere beyond handles."""
-        from scipy.interpolate import PchipInterpolator  # noqa: PLC0415 (half a second, no start needs it)
-
         if not len(self.handles):
             return self.base
         along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(self.base, axis=0), axis=1))])
         knots = np.unique(np.concatenate([[0, len(along) - 1], self.handles]))
         ways = np.zeros((len(knots), 2))
         ways[np.searchsorted(knots, self.handles)] = self.steps
-        # One more knot beyond each end: the curve leaves its ends without a kink.
-        spots = np.concatenate([[along[0] - 1.0], along[knots], [along[-1] + 1.0]])
-        between = PchipInterpolator(spots, ways[[0, *range(len(knots)), -1]])
-        return np.asarray(self.base + between(along))
+        return np.asarray(self.base + _between(along[knots], ways, along))
 
     @property
     def spots(self) -> Floats:
@@ -131,3 +126,22 @@ def _handles(base: Floats, hangs: bool) -> Indices:
     if hangs:
         wanted.append(heights[0])
     return np.unique([int(np.abs(heights - height).argmin()) for height in wanted])
+
+
+def _between(knots: Floats, ways: Floats, along: Floats) -> Floats:
+    """Return ``ways`` (k, 2) of knots (k,) at places between them, (n, 2): smooth, level at both ends.
+
+    Piecewise cubic after Fritsch and Butland (1984): a slope that is the harmonic mean of those beside its
+    knot never leads beyond what the knots have.
+    """
+    wide = np.diff(knots)[:, None]
+    beside = np.diff(ways, axis=0) / wide
+    before, after = beside[:-1], beside[1:]
+    same, level = before * after > 0.0, np.zeros((1, 2))
+    inner = np.where(same, 2.0 * before * after / np.where(same, before + after, 1.0), 0.0)
+    slopes = np.concatenate([level, inner, level])
+    piece = np.clip(np.searchsorted(knots, along, side="right") - 1, 0, len(knots) - 2)
+    part = (along - knots[piece])[:, None] / wide[piece]
+    rest = 1.0 - part
+    ends = rest**2 * (1.0 + 2.0 * part) * ways[piece] + part**2 * (1.0 + 2.0 * rest) * ways[piece + 1]
+    return np.asarray(ends + part * rest * wide[piece] * (rest * slopes[piece] - part * slopes[piece + 1]))
