@@ -9,7 +9,7 @@ from garment_tools import at_rest, choose, cut_rows, made_of, open_menu, pick
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
-from window_tools import Script, run_main, settled, undrawn
+from window_tools import Script, run_undrawn, settled
 
 from app.keeping import tables
 from app.lining.elastic_choice import FIRST_STRETCH, LIFT_TOLD
@@ -35,7 +35,6 @@ def own_house(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 def test_an_elastic_is_chosen_and_the_length_to_cut_is_that_of_the_core() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        undrawn(window)
         window.lines_desk.commit_length("full-bust", 0.985)
         window.inspector.open("garment")
         yield at_rest(window)
@@ -69,13 +68,12 @@ def test_an_elastic_is_chosen_and_the_length_to_cut_is_that_of_the_core() -> Non
         assert window.session.design == bare
         assert garment.rows["mid-bust"].cut.text() == "–"
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_one_elastic_is_chosen_for_all_and_taken_off_again_without_moving_the_body() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        undrawn(window)
         window.lines_desk.commit_length("full-bust", 0.985)
         window.inspector.open("garment")
         yield at_rest(window)
@@ -105,13 +103,12 @@ def test_one_elastic_is_chosen_for_all_and_taken_off_again_without_moving_the_bo
         for name, row in before.items():
             assert after[name].reached_front_mm == pytest.approx(row.reached_front_mm, abs=SAME)
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_a_lift_that_goes_with_the_elastic_is_told() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        undrawn(window)
         window.line_maker.add("straps")
         window.lines_desk.commit_length("strap left", 0.95)
         window.inspector.open("garment")
@@ -125,14 +122,13 @@ def test_a_lift_that_goes_with_the_elastic_is_told() -> None:
         assert abs(after - before) >= LIFT_TOLD
         assert (notice.tone, f"{up_words(before)} are now {up_words(after)}" in notice.hint) == ("warn", True)
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_an_elastic_that_cannot_do_it_is_refused_and_nothing_changes() -> None:
     def script(window: MainWindow) -> Script:
         save_elastic(Elastic("weak", 10.0, ((0.0, 0.0), (0.1, 0.05), (0.3, 0.2)), estimate=False))
         yield settled(window)
-        undrawn(window)
         window.inspector.open("garment")
         before = window.session.design
         choose(window, "mid-bust", "weak")
@@ -143,13 +139,12 @@ def test_an_elastic_that_cannot_do_it_is_refused_and_nothing_changes() -> None:
         assert notice.hint
         assert window.session.design is before
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_the_other_meaning_keeps_the_length_to_cut_and_moves_the_body() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        undrawn(window)
         window.inspector.open("garment")
         choose(window, "mid-bust", "Strap", "15 mm")
         yield made_of(window, "mid-bust")
@@ -166,13 +161,12 @@ def test_the_other_meaning_keeps_the_length_to_cut_and_moves_the_body() -> None:
         assert row.reached_front_mm > first.reached_front_mm + 1.0
         assert (row.tension_n or 0.0) < 0.7 * (first.tension_n or 0.0)
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_a_band_on_the_rib_cage_is_cut_as_far_stretched_as_the_designer_says() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        undrawn(window)
         window.lines_desk.commit_length("mid-bust", 1.0)
         window.inspector.open("garment")
         yield at_rest(window)
@@ -214,13 +208,12 @@ def test_a_band_on_the_rib_cage_is_cut_as_far_stretched_as_the_designer_says() -
         assert window.session.design is not None
         assert not window.session.design.worn(), "what holds nothing is not worn"
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_a_locked_line_stays_what_it_is() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        undrawn(window)
         window.inspector.open("garment")
         window.lines_desk.decide("mid-bust", "locked", True)
         yield at_rest(window)
@@ -232,7 +225,7 @@ def test_a_locked_line_stays_what_it_is() -> None:
         assert "locked" in notice.sentence
         assert window.session.design is before
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_newtons_go_with_the_stiffness_of_tissue_and_the_list_leaves_as_a_table(
@@ -240,7 +233,6 @@ def test_newtons_go_with_the_stiffness_of_tissue_and_the_list_leaves_as_a_table(
 ) -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        undrawn(window)
         window.inspector.open("garment")
         yield at_rest(window)
         before = cut_rows(window)["mid-bust"].tension_n or 0.0
@@ -279,4 +271,4 @@ def test_newtons_go_with_the_stiffness_of_tissue_and_the_list_leaves_as_a_table(
         window.garment.table_asked.emit()
         assert path.read_text("utf-8-sig").splitlines()[0].split(",") == heading.split("\t")
 
-    run_main([], script)
+    run_undrawn([], script)
