@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 from garment_tools import at_rest, choose, made_of
-from window_tools import PATIENCE, Script, run_main, settled, undrawn
+from window_tools import PATIENCE, Script, run_undrawn, settled
 
 from app.lining import elastic_choice
 from app.main_window import MainWindow
@@ -31,7 +31,6 @@ def gate(monkeypatch: pytest.MonkeyPatch) -> threading.Event:
 def test_an_elastic_goes_to_no_other_variant_and_to_no_other_document(gate: threading.Event) -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        undrawn(window)
         window.inspector.open("garment")
         choose(window, "mid-bust", "Strap", "15 mm")
         assert window.jobs.at_work()
@@ -52,7 +51,7 @@ def test_an_elastic_goes_to_no_other_variant_and_to_no_other_document(gate: thre
         assert window.session.design.elastics == ()
         assert window.session.undo_stack.isClean()
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_an_elastic_goes_with_the_next_edit_and_leaves_with_an_undo_and_with_its_line(
@@ -60,7 +59,6 @@ def test_an_elastic_goes_with_the_next_edit_and_leaves_with_an_undo_and_with_its
 ) -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        undrawn(window)
         window.line_maker.add("straps")
         window.lines_desk.commit_length("strap left", 0.97)
         window.inspector.open("garment")
@@ -89,4 +87,4 @@ def test_an_elastic_goes_with_the_next_edit_and_leaves_with_an_undo_and_with_its
         gate.set()
         yield made_of(window, "mid-bust")
 
-    run_main([], script)
+    run_undrawn([], script)

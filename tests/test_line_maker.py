@@ -11,7 +11,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
-from window_tools import Script, drag, points, run_main, run_undrawn, settled, undrawn
+from window_tools import Script, drag, points, run_main, run_undrawn, settled
 
 from app.lining import line_maker
 from app.lining.line_dialog import LineDialog
@@ -164,7 +164,6 @@ def test_ready_made_lines_pull_on_their_own_side_of_every_template(name: str, bu
 def test_a_handle_in_the_hand_stays_while_lines_come_and_its_preview_goes_with_its_line() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        undrawn(window)
         session, row = window.session, window.lines.rows["mid-bust"]
         drag(window, "mid-bust", -20, release=False)
         window.actions_.add_lines["straps"].trigger()
@@ -190,4 +189,4 @@ def test_a_handle_in_the_hand_stays_while_lines_come_and_its_preview_goes_with_i
         yield lambda: "strap left" not in window.lines.rows
         assert cancelled == ["strap left"]
 
-    run_main([], script)
+    run_undrawn([], script)

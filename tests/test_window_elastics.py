@@ -10,7 +10,7 @@ from garment_tools import at_rest, choose, cut_rows, made_of, open_menu
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
-from window_tools import Script, run_main, settled, undrawn
+from window_tools import Script, run_undrawn, settled
 
 from app.lining import elastics_desk
 from app.main_window import MainWindow
@@ -37,7 +37,6 @@ def test_tables_of_ones_own_are_brought_in_or_refused_and_taken_away(
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        undrawn(window)
         monkeypatch.setattr(elastics_desk, "ask_table", lambda *_: str(chosen[0]))
         monkeypatch.setattr(elastics_desk, "ask_save", lambda *_: str(empty))
         monkeypatch.setattr(elastics_desk, "ask", lambda *_: "delete")
@@ -78,7 +77,7 @@ def test_tables_of_ones_own_are_brought_in_or_refused_and_taken_away(
         sheet.reject()
         yield lambda: window.elastics_desk.sheet is None
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_an_own_elastic_travels_with_its_project_to_where_nobody_has_it(
@@ -89,7 +88,6 @@ def test_an_own_elastic_travels_with_its_project_to_where_nobody_has_it(
     def save(window: MainWindow) -> Script:
         save_elastic(Elastic("Roll 9", 14.0, ((0.0, 0.0), (0.4, 5.2), (0.9, 14.0)), 18.0, "mine", False))
         yield settled(window)
-        undrawn(window)
         window.inspector.open("garment")
         choose(window, "mid-bust", "Roll 9")
         yield made_of(window, "mid-bust")
@@ -100,7 +98,6 @@ def test_an_own_elastic_travels_with_its_project_to_where_nobody_has_it(
     def reopen(window: MainWindow) -> Script:
         assert not own_folder().exists()
         yield settled(window)
-        undrawn(window)
         window.inspector.open("garment")
         yield at_rest(window)
         row = window.garment.rows["mid-bust"]
@@ -111,15 +108,14 @@ def test_an_own_elastic_travels_with_its_project_to_where_nobody_has_it(
         assert next(each.text() for each in menu.actions() if each.isChecked()) == "Roll 9"
         menu.close()
 
-    run_main([], save)
+    run_undrawn([], save)
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "elsewhere"))
-    run_main([str(project)], reopen)
+    run_undrawn([str(project)], reopen)
 
 
 def test_the_keyboard_alone_chooses_an_elastic() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        undrawn(window)
         window.activateWindow()
         yield window.isActiveWindow
         window.inspector.tabs.button("garment").click()
@@ -139,13 +135,12 @@ def test_the_keyboard_alone_chooses_an_elastic() -> None:
         yield made_of(window, "mid-bust")
         assert window.garment.rows["mid-bust"].elastic.words == "Strap 15 mm"
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_an_elastic_beyond_its_table_is_told_in_a_drag_and_anew_at_the_next_edit() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        undrawn(window)
         window.inspector.open("garment")
         choose(window, "mid-bust", "Strap", "15 mm")
         yield made_of(window, "mid-bust")
@@ -164,13 +159,12 @@ def test_an_elastic_beyond_its_table_is_told_in_a_drag_and_anew_at_the_next_edit
         yield at_rest(window)
         assert window.session.design == made
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_a_linked_pair_is_made_of_the_same_in_one_step() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        undrawn(window)
         window.line_maker.add("straps")
         window.lines_desk.commit_length("strap left", 0.97)
         window.inspector.open("garment")
@@ -187,7 +181,7 @@ def test_a_linked_pair_is_made_of_the_same_in_one_step() -> None:
             assert row.reached_front_mm == pytest.approx(before[name].reached_front_mm, abs=0.2)
         assert window.garment.rows["strap left"].elastic.words == "Strap 12 mm"
 
-    run_main([], script)
+    run_undrawn([], script)
 
 
 def test_one_that_is_called_as_ours_gets_a_name_of_its_own_and_none_is_called_measured_without_a_source(
@@ -198,7 +192,6 @@ def test_one_that_is_called_as_ours_gets_a_name_of_its_own_and_none_is_called_me
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        undrawn(window)
         monkeypatch.setattr(elastics_desk, "ask_table", lambda *_: str(table))
         window.garment.elastics_asked.emit()
         sheet = window.elastics_desk.sheet
@@ -225,4 +218,4 @@ def test_one_that_is_called_as_ours_gets_a_name_of_its_own_and_none_is_called_me
         ]
         menu.close()
 
-    run_main([], script)
+    run_undrawn([], script)
