@@ -148,8 +148,11 @@ def qapp_cls() -> type[QApplication]:
 
 
 @pytest.fixture
-def spared_as_in_the_program() -> None:
+def spared_as_in_the_program() -> Iterator[None]:
     """What a window spares the search for garbage it gives back when it is closed, with all libraries."""
+    yield
+    gc.collect()
+    gc.freeze()  # as each file begins
 
 
 @pytest.fixture
