@@ -6,8 +6,10 @@ In each of 200 cases glued or sliding lines, a set of them and their lengths are
 the body looks natural; one to three figures of what comes out are asked for, with all lines at 100 %, in
 every fourth case the profile through a bust point.
 Then 40 cases with two lines of elastic, from 97 %, that press no more than they may.
-Prints a line for each case, then what is met, what is missed, and processor time; --put puts that table into
-docs/ask.md.
+Beside each the same figures are asked for 8 mm further or less far, profiles with a bump of 5 mm: most of
+that cannot be reached.
+Prints a line for each case, then what is met, what is missed, and processor time; --put puts these tables
+into docs/ask.md.
 """
 
 from __future__ import annotations
@@ -46,6 +48,8 @@ MET = 0.5  # mm
 SHORTEST, SHORTEST_ELASTIC, LOOSE = 0.85, 0.75, 0.97
 HEIGHTS = 5.0  # of a profile [mm]
 ELASTICS = ("plush 12", "picot 10", "picot 12")
+TOO_FAR, BUMP, WIDE = 8.0, 5.0, 25.0  # of wishes that can hardly be reached [mm]
+SOON = 0.3  # an answer is to be there [s]
 TIMES = ("in the middle", "at 95 %", "at most")
 
 
@@ -164,6 +168,22 @@ def case(rng: np.random.Generator, start: Stages, *, curve: bool = False) -> Cas
     return Case(name, goals, miss, seconds, reply.answers, reply.reachable)
 
 
+def too_far(number: int, start: Stages, wished: Case) -> Case:
+    """Return how a wish is answered that lies far from one that is known to be reached."""
+    rng, names = np.random.default_rng(number), [goal.name for goal in wished.goals]
+    if asks(wished, "profile "):
+        heights = np.array([float(name.split()[2]) for name in names])
+        middle, high = rng.uniform(heights.min(), heights.max()), rng.choice([-BUMP, BUMP])
+        more = high * np.exp(-(((heights - middle) / WIDE) ** 2))
+    else:
+        more = TOO_FAR * rng.choice([-1.0, 1.0], size=len(names))
+    goals = tuple(Goal(goal.name, goal.value + off) for goal, off in zip(wished.goals, more, strict=True))
+    begun = time.process_time()
+    reply = ask(start, goals)
+    seconds = time.process_time() - begun
+    return Case(wished.name, goals, reply.miss, seconds, reply.answers, reply.reachable)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", nargs="?", type=Path)
@@ -172,18 +192,15 @@ def main() -> None:
     parser.add_argument("--put", action="store_true", help="put the table into docs/ask.md")
     options = parser.parse_args()
     rng = np.random.default_rng(2027)
-    on, cases, made = list(bodies(options.folder)), [], []
+    on, cases, made, far = list(bodies(options.folder)), [], [], []
     for number in range(options.cases + options.elastic):
         elastic = number >= options.cases
         dressed = (of_elastic if elastic else worn)(rng, on[number % len(on)])
         curve = not elastic and number % 4 == 3
         (made if elastic else cases).append(done := case(rng, dressed, curve=curve))
-        goals = ", ".join(f"{goal.name} {goal.value:.1f}" for goal in done.goals[:3])
-        told = "" if done.told else ", told not to be reached"
-        print(
-            f"{done.miss:8.4f} mm {1e3 * done.seconds:6.0f} ms {done.answers:3} {done.name}: {goals}{told}",
-            flush=True,
-        )
+        far.append(missed := too_far(number, dressed, done))
+        for each in (done, missed):
+            show(each)
     girths = [each for each in cases if GIRTH in {goal.name for goal in each.goals}]
     groups = {
         "all": cases,
@@ -196,10 +213,37 @@ def main() -> None:
     }
     rows = [(name, *row(chosen)) for name, chosen in groups.items() if chosen]
     heads = ("", "cases", f"met within {MET} mm", "told to be reached", "largest miss", *TIMES, "answers")
-    told = table(heads, rows)
-    print(told)
+    told, missed_told = table(heads, rows), unreached(far, options.cases)
+    print(told, missed_told, sep="\n\n")
     if options.put:
         put("ask.md", "asked", told)
+        put("ask.md", "unreached", missed_told)
+
+
+def show(case: Case) -> None:
+    """Print one question and how it was answered."""
+    goals = ", ".join(f"{goal.name} {goal.value:.1f}" for goal in case.goals[:3])
+    told = "" if case.told else ", told not to be reached"
+    print(
+        f"{case.miss:8.4f} mm {1e3 * case.seconds:6.0f} ms {case.answers:3} {case.name}: {goals}{told}",
+        flush=True,
+    )
+
+
+def unreached(far: list[Case], rigid: int) -> str:
+    """Return the table of wishes that cannot be reached; the first ``rigid`` are of lines of no elastic."""
+    groups = {
+        "figures": [each for each in far[:rigid] if not asks(each, "profile ")],
+        "profiles": [each for each in far[:rigid] if asks(each, "profile ")],
+        "figures, lines of elastic": far[rigid:],
+    }
+    rows = []
+    for name, asked in groups.items():
+        if chosen := [each for each in asked if not each.told]:
+            late = sum(each.seconds > SOON for each in chosen)
+            rows.append((name, str(len(chosen)), *times(chosen), str(late), answers(chosen)))
+    heads = ("", "not to be reached", *TIMES, f"more than {1e3 * SOON:.0f} ms", "answers")
+    return table(heads, rows)
 
 
 def asks(case: Case, begins: str) -> bool:
@@ -209,16 +253,25 @@ def asks(case: Case, begins: str) -> bool:
 
 def row(cases: list[Case]) -> tuple[str, ...]:
     """Return what holds for some cases."""
-    ms = [1e3 * each.seconds for each in cases]
-    figures = statistics.median(ms), float(np.quantile(ms, 0.95)), max(ms)
     return (
         str(len(cases)),
         str(sum(each.miss <= MET for each in cases)),
         str(sum(each.told for each in cases)),
         f"{max(each.miss for each in cases):.3f} mm",
-        *(f"{each:.0f} ms" for each in figures),
-        f"{statistics.median(each.answers for each in cases):.0f}",
+        *times(cases),
+        answers(cases),
     )
+
+
+def times(cases: list[Case]) -> tuple[str, ...]:
+    """Return how long answers took, as ``TIMES`` name it."""
+    ms = [1e3 * each.seconds for each in cases]
+    return tuple(f"{each:.0f} ms" for each in (statistics.median(ms), np.quantile(ms, 0.95), max(ms)))
+
+
+def answers(cases: list[Case]) -> str:
+    """Return how many exact answers were worked out for one, in the middle."""
+    return f"{statistics.median(each.answers for each in cases):.0f}"
 
 
 if __name__ == "__main__":

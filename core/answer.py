@@ -10,7 +10,7 @@ import numpy as np
 from core.design import Design
 from core.design_lines import WornLine
 from core.errors import LineError
-from core.exact import solve_exact
+from core.exact import NEWTON_LIMIT, solve_exact
 from core.pipeline import Stages, targets_of
 from core.solving.body_volume import body_kept, solve_body_exact
 from core.solving.newton import Balance
@@ -44,22 +44,31 @@ def _cannot_hold(design: Design) -> tuple[str, str]:
 
 
 def balance_of(
-    stages: Stages, ratios: tuple[float, ...] | None = None, near: Balance | None = None
+    stages: Stages,
+    ratios: tuple[float, ...] | None = None,
+    near: Balance | None = None,
+    limit: int = NEWTON_LIMIT,
 ) -> Balance:
     """Return the exact answer of a design, which may not be ``found``; from one ``near`` by it is quicker.
 
-    ``ratios`` [1] are other lengths than the design's, one per line of the model.
+    ``ratios`` [1] are other lengths than the design's, one per line of the model. After ``limit`` steps it is
+    given up.
     """
     ratios = targets_of(stages.design, stages).ratios if ratios is None else ratios
     if stages.design.dense_volume:
-        return solve_body_exact(stages.model, ratios, stages.body_change, near=near)
-    return solve_exact(stages.model, ratios, near=near)
+        return solve_body_exact(stages.model, ratios, stages.body_change, limit, near=near)
+    return solve_exact(stages.model, ratios, limit, near=near)
 
 
-def answer_of(stages: Stages, ratios: tuple[float, ...] | None = None, near: Balance | None = None) -> Answer:
+def answer_of(
+    stages: Stages,
+    ratios: tuple[float, ...] | None = None,
+    near: Balance | None = None,
+    limit: int = NEWTON_LIMIT,
+) -> Answer:
     """Return the exact answer, ready to be asked what moves it. Raises NoBalanceError; see ``balance_of``."""
     ratios = targets_of(stages.design, stages).ratios if ratios is None else ratios
-    balance = balance_of(stages, ratios, near)
+    balance = balance_of(stages, ratios, near, limit)
     if not balance.found:
         raise NoBalanceError(stages.design)
     model, excess = stages.model, None

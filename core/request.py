@@ -22,7 +22,7 @@ from core.answer import NoBalanceError
 from core.cutting import goes_on
 from core.design import Design
 from core.errors import LineError
-from core.mesh import Points
+from core.mesh import Floats, Points
 from core.pipeline import Stages, build
 from core.pressure import pressures
 from core.progress import Progress, quiet
@@ -31,6 +31,7 @@ from core.sewing.tensions import line_tensions
 from core.solving.newtons import newtons_per_unit
 
 _ROUNDS = 6
+_SLOPES = -2.0, 0.5  # of lengths that are found by those of the model [1]
 _TOO_MUCH = 1.01  # over the limit of pressure, at which it counts as kept
 
 
@@ -163,10 +164,10 @@ class Asking:
         found = search.found(search.least())
         if not self._made:
             return self._kept(search, found, agreed=True)
-        stages, best = search.stages, self._reply(found, agreed=False)
+        best, rounds = self._reply(found, agreed=False), [(search.start, found.lengths)]
         for _ in range(_ROUNDS):
             try:
-                stages = build(found.design, stages)
+                stages = build(search.design(_agreed(rounds)), search.stages)
             except LineError:  # beyond the curve of an elastic, or no balance with it
                 break
             search = self._begun(stages)
@@ -177,6 +178,7 @@ class Asking:
             if well and seen.reached:  # a first look is from rest, so this is what the design is solved to
                 return best
             found = search.found(search.from_here(search.start))
+            rounds.append((search.start, found.lengths))
             if well and np.abs(found.look.values - seen.look.values).max() < NEAR:
                 # What keeps the search from here keeps the answer, which is as good as there.
                 return replace(best, pressing=tuple(sorted({*best.pressing, *found.pulled})))
@@ -261,3 +263,17 @@ class Asking:
 
     def _miss(self, found: Candidate) -> float:
         return float(np.abs(found.look.values - [goal.value for goal in self._goals]).max())
+
+
+def _agreed(rounds: Sequence[tuple[Floats, Floats]]) -> Floats:
+    """Return the lengths at which those of the model and those found with it should be the same.
+
+    ``rounds`` are both, round by round; each line goes on with the slope that the last two rounds showed.
+    """
+    model, found = rounds[-1]
+    if len(rounds) < 3:  # the first search began elsewhere
+        return found
+    step = model - rounds[-2][0]
+    moved = np.abs(step) > 1e-9
+    slope = np.clip(np.where(moved, (found - rounds[-2][1]) / np.where(moved, step, 1.0), 0.0), *_SLOPES)
+    return model + (found - model) / (1.0 - slope)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 from scipy.spatial import ConvexHull, cKDTree
@@ -42,17 +43,18 @@ class BodyWatch:
         self._right = slice(2 + len(left), None)
         rows = np.concatenate([nipples, left, right])
         self._binding, self._rest, self._operator = binding, rest[rows], binding.operator.of_rows(rows)
+        self._of_points = self._operator[:2]
         self._away = points - rest[nipples]
         self._back = float(control.mesh.vertices[control.border, 1].mean())
 
     def bust_points(self, control_points: Points) -> Points:
         """Return where the left and the right bust point are, shape (2, 3) [mm]."""
-        moved = self._operator[:2] @ self._binding.change(control_points)
+        moved = self._of_points @ self._binding.change(control_points)
         return np.asarray(self._rest[:2] + moved + self._away)
 
     def bust_point_slopes(self, control_points: Points, weights: Points) -> Points:
         """Return slopes by the control points, (n, 3), of both bust points times ``weights``, summed."""
-        return self._binding.by_points(control_points, self._operator[:2].T @ weights)
+        return self._binding.by_points(control_points, self._of_points.T @ weights)
 
     def apexes(self, control_points: Points) -> Points:
         """Return y and z of the left and the right apex, shape (2, 2) [mm]."""
@@ -120,9 +122,7 @@ class Tapes:
     """
 
     def __init__(self, moving: MovingFaces, heights: Sequence[float]) -> None:
-        faces, still = moving.corners.T, _still(moving)
-        edges = Mesh(moving.rest, faces).edges.T
-        middle = moving.rest[edges, 2].mean(axis=0)
+        edges, middle, still = _apart(moving)
         self._heights = [float(height) for height in heights]
         self._edges = [edges[:, np.abs(middle - z) < _NEAR_LEVEL] for z in self._heights]
         self._still = [_outline(still, moving.body, z) for z in self._heights]
@@ -148,10 +148,14 @@ class Tapes:
         return found
 
 
-def _still(moving: MovingFaces) -> Mesh:
+@lru_cache(maxsize=1)  # tapes at other heights follow
+def _apart(moving: MovingFaces) -> tuple[Indices, Floats, Mesh]:
+    """Return the edges that move, shape (2, e), their heights at rest, (e,) [mm], and the still skin."""
+    edges = Mesh(moving.rest, moving.corners.T).edges.T
     moves = np.zeros(len(moving.body.vertices), dtype=bool)
     moves[moving.vertices[: moving.count]] = True
-    return Mesh(moving.body.vertices, moving.body.faces[~moves[moving.body.faces].any(axis=1)])
+    still = Mesh(moving.body.vertices, moving.body.faces[~moves[moving.body.faces].any(axis=1)])
+    return edges, moving.rest[edges, 2].mean(axis=0), still
 
 
 def _outline(still: Mesh, body: Mesh, z: float) -> Points:

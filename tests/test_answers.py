@@ -43,10 +43,11 @@ def test_slopes_are_those_of_differences(plain: Stages, choice: dict[str, str | 
 
         def figures(t: float, way: np.ndarray = way) -> np.ndarray:
             there = answers(HERE + t * way)
-            return np.concatenate([there.values, there.pulls, [there.margin]])
+            return np.concatenate([there.values, there.pulls, there.margins, [there.least_margin()[0]]])
 
         expected = slope(figures, 0.01)
-        told = np.concatenate([look.by_values, look.by_pulls, look.by_margin[None]])[:, column]
+        slopes = look.by_values, look.by_pulls, look.by_margins, look.least_margin()[1][None]
+        told = np.concatenate(slopes)[:, column]
         assert told == pytest.approx(expected, rel=1e-6, abs=1e-6 * np.abs(expected).max())
 
 

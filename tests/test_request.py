@@ -226,3 +226,13 @@ def test_a_profile_that_cannot_be_met_is_answered_soon(rest: Stages, contact: st
     # The nearest is told before it is looked for elsewhere.
     assert [design.worn() for design in seen[:1]] == [reply.design.worn()]
     assert abs(seen[0].ratio("mid-bust") - reply.design.ratio("mid-bust")) < 0.005
+
+
+def test_the_nearest_along_a_bent_limit_takes_few_answers() -> None:
+    """Steps that knew of no bend took 86 answers here, and ended 0.03 mm further away."""
+    design = replace(sample_design("person"), volume="exact")
+    start = build(design.with_line("mid-bust", 0.98).with_line("full-bust", 0.98))
+    reply = ask(start, [Goal("apex lift", 10.0)])
+    assert (reply.reachable, reply.strained) == (False, True)
+    assert reply.miss < 1.75
+    assert reply.answers < 40

@@ -10,6 +10,7 @@ import numpy as np
 from core.aims.figure import ReadMany
 from core.answer import NoBalanceError, answer_of, volume_keeper
 from core.comparison import shape_of
+from core.exact import NEWTON_LIMIT
 from core.mesh import Floats, Points
 from core.pipeline import Stages, targets_of
 from core.solving.condition import CALM_RANGE
@@ -31,7 +32,7 @@ class Look:
     """One exact answer: ``points`` (n, 3) [mm], and figures with their slopes by the p lengths [1 / %].
 
     ``values`` (m,) [mm] are what is asked for, ``pulls`` (lines,) the tension of each line in the model's
-    unit, ``margin`` [1] how far the shape is from straining beyond CALM_RANGE, negative where it does.
+    unit, ``margins`` (e,) [1] how far edges are from straining beyond CALM_RANGE, negative where they do.
     """
 
     points: Points
@@ -39,8 +40,14 @@ class Look:
     by_values: Floats
     pulls: Floats
     by_pulls: Floats
-    margin: float
-    by_margin: Floats
+    margins: Floats
+    by_margins: Floats
+
+    def least_margin(self) -> tuple[float, Floats]:
+        """Return about the least of the margins, so that it is smooth, and its slopes, shape (p,)."""
+        least = self.margins.min()
+        share = np.exp(_SHARP * (least - self.margins))
+        return float(least - np.log(share.sum()) / _SHARP), share @ self.by_margins / share.sum()
 
 
 class Answers:
@@ -60,7 +67,7 @@ class Answers:
         for column, group in enumerate(self._groups):
             self._natural[group, column] = PERCENT * rest[group]
         self._edges = shape_of(stages.model)
-        self._near: Balance | None = None
+        self._known: list[tuple[Floats, Balance]] = []
         self._from_rest = False
         self._looks: dict[bytes, Look] = {}
         self._count = 0
@@ -69,13 +76,13 @@ class Answers:
         """The number of answers that were worked out."""
         return self._count
 
-    def __call__(self, lengths: Floats) -> Look:
+    def __call__(self, lengths: Floats, limit: int = NEWTON_LIMIT) -> Look:
         """Return the exact answer at ``lengths``, one a group, shape (p,) [%]. Raises NoBalanceError."""
         key = np.asarray(lengths, dtype=np.float64).tobytes()
         if key not in self._looks:
             while len(self._looks) >= _KEPT:
                 del self._looks[next(iter(self._looks))]
-            self._looks[key] = self._look(lengths)
+            self._looks[key] = self._look(lengths, self._nearest(lengths), limit)
         return self._looks[key]
 
     def checked(self, lengths: Floats) -> bool:
@@ -84,24 +91,32 @@ class Answers:
         Under sliding lines there may be several equilibria; what a design is solved to is that from rest.
         """
         if not self._from_rest:
-            before, self._near = self(lengths), None
+            before = self(lengths)
             try:
-                there = self._look(lengths)
+                there = self._look(lengths, None)
                 self._from_rest = bool(np.abs(there.points - before.points).max() > _ALIKE)
             except NoBalanceError:
                 self._from_rest = True
             if self._from_rest:
                 self._looks.clear()
+                self._known.clear()
                 return False
         return True
 
-    def _look(self, lengths: Floats) -> Look:
+    def _nearest(self, lengths: Floats) -> Balance | None:
+        if self._from_rest or not self._known:
+            return None
+        return min(self._known, key=lambda known: float(np.abs(known[0] - lengths).max()))[1]
+
+    def _look(self, lengths: Floats, near: Balance | None, limit: int = NEWTON_LIMIT) -> Look:
         self._count += 1
         ratios = self._ratios.copy()
         for group, length in zip(self._groups, lengths, strict=True):
             ratios[group] = PERCENT * length
-        answer = answer_of(self._stages, tuple(ratios.tolist()), self._near)
-        self._near = None if self._from_rest else answer.balance
+        answer = answer_of(
+            self._stages, tuple(ratios.tolist()), near, NEWTON_LIMIT if near is None else limit
+        )
+        self._known = [*self._known[-_KEPT:], (np.array(lengths), answer.balance)]
         points = answer.place.points
         rates = self._rates(answer)
         values, slopes = self._read(points)
@@ -110,7 +125,7 @@ class Answers:
             values,
             rates.of(slopes[:, self._stages.model.tensegric.free].reshape(len(values), -1)),
             *answer.tensions(rates, self._natural),
-            *self._margin(points, rates),
+            *self._margins(points, rates),
         )
 
     def _rates(self, answer: Answer) -> Rates:
@@ -122,23 +137,18 @@ class Answers:
             raise NoBalanceError(stages.design) from unbounded
         return volume_keeper(stages, answer)(rates)
 
-    def _by_free(self, slopes: Points) -> Floats:
-        return np.asarray(slopes[self._stages.model.tensegric.free].ravel())
-
-    def _margin(self, points: Points, rates: Rates) -> tuple[float, Floats]:
-        """Return about how far the edges are from straining and its slopes by the lengths, shape (p,)."""
-        shape = self._edges
-        spans, rest = (at[shape.edges[:, 0]] - at[shape.edges[:, 1]] for at in (points, shape.rest))
+    def _margins(self, points: Points, rates: Rates) -> tuple[Floats, Floats]:
+        """Return how far the edges are from straining, long or short, and the slopes by the lengths."""
+        shape, free = self._edges, self._stages.model.tensegric.free
+        moved = np.zeros((*points.shape, rates.moved.shape[1]))
+        moved[free] = rates.moved.reshape(len(free), 3, -1)
+        spans, rest, by = (
+            at[shape.edges[:, 0]] - at[shape.edges[:, 1]] for at in (points, shape.rest, moved)
+        )
         long, at_rest = np.linalg.norm(spans, axis=1), np.linalg.norm(rest, axis=1)
+        ratios, by_ratios = long / at_rest, np.einsum("ei,eip->ep", spans / (long * at_rest)[:, None], by)
         low, high = CALM_RANGE
-        margins = np.concatenate([long / at_rest - low, high - long / at_rest])
-        least = margins.min()
-        share = np.exp(_SHARP * (least - margins))
-        both = np.subtract(*np.split(share / share.sum(), 2)) / (long * at_rest)
-        slopes = np.zeros_like(points)
-        for end, sign in zip(shape.edges.T, (1.0, -1.0), strict=True):
-            np.add.at(slopes, end, sign * both[:, None] * spans)
-        return float(least - np.log(share.sum()) / _SHARP), rates.of(self._by_free(slopes))
+        return np.concatenate([ratios - low, high - ratios]), np.concatenate([by_ratios, -by_ratios])
 
 
 def exact_points(stages: Stages) -> Points:

@@ -16,12 +16,14 @@ import numpy as np
 from scipy.optimize import minimize
 
 from core.aims.answers import PERCENT, Answers, Look
+from core.aims.curved import learnt, next_reach
 from core.aims.figure import Goal, ReadMany
 from core.aims.readings import Figures
 from core.aims.wanted import Wanted, weights_of
 from core.answer import NoBalanceError
 from core.design import Design
 from core.errors import UserError
+from core.exact import NEWTON_LIMIT
 from core.lines import RATIO_LIMITS
 from core.mesh import Floats
 from core.pipeline import Stages
@@ -31,13 +33,15 @@ from core.worn_lines import free_lines
 LOOSEST = 1.0
 """A line is not asked to be longer than at rest: it would push [1]."""
 
-_STEPS, _ELSEWHERE = 40, 20  # answers after which a search is given up, from the start and from elsewhere
+_STEPS, _ELSEWHERE = 24, 12  # answers after which a search is given up, from the start and from elsewhere
 _HALFWAY = 0.9  # ratio at which a search begins anew
 _TRIES, _GOOD = 12, 1e-3  # steps to less tension, and a part of it that is not worth another
-_BOLD, _LAST = 8.0, 1e-4  # the longest step tried and the shortest [%]
+_BOLD, _LAST = 8.0, 0.01  # the longest step tried at first, and one that can no longer be told [%]
+_SHORTEST = 1e-4  # a step to what is wanted [%]
 _EXACT = 1e-8  # [mm^2]
 _LITTLE = 1e-6  # a step that brings no more than this is the last one [mm^2]
-_PART = 3e-4  # or no more than this part of what is amiss: of 4 mm that is less than 0.001 mm [1]
+_TELLS = 0.002  # or one that brings no more than this nearer [mm]
+_QUICK = 16  # Newton steps after which a step was too bold
 _BESIDE = 0.5  # so near to where another start led, and no better, it leads there as well [%]
 _AT_LIMIT = 1e-3  # room to a limit [1]
 _AT_END = 0.01  # [%]
@@ -121,10 +125,10 @@ class Search:
         """Let named lines pull no harder than so, in the model's unit, from now on."""
         self._wanted.hardest = dict(hardest)
 
-    def at(self, lengths: Floats) -> Look:
+    def at(self, lengths: Floats, limit: int = NEWTON_LIMIT) -> Look:
         """Return the exact answer at ``lengths``. Raises NoBalanceError, Cancelled."""
         self.progress("asking", min(len(self) / _STEPS, 1.0))
-        return self._answers(lengths)
+        return self._answers(lengths, limit)
 
     def least(self) -> Floats:
         """Return the lengths that come nearest to what is wanted, with the least tension if they reach it.
@@ -169,45 +173,44 @@ class Search:
     def from_here(self, start: Floats, known: Sequence[Floats] = ()) -> Floats:
         """Return where steps after Gauss and Newton lead from ``start``, none of them too bold.
 
-        Beside one of those ``known`` already they go no further. Nothing is looked for elsewhere or from
-        rest. Raises NoBalanceError if nothing balances at the start, Cancelled.
+        Each learns how slopes change on the way. Beside one of those ``known`` already they go no further.
+        Nothing is looked for elsewhere or from rest. Raises NoBalanceError if nothing balances at the start,
+        Cancelled.
         """
         here, reach, most = start, _BOLD, len(self) + (_ELSEWHERE if known else _STEPS)
-        look, amiss = self.at(here), self._wanted.amiss
-        while reach > _LAST and len(self) < most and amiss(look) > _EXACT:
-            for other in known:
-                if np.abs(here - other).max() < _BESIDE and amiss(look) >= self._amiss_at(other):
-                    return other
-            little = max(_LITTLE, _PART * amiss(look))
-            there, left = self._wanted.towards(here, look, reach)
-            if np.abs(there - here).max() < _LAST or amiss(look) - left < little:
+        look, wanted = self.at(here), self._wanted
+        amiss = wanted.amiss(look)
+        bends = np.zeros((*wanted.rows(look)[1].shape, len(here)))
+        while reach > _LAST and len(self) < most and amiss > _EXACT:
+            if (other := self._beside(here, amiss, known)) is not None:
+                return other
+            there, left = wanted.towards(here, look, reach, bends)
+            step, little = there - here, max(_LITTLE, 2.0 * _TELLS * amiss**0.5)
+            if np.abs(step).max() < _SHORTEST or amiss - left < little:
                 break
-            better = self._better(there, look, reach)
-            if better is None:
-                reach /= 4.0
+            seen = self._look(there, _QUICK)
+            if seen is None:
+                reach = float(np.abs(step).max()) / 4.0
                 continue
-            gain = amiss(look) - amiss(better[1])
+            bends = learnt(bends, step, wanted.rows(seen)[1] - wanted.rows(look)[1])
+            gain = amiss - wanted.amiss(seen)
+            if gain <= 0.0:
+                reach = float(np.abs(step).max()) / 2.0
+                continue
+            reach = next_reach(reach, _BOLD, gain / (amiss - left))
             # Near enough, and no longer quickly nearer.
-            last = gain < little or (gain < 0.5 * amiss(look) and self._wanted.is_met(better[1]))
-            (here, look), reach = better, min(2.0 * reach, _BOLD)
+            last = gain < little or (gain < 0.5 * amiss and wanted.is_met(seen))
+            here, look, amiss = there, seen, amiss - gain
             if last:
                 break
         return here
 
-    def _better(self, there: Floats, than: Look, reach: float) -> tuple[Floats, Look] | None:
-        """Return lengths that are nearer to what is wanted ``than`` others, and the look; None if not so.
-
-        A step that breaks a limit, which is bent, is mended by another one from there.
-        """
-        seen = self._look(there)
-        if seen is not None and self._wanted.amiss(seen) >= self._wanted.amiss(than):
-            if not self._wanted.breaks_a_limit(seen):
-                return None
-            there, _ = self._wanted.towards(there, seen, reach)
-            seen = self._look(there)
-        if seen is None or self._wanted.amiss(seen) >= self._wanted.amiss(than):
-            return None
-        return there, seen
+    def _beside(self, here: Floats, amiss: float, known: Sequence[Floats]) -> Floats | None:
+        """Return that of the ``known`` lengths which these are beside, and no better."""
+        for other in known:
+            if np.abs(here - other).max() < _BESIDE and amiss >= self._amiss_at(other):
+                return other
+        return None
 
     def _least_tension(self, start: Floats) -> Floats:
         """Return lengths that reach what ``start`` reaches with less tension; ``start`` if none are found."""
@@ -222,33 +225,41 @@ class Search:
         wanted = _constraint(
             "eq", lambda at: (self.at(at).values - self._wanted.values, self.at(at).by_values)
         )
-        limits = _constraint("ineq", lambda at: [part / PERCENT for part in self._wanted.room(self.at(at))])
+        limits = _constraint(
+            "ineq", lambda at: [part / PERCENT for part in self._wanted.smooth_room(self.at(at))]
+        )
         try:
             found = self._least(tension, start, [wanted, limits])
+            if not self._wanted.is_met(self.at(found)):
+                found = self.from_here(found)
             after = self.at(found)
         except NoBalanceError:
             return start
         less = _tension(after, unit)[0] < _tension(before, unit)[0]
         return found if self._wanted.is_met(after) and less else start
 
-    def found(self, lengths: Floats) -> Candidate:
-        """Return what was found at ``lengths``."""
-        look = self.at(lengths)
+    def design(self, lengths: Floats) -> Design:
+        """Return the design with its lines at ``lengths``."""
         set_ = [round(float(length) * PERCENT, 6) for length in lengths]
         both = zip(self._groups, set_, strict=True)
         ratios = [(name, ratio) for group, ratio in both for name in group]
-        design = reduce(lambda design, each: design.with_line(*each), ratios, self.stages.design)
+        return reduce(lambda design, each: design.with_line(*each), ratios, self.stages.design)
+
+    def found(self, lengths: Floats) -> Candidate:
+        """Return what was found at ``lengths``."""
+        look = self.at(lengths)
         ends = np.abs(np.stack([lengths - self._low, lengths - self._high])).min(axis=0) < _AT_END
         at_end = tuple(
             name for group, there in zip(self._groups, ends, strict=True) if there for name in group
         )
-        strain, *pulls = (self._wanted.room(look)[0] < _AT_LIMIT).tolist()
+        pulls, strains = np.split(self._wanted.rooms(look)[0] < _AT_LIMIT, [len(self._wanted.hardest)])
         pulled = tuple(name for name, there in zip(self._wanted.hardest, pulls, strict=True) if there)
-        return Candidate(design, lengths, look, self._wanted.is_met(look), at_end, pulled, strain)
+        met, strained = self._wanted.is_met(look), bool(strains.any())
+        return Candidate(self.design(lengths), lengths, look, met, at_end, pulled, strained)
 
-    def _look(self, lengths: Floats) -> Look | None:
+    def _look(self, lengths: Floats, limit: int = NEWTON_LIMIT) -> Look | None:
         try:
-            return self.at(lengths)
+            return self.at(lengths, limit)
         except NoBalanceError:
             return None
 

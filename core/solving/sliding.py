@@ -51,6 +51,7 @@ class Skin:
         self.model = model
         # Before the tensions of held lines come one pressure for both sides or one for each.
         self._first_line = 1 if model.volume.closed or model.mechanics.volume_of == "both" else 2
+        self._area = abs(model.volume.rest_volume) ** (2.0 / 3.0)
         self.nodes = model.layout.nodes
         corners = model.layout.corners_of_lines
         self._node, self._axis = corners.row // 3, corners.row % 3
@@ -59,9 +60,8 @@ class Skin:
 
     def _across(self, place: Place) -> tuple[Points, Floats]:
         """Return n at the points of the lines, 0 elsewhere, (f, 3), and the volume gradient's size, (f,)."""
-        _, gradients = self.model.volume.measure(place.points)
-        outward = gradients.sum(axis=0)
-        size = np.linalg.norm(outward, axis=1)
+        outward = self._area * place.slopes[: self._first_line].sum(axis=0).reshape(-1, 3)
+        size = np.sqrt(np.einsum("ij,ij->i", outward, outward))
         n = np.zeros_like(outward)
         n[self.nodes] = outward[self.nodes] / size[self.nodes, None]
         return n, size
