@@ -19,7 +19,7 @@ run: setup  ## open the program on the sample body; without a display, do the sa
 
 test: setup-test lint types  ## style, types and all tests in two processes, each with a virtual display of its own
 	@if command -v Xvfb >/dev/null; then \
-		env -u WAYLAND_DISPLAY QT_QPA_PLATFORM=xcb LIBGL_ALWAYS_SOFTWARE=1 $(python) -m pytest -n 2 --dist loadfile; \
+		env -u WAYLAND_DISPLAY -u PYTHONDONTWRITEBYTECODE QT_QPA_PLATFORM=xcb LIBGL_ALWAYS_SOFTWARE=1 $(python) -m pytest -n 2 --dist loadfile; \
 	else $(python) -m pytest; fi
 
 setup:  ## prepare the system libraries and .venv, nothing else
