@@ -145,10 +145,8 @@ class Search:
     def _near_by(self) -> Floats:
         """Return the nearest from the start or, if that does not reach what is wanted, from elsewhere."""
         best = self.from_here(self.start)
-        known = [best]
-        for begin in self._elsewhere():
-            if self._wanted.is_met(self.at(best)):
-                break
+        known, starts = [best], self._elsewhere()
+        while not self._wanted.is_met(self.at(best)) and (begin := next(starts, None)) is not None:
             self.nearer(self.found(best))
             known.append(self.from_here(begin, known))
             best = min(best, known[-1], key=self._amiss_at)
