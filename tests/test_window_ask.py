@@ -37,6 +37,8 @@ def is_typed_seen_taken_and_undone_or_left(window: MainWindow) -> Script:
     yield answered(window)
     assert card.wishes["out"].now.text() == "free"
     assert not card.apply.isEnabled(), "nothing is wished yet"
+    field = card.wishes["lift"].field
+    assert field.selectedText() == field.text() != "+0.0", "the first figure is typed over"
     now = window.ask_desk.answer.now["out"]
     assert float(card.wishes["out"].field.text().replace("\N{MINUS SIGN}", "-")) == pytest.approx(
         now, abs=0.06

@@ -42,7 +42,16 @@ class WishView:
 
 
 class _WishField(FigureField):
-    """A field that leaves Esc to the card unless something was typed."""
+    """A field that leaves Esc to the card unless something was typed.
+
+    What is selected as a whole stays so when its value changes: the next figure is typed over it.
+    """
+
+    def _show(self) -> None:
+        whole = self.hasSelectedText() and self.selectedText() == self.text()
+        super()._show()
+        if whole:
+            self.selectAll()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt names its events
         if event.key() == Qt.Key.Key_Escape and not self.isModified():
