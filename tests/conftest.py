@@ -83,7 +83,8 @@ def garbage_in_this_thread(request: pytest.FixtureRequest) -> Iterator[None]:
     """Python looks for garbage in the tests' thread alone: in a solver's it would destroy Qt objects."""
     gc.disable()
     yield
-    gc.collect(2 if "qapp" in request.fixturenames else 0)
+    searched = "qapp" not in request.fixturenames or "empty_house" in request.fixturenames
+    gc.collect(0 if searched else 2)
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -162,11 +163,13 @@ def empty_house(
     """Nothing of a window lives on after a test: no thread of ours, no window; its settings are fresh.
 
     How sure figures are is not worked out where a test does not ask: it takes half a minute of a processor.
+    Frames come seldom, as on a slow machine: most of a test's time would go into ones that nobody looks at.
     """
     if "spared_as_in_the_program" not in request.fixturenames:
         # Else all libraries would be looked through three times after each window, and not only what it left.
         monkeypatch.setattr("app.asking.housekeeping.gc", SPARING_NOTHING)
     monkeypatch.setattr("app.keeping.spread_desk.PAUSE", 10**8)
+    monkeypatch.setattr("core.live._SLICE", 0.1)
     QSettings().clear()
     yield
     gc.collect()
