@@ -31,7 +31,7 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 def endless(reached: list[str]) -> Callable[..., Any]:
     """Return work that goes on until it is left, and then notes that it was."""
 
-    def work(*args: Any, progress: Progress | None = None) -> Any:
+    def work(*args: Any, progress: Progress | None = None, **_: Any) -> Any:
         hear = progress or args[-1]
         try:
             for step in range(10_000):
@@ -96,9 +96,9 @@ def test_limits_come_beside_the_window_and_are_those_of_the_core(monkeypatch: py
     asked: list[str] = []
     work_out = app.lining.limits_desk.leeway_of
 
-    def counted(stages: Any, name: str, progress: Progress) -> Any:
+    def counted(stages: Any, name: str, progress: Progress, **told: Any) -> Any:
         asked.append(name)
-        return work_out(stages, name, progress)
+        return work_out(stages, name, progress, **told)
 
     def shown(window: MainWindow) -> dict[str, Any]:
         rows = window.lines.rows.values()
