@@ -165,6 +165,8 @@ def empty_house(
     How sure figures are is not worked out where a test does not ask: it takes half a minute of a processor.
     Frames come seldom, as on a slow machine: most of a test's time would go into ones that nobody looks at.
     """
+    from app.wording.words import use_language  # noqa: PLC0415 (not every test brings the window along)
+
     if "spared_as_in_the_program" not in request.fixturenames:
         # Else all libraries would be looked through three times after each window, and not only what it left.
         monkeypatch.setattr("app.asking.housekeeping.gc", SPARING_NOTHING)
@@ -172,6 +174,7 @@ def empty_house(
     monkeypatch.setattr("core.live._SLICE", 0.1)
     QSettings().clear()
     yield
+    use_language("en")  # a window may have spoken another, and tests of words start none
     gc.collect()
     assert not [thread for thread in threading.enumerate() if thread.name.startswith("busk")]
     assert not [widget for widget in QApplication.topLevelWidgets() if type(widget).__name__ == "MainWindow"]
