@@ -201,6 +201,14 @@ def test_lines_of_elastic_pull_at_each_length_as_they_would_be_built(built):
     assert line.length(points) == pytest.approx(found.reached, abs=1e-3)
 
 
+def test_an_elastic_round_skin_that_stays_takes_no_zones_from_the_others(built):
+    """The under-bust line moves nothing, and has a curve all the same: one that no other line comes to."""
+    one = dressed(built, "person", elastic="strap 15", mid_bust=0.9)
+    two = build(one.design.with_line("under-bust", 0.97).with_elastic("under-bust", find_elastic("plush 12")))
+    assert not next(line for line in two.model.lines if line.name == "under-bust").constrains
+    assert tones(leeway_of(two, "mid-bust")) == tones(leeway_of(one, "mid-bust"))
+
+
 @pytest.mark.parametrize("hold", ["spring", "held"])
 def test_a_line_longer_than_what_it_lies_on_is_slack(built, hold):
     """A shorter full-bust line takes length from below the mid-bust line, which would have to push."""

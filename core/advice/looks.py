@@ -138,7 +138,7 @@ def _pull(found: PathPoint, together: tuple[int, ...]) -> float:
 
 def _room_in_curves(found: PathPoint, elastics: Mapping[str, Elastic]) -> float:
     """Return how much further the elastic can be stretched that is nearest to the end of its curve [1]."""
-    return min(elastics[name].reach - elongation for name, elongation in found.elongations.items())
+    return min(elastic.reach - found.elongations[name] for name, elastic in elastics.items())
 
 
 def _pressing(found: PathPoint, stages: Stages, names: tuple[str, ...]) -> float:
