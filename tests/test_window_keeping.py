@@ -96,6 +96,11 @@ def test_what_is_not_restored_stays_until_it_is_discarded(monkeypatch: pytest.Mo
 
     def discard(window: MainWindow) -> Script:
         yield window.recovery_desk.card.isVisible
+        yield settled(window)
+        window.ask_desk.begin()
+        assert not window.recovery_desk.card.isVisible(), "it would lie on the handles"
+        window.ask_desk.leave()
+        assert window.recovery_desk.card.isVisible(), "the offer stands again when the asking is over"
         window.recovery_desk.card.drop.click()
         assert not window.recovery_desk.card.isVisible()
 

@@ -44,6 +44,7 @@ class RecoveryDesk(QObject):
         """Look for what was left behind, at the start."""
         # Nobody has chosen what the window opens with.
         self._at_start = self._window.pages.currentWidget() is not self._window.start_desk.page
+        self._window.ask_desk.card.installEventFilter(self)
         self._offers, self._broken = left_behind()
         self._tell_broken()
         self._offer()
@@ -95,9 +96,13 @@ class RecoveryDesk(QObject):
         self.card.hide()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """Keep the card in its place at the head of the window."""
+        """Keep the card in its place at the head of the window, and off the body while that is asked for."""
         if watched is self._window and event.type() == QEvent.Type.Resize:
             self._place()
+        elif event.type() in (QEvent.Type.ShowToParent, QEvent.Type.HideToParent):
+            # Under it lie the handles that a hand drags then: the offer comes back with the end of that.
+            self.card.setVisible(bool(self._offers) and not self._window.ask_desk.is_open)
+            self.card.raise_()
         return False
 
     def _tell_broken(self) -> None:
