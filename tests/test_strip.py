@@ -35,9 +35,8 @@ def test_of_one_newton_step_it_says_step(built: Callable[[str], Stages]) -> None
     assert strip_verdict(make_frame(1, stages, comparison)).effort == "Worked out in one Newton step"
 
 
-def test_a_run_that_ran_away_has_no_figures_but_advice(built: Callable[[str], Stages]) -> None:
+def test_a_run_that_ran_away_has_no_figures(built: Callable[[str], Stages]) -> None:
     verdict = said(built("mannequin"), line_force="explicit")
     assert verdict.state == "diverging"
     assert verdict.numbers == []
-    assert "as it was before" in verdict.hint
-    assert "soften the lines" in verdict.hint
+    assert verdict.hint.endswith("as it was before."), "what to do says the doctor, who has tried it"

@@ -96,7 +96,9 @@ def test_a_settled_body_that_is_strained_says_so_in_one_voice() -> None:
         assert condition is not None
         assert condition.shortest < CALM_RANGE[0]
         yield lambda: window.strip.chip.state() == "strained"
-        assert window.strip._hint.text().endswith("Set Mid-bust longer.")
+        told = window.strip._hint.text()
+        assert told.startswith("Skin pressed or stretched by over 20 %"), "the strip says what is wrong"
+        assert "longer" not in told, "what ends it says the doctor alone: two advices would be one too many"
         assert {window.rail.items[step].state() for step in ("lines", "result")} == {"look"}
         assert window.status._facts.text().endswith("Settled, strained")
         row = window.lines.rows["mid-bust"]

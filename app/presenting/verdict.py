@@ -7,12 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.presenting.bust import bust_move, sides_words, step_words, ups
-from app.presenting.lines import line_title
 from app.showing.verdict_chip import state_title
-from app.wording.words import joined, number, say, tr
+from app.wording.words import number, say, tr
 from core.doubts import ESSENTIAL, weak_sides
 from core.live import Frame
-from core.report import blamed_line, kept_volume, warnings
+from core.report import kept_volume, warnings
 from core.solving.condition import Condition
 
 _WATCHED = 24  # turns over which a swing is measured
@@ -124,19 +123,31 @@ def _swing_figures(frame: Frame) -> list[tuple[str, str]]:
     ]
 
 
+def strain_sentence(strain: tuple[float, float] | None) -> str:
+    """Return that skin strains, and how far [%], see ``Verdict.strain``; nothing if that is None."""
+    said = tr("Skin pressed or stretched by over 20 % ({strain}).")
+    return said.format(strain=_percents(*strain)) if strain is not None else ""
+
+
 def _strain(condition: Condition) -> str:
     """Return how far the skin is pressed together and stretched at the worst places."""
-    pressed, stretched = 100.0 * (condition.shortest - 1.0), 100.0 * (condition.longest - 1.0)
+    return _percents(100.0 * (condition.shortest - 1.0), 100.0 * (condition.longest - 1.0))
+
+
+def _percents(pressed: float, stretched: float) -> str:
     return tr("{pressed} to {stretched} %").format(
         pressed=number(pressed, 0, signed=True), stretched=number(stretched, 0, signed=True)
     )
 
 
 def _hint(frame: Frame) -> str:
-    """Return what to do about it, or what else has to be known."""
+    """Return what is wrong, or what else has to be known.
+
+    What ends it says the doctor alone, who has tried it: two advices at once would be one too many.
+    """
     state, condition = state_of(frame), frame.verdict.condition
     if state == "diverging":
-        return tr("It runs away: the body is shown as it was before. Lengthen or soften the lines.")
+        return tr("It runs away: the body is shown as it was before.")
     if state == "settled":
         if any(weak_sides(frame.stages.landmarks, kind) for kind in ESSENTIAL):
             return tr("Some landmarks are doubtful: check them in the Landmarks step.")
@@ -146,10 +157,4 @@ def _hint(frame: Frame) -> str:
         "overstrained": tr("Skin pressed or stretched by over 30 %: no shape to sew for."),
         "strained": tr("Skin pressed or stretched by over 20 % ({strain})."),
     }.get(state, "")
-    if condition is not None:
-        what = what.format(strain=_strain(condition))
-    line = blamed_line(frame.stages)
-    if not what or line is None:
-        return what
-    wish = tr("Set {line} longer.") if line.ratio < 1.0 else tr("Set {line} shorter.")
-    return joined((what, wish.format(line=line_title(line.name, frame.stages.design))))
+    return what if condition is None else what.format(strain=_strain(condition))
