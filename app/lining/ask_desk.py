@@ -15,7 +15,7 @@ from app.lining.ask_ground import AskGround
 from app.lining.ask_handles import AskHandles
 from app.lining.ask_menu import AskMenu
 from app.lining.ask_steps import AskSteps
-from app.lining.ask_views import show_answer, wish_views
+from app.lining.ask_views import is_as_wished, show_answer, wish_views
 from app.lining.ask_wishes import Wishes
 from app.lining.ask_work import Answer, AskWork, Question
 from app.panels.ask_card import AskCard
@@ -192,6 +192,7 @@ class AskDesk(QObject):
 
     def end(self) -> None:
         """Close the card, and let the shown body be what it is."""
+        self.card.drop_typed()
         self._rest.stop()
         self._slow.stop()
         self.work.stop()
@@ -238,7 +239,8 @@ class AskDesk(QObject):
         if not self.work.at_work and not answer.question.hurried:
             QTimer.singleShot(0, self, self.handles.clear)  # once the card has its size
             announce(self.card, self.card.answer.text())
-            if self._apply_due:
+            due, self._apply_due = self._apply_due, False
+            if due and is_as_wished(self.all_wishes, answer):  # what is only near was not seen yet
                 self.apply()
 
     def _show_nearer(self, question: Question, design: Design) -> None:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 from app.lining.ask_wishes import PRESSURE, Wishes
 from app.lining.ask_work import Answer
-from app.panels.ask_card import AskCard, WishView
+from app.panels.ask_card import AskCard
+from app.panels.wish_row import WishView
 from app.presenting.asking import (
     answer_words,
     change_words,
@@ -21,7 +23,11 @@ from app.presenting.asking import (
 )
 from app.presenting.even import asks_to_be_even, evened_words
 from app.wording.words import joined, listed, number, tr
+from core.aims.figure import Goal
 from core.design import Design
+
+if TYPE_CHECKING:
+    from core.request import Reply
 
 
 def show_answer(
@@ -37,13 +43,23 @@ def show_answer(
         card.show_answer(note=note, can_apply=bool(busy and goals))
     else:
         reply, asked = answer.reply, answer.question.goals
-        met = is_met(reply, asked) or (wishes.only_limit is not None and reply.agreed)
+        met = _is_met(wishes, reply, asked)
         said, why = answer_words(reply, asked, wishes.only_limit, answer.now), ""
         if asks_to_be_even(asked) and wishes.only_limit is None:
             said, why = evened_words(reply, asked, answer.now, answer.then)
         changes = "\n".join(filter(None, (why, listed(change_words(design, reply)))))
         tone = "ok" if met else "" if is_near(reply, asked) else "warn"
         card.show_answer(said, tone, changes, note, can_apply=True)
+
+
+def is_as_wished(wishes: Wishes, answer: Answer) -> bool:
+    """Tell whether an answer is what is wished, as nearly as a tailor can tell or a hand draws."""
+    reply, asked = answer.reply, answer.question.goals
+    return reply is not None and (_is_met(wishes, reply, asked) or is_near(reply, asked))
+
+
+def _is_met(wishes: Wishes, reply: Reply, asked: Sequence[Goal]) -> bool:
+    return is_met(reply, asked) or (wishes.only_limit is not None and reply.agreed)
 
 
 def wish_views(design: Design, wishes: Wishes, answer: Answer | None) -> Iterator[WishView]:

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import partial
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from app.dress.parts import IconLabel, OverCard, Segment, ToolButton, button, sentence
 from app.dress.theme import label, set_tag
-from app.panels.figure_field import FigureField
+from app.panels.wish_row import WishRow, WishView
 from app.wording.words import tr
 
 WIDTH = 674
@@ -20,72 +18,6 @@ WIDTH = 674
 
 _COLUMNS = 2
 _BETWEEN = 20  # columns [px]
-_WAS = 44  # of what it was [px]
-
-
-@dataclass(frozen=True)
-class WishView:
-    """One wish: its ``key``, ``title`` and ``value`` in ``unit``; None cannot be typed.
-
-    ``now`` says what it is now; a ``set_`` one is asked for, another shows what is. One that is ``kept``
-    cannot be taken away.
-    """
-
-    key: str
-    title: str
-    value: float | None
-    now: str
-    unit: str = "mm"
-    signed: bool = True
-    set_: bool = True
-    kept: bool = False
-
-
-class _WishField(FigureField):
-    """A field that leaves Esc to the card unless something was typed.
-
-    What is selected as a whole stays so when its value changes: the next figure is typed over it.
-    """
-
-    def _show(self) -> None:
-        whole = self.hasSelectedText() and self.selectedText() == self.text()
-        super()._show()
-        if whole:
-            self.selectAll()
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt names its events
-        if event.key() == Qt.Key.Key_Escape and not self.isModified():
-            event.ignore()
-        else:
-            super().keyPressEvent(event)
-
-
-class _Wish(QWidget):
-    """A wish in a row: title, field, what it is now, and the cross that takes it away."""
-
-    def __init__(self, view: WishView) -> None:
-        super().__init__()
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(6)
-        self.title = label(view.title, "body")
-        self.field = _WishField(view.unit, view.title, signed=view.signed, widest="+1000.0")
-        set_tag(self.field, "ring", True)
-        self.field.setVisible(view.value is not None)
-        self.now = label("", "caption")
-        self.remove = ToolButton("x", tr("Ask for this no longer"), size=12, room=22)
-        row.addWidget(self.title)
-        row.addStretch(1)
-        row.addWidget(self.now)
-        row.addWidget(self.field)
-        row.addWidget(self.remove)
-
-    def show_view(self, view: WishView) -> None:
-        """Bring value and words up to date."""
-        self.remove.setVisible(not view.kept)
-        self.now.setText(view.now if view.set_ else tr("free"))
-        if view.value is not None:
-            self.field.show_value(view.value)
 
 
 class AskCard(OverCard):
@@ -108,8 +40,8 @@ class AskCard(OverCard):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.wishes: dict[str, _Wish] = {}
-        self._shape: list[tuple[str, str]] = []
+        self.wishes: dict[str, WishRow] = {}
+        self._kind, self._tone, self._can_apply = "bust", "", False
         column = QVBoxLayout()
         column.setSpacing(8)
         column.addLayout(self._head())
@@ -154,18 +86,18 @@ class AskCard(OverCard):
         hands = [("bust", tr("Bust point")), ("apex", tr("Foremost place")), ("profile", tr("Profile"))]
         self.hand = Segment(hands, small=True)
         self.hand.setAccessibleName(tr("What is dragged on the body"))
-        self.hand.chosen.connect(self.hand_chosen)
+        self.hand.chosen.connect(self._choose_hand)
         self.link = ToolButton("link", tr("Drag left and right together"), size=16, room=28)
         self.link.setCheckable(True)
         self.link.setChecked(True)
         self.link.toggled.connect(self.linked)
         self.add = button(tr("Add a wish"), "quiet")
-        self.add.clicked.connect(self.add_asked)
+        self.add.clicked.connect(self._ask_more)
         self.help_ = button(tr("Choose lines"), "secondary")
         self.help_.clicked.connect(self.helped)
         self.help_.hide()
         self.apply = button(tr("Apply"), "primary")
-        self.apply.clicked.connect(self.applied)
+        self.apply.clicked.connect(self._take)
         self.cancel = button(tr("Cancel"), "quiet")
         self.cancel.clicked.connect(self.left)
         for part in (self.hand, self.link, self.add):
@@ -179,10 +111,8 @@ class AskCard(OverCard):
 
     def show_wishes(self, wishes: Sequence[WishView], hint: str = "") -> None:
         """Show these wishes; a field that is typed into keeps what is typed."""
-        shape = [(wish.key, wish.title) for wish in wishes]
-        if shape != self._shape:
+        if [wish.key for wish in wishes] != list(self.wishes):
             self._lay(wishes)
-            self._shape = shape
         for wish in wishes:
             self.wishes[wish.key].show_view(wish)
         self._hint.setText(hint)
@@ -196,12 +126,13 @@ class AskCard(OverCard):
         for part, words in ((self.answer, answer), (self.changes, changes), (self.note, note)):
             part.setText(words)
             part.setVisible(bool(words))
-        set_tag(self.answer, "tone", tone)
-        self.apply.setEnabled(can_apply)
+        self._tone, self._can_apply = tone, can_apply
+        self._follow_typing()
         self._fit()
 
     def show_hand(self, kind: str) -> None:
         """Show what the handles drag; a profile is that of one side."""
+        self._kind = kind
         self.hand.set_choice(kind)
         self.link.setEnabled(kind != "profile")
 
@@ -220,23 +151,71 @@ class AskCard(OverCard):
             self.wishes[key].field.selectAll()
 
     def _lay(self, wishes: Sequence[WishView]) -> None:
-        for old in self.wishes.values():
-            self._grid.removeWidget(old)
-            old.hide()
-            old.deleteLater()
-        self.wishes = {}
+        """Lay out the rows of these wishes: those that are there stay what they are."""
+        kept = {wish.key: self.wishes.get(wish.key) or self._made(wish) for wish in wishes}
+        gone = [row for key, row in self.wishes.items() if key not in kept]
+        self.wishes = kept
+        for row in (*gone, *kept.values()):
+            self._grid.removeWidget(row)
         at = 0
-        for wish in wishes:
-            row = _Wish(wish)
-            row.field.entered.connect(partial(self.entered.emit, wish.key))
-            row.remove.clicked.connect(partial(self._remove, wish.key))
-            self.wishes[wish.key] = row
-            wide = wish.value is None or row.sizeHint().width() + _WAS > (WIDTH - _BETWEEN) // _COLUMNS
-            at += at % _COLUMNS if wide else 0  # a long title is not cut: it takes a line of its own
+        for row in kept.values():
+            wide = row.breadth is None or row.breadth > (WIDTH - _BETWEEN) // _COLUMNS
+            at += at % _COLUMNS if wide else 0
             self._grid.addWidget(row, at // _COLUMNS, at % _COLUMNS, 1, _COLUMNS if wide else 1)
             at += _COLUMNS if wide else 1
+        for row in gone:
+            self._put_away(row)
+
+    def _made(self, wish: WishView) -> WishRow:
+        row = WishRow(wish)
+        row.field.entered.connect(partial(self.entered.emit, wish.key))
+        row.field.typed.connect(self._follow_typing)
+        row.remove.clicked.connect(partial(self._remove, wish.key))
+        return row
+
+    def _put_away(self, row: WishRow) -> None:
+        """Let a row go; what is typed in it asks for nothing any more, and the keyboard stays near."""
+        row.field.blockSignals(True)
+        had = self.focusWidget()
+        if had is not None and row.isAncestorOf(had) and had.hasFocus() and self.hand.isVisible():
+            self.hand.button(self._kind).setFocus(Qt.FocusReason.OtherFocusReason)
+        row.hide()
+        row.deleteLater()
+
+    # -- what is typed
+
+    def commit(self) -> bool:
+        """Ask for what is still being typed; tells whether it can be."""
+        taken = [row.field.commit() for row in tuple(self.wishes.values())]  # all of them, whatever one says
+        return all(taken)
+
+    def drop_typed(self) -> None:
+        """Leave what is still being typed as it was."""
+        for row in self.wishes.values():
+            row.field.drop()
+
+    def _follow_typing(self) -> None:
+        """Let the answer be faint while another figure is typed, which can be applied at once."""
+        typed = any(row.field.isModified() for row in self.wishes.values())
+        set_tag(self.answer, "tone", "faint" if typed else self._tone)
+        set_tag(self.changes, "tone", "faint" if typed else "")
+        self.apply.setEnabled(typed or self._can_apply)
+
+    def _take(self) -> None:
+        if self.commit():
+            self.applied.emit()
+
+    def _choose_hand(self, kind: str) -> None:
+        self.commit()
+        self.hand_chosen.emit(kind)
+
+    def _ask_more(self) -> None:
+        self.commit()
+        self.add_asked.emit()
 
     def _remove(self, key: str, _: bool = False) -> None:
+        self.wishes[key].field.drop()
+        self.commit()
         self.removed.emit(key)
 
     def _fit(self) -> None:
