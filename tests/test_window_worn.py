@@ -141,6 +141,36 @@ def test_another_person_is_refused_and_an_edit_makes_the_comparison_old(pair: tu
     assert run_main([project], script) == 0
 
 
+def test_a_shape_that_has_settled_is_compared_while_turns_beside_it_go_on(pair: tuple[str, str, str]) -> None:
+    project, scan, _ = pair
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.worn_desk.read(scan)
+        window.map_desk.choose("worn")
+        window.session.choose_control("adaptive")
+        yield lambda: settled(window)() and not window.jobs.at_work()
+        window.session.reset_lines()
+        window.session.set_pace(60.0)
+
+        def compared() -> bool:
+            frame = window.session.frame
+            assert frame is not None
+            return bool(np.isfinite(window.worn_desk.values(frame)).any())
+
+        yield lambda: not compared()
+        yield compared
+        frame = window.session.frame
+        assert frame is not None
+        assert frame.at_work, "the conventional force is still on its way"
+        assert "out than real" in window.map_desk.legend._note.text()
+        window.session.set_pace(None)
+        window.session.undo_stack.setClean()
+
+    assert run_main([project], script) == 0
+
+
 def test_where_the_bust_points_are_is_said_without_a_sign() -> None:
     figures = Figures(0.0, 1.0, 2.0, 1.0)
     way = {"left": np.array([0.0, 0.7, -0.3]), "right": np.array([0.0, -0.2, 0.04])}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
+import numpy as np
 from PySide6.QtCore import QObject, Signal
 
 from app.asking.jobs import Job
@@ -156,13 +157,18 @@ class WornDesk(QObject):
 
     def _known(self, frame: Frame) -> Difference | None:
         """Return the comparison of a frame; if it is not known yet it is worked out beside."""
-        if self._difference is not None and self._difference[0] is frame:
+        if self._difference is not None and _is_as(frame, self._difference[0]):
             return self._difference[1]
-        settled = frame is self._window.session.frame and self._window.is_settled()
-        asked = self._comparing is not None and self._comparing[1] is frame
-        if self.worn is not None and self._of is frame.stages.body and settled and not asked:
+        asked = self._comparing is not None and _is_as(frame, self._comparing[1])
+        if self.worn is not None and self._of is frame.stages.body and self._rests(frame) and not asked:
             self._compare(frame, self.worn)
         return None
+
+    def _rests(self, frame: Frame) -> bool:
+        """Tell whether the shape shown has settled, though turns beside it may go on for seconds."""
+        session = self._window.session
+        of_now = frame is session.frame and frame.stages.design is session.design and session.is_answered
+        return of_now and (frame.verdict.motion == "settled" or not frame.at_work)
 
     def _compare(self, frame: Frame, worn: Worn) -> None:
         if self._comparing is not None:
@@ -246,3 +252,9 @@ class WornDesk(QObject):
             ready=bool(worn) and self._window.is_settled() and not at_work and not faint,
             helped=found is not None and found.helped,
         )
+
+
+def _is_as(frame: Frame, other: Frame) -> bool:
+    """Tell whether two frames show the same shape: another may have come of turns beside it alone."""
+    same = frame.stages is other.stages
+    return same and np.array_equal(frame.control_points, other.control_points)
