@@ -124,7 +124,8 @@ class Sheet:
     should be looked at before landmarks are trusted. ``off`` is how far figures may be off, by the keys of
     ``core.measuring.plus_minus``, in their units: nothing where that was not worked out; see ``with_spread``.
     ``off_factor`` tells of others how many times smaller or larger they may be [1], ``off_notes`` where all
-    of this says less than it seems to, ``off_sources`` what any of it comes from.
+    of this says less than it seems to, ``off_sources`` what any of it comes from. ``strain`` is that of the
+    verdict.
     """
 
     heading: Heading
@@ -153,6 +154,7 @@ class Sheet:
     off_factor: Mapping[str, float] = field(default_factory=dict)
     off_notes: tuple[str, ...] = ()
     off_sources: tuple[str, ...] = ()
+    strain: Pair | None = None
 
     @property
     def sound(self) -> bool:
@@ -197,6 +199,7 @@ def sheet_of(shown: Shown, records: Sequence[Record], heading: Heading, progress
         warnings=_warnings(shown),
         left_out=(*NOT_MODELLED, *LEFT_OUT),
         model=_model(stages),
+        strain=verdict.strain,
         versions={"busk": __version__, "python": platform.python_version(), "numpy": np.__version__},
     )
 

@@ -76,6 +76,14 @@ class Verdict:
         return "strained" if self.state == "settled" and strained else self.state
 
     @property
+    def strain(self) -> tuple[float, float] | None:
+        """How far a "strained" skin is pressed together and stretched at most [%], else None."""
+        condition = self.condition
+        if condition is None or self.told != "strained":
+            return None
+        return 100.0 * (condition.shortest - 1.0), 100.0 * (condition.longest - 1.0)
+
+    @property
     def sound(self) -> bool:
         """Whether figures can be worked with, or will be once all has settled."""
         return self.told in SOUND

@@ -145,16 +145,15 @@ def _hint(frame: Frame) -> str:
 
     What ends it says the doctor alone, who has tried it: two advices at once would be one too many.
     """
-    state, condition = state_of(frame), frame.verdict.condition
+    state = state_of(frame)
     if state == "diverging":
         return tr("It runs away: the body is shown as it was before.")
     if state == "settled":
         if any(weak_sides(frame.stages.landmarks, kind) for kind in ESSENTIAL):
             return tr("Some landmarks are doubtful: check them in the Landmarks step.")
         return "".join(map(say, warnings(frame.stages)[:1]))  # the others stand in the notice
-    what = {
+    return {
         "folded": tr("The skin folds over: this is no body any more."),
         "overstrained": tr("Skin pressed or stretched by over 30 %: no shape to sew for."),
-        "strained": tr("Skin pressed or stretched by over 20 % ({strain})."),
+        "strained": strain_sentence(frame.verdict.strain),
     }.get(state, "")
-    return what if condition is None else what.format(strain=_strain(condition))

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from app.presenting.spread import source_words
-from app.reporting.telling import known, system_word
+from app.reporting.telling import known, shared_notes, system_word
 from app.wording.words import colon, joined, language, listed, say, tr
 from core.measuring.definitions import GIRTHS, TAPE, definition_of
 from core.measuring.own import OWN
@@ -17,7 +17,8 @@ from core.sizes import built_in
 
 def cut_notes(sheet: Sheet) -> list[str]:
     """Return what holds for all of the cut list."""
-    return [_with_elastics(note, sheet) for note in sheet.cuts.notes]
+    each = [f"{tr('Each line')}{colon()}{note}" for note in shared_notes(sheet)]
+    return [*each, *(_with_elastics(note, sheet) for note in sheet.cuts.notes)]
 
 
 def definitions(sheet: Sheet) -> list[tuple[str, str]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from app.panels.measure_view import plus_minus
 from app.presenting.bust import forward_words
+from app.presenting.verdict import strain_sentence
 from app.reporting.flow import Block
 from app.reporting.handout import SHOT_SIZES, SHOTS, Handout
 from app.reporting.marks import paint_chip, paint_state
@@ -29,9 +30,12 @@ def head_blocks(handout: Handout, share: float = 1.0) -> list[Block]:
     """
     sheet = handout.sheet
     word, no_result = state_words(sheet)
-    blocks = [_title(sheet, word, sound=not no_result)]
+    strained = strain_sentence(sheet.strain)
+    blocks = [_title(sheet, word, sound=not (no_result or strained))]
     if no_result:
         blocks.append(_beware(no_result, "warning", LIGHT.bad_fill))
+    if strained:
+        blocks.append(_beware(strained, "caution", LIGHT.warn_fill))
     if sheet.doubts:
         blocks.append(_beware(say(" ".join(sheet.doubts)), "caution", LIGHT.warn_fill))
     return [*blocks, _hero(handout), _pictures(handout, share)]

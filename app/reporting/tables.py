@@ -107,7 +107,9 @@ def _cut_head() -> Block:
 
 def _cut_row(view: CutView, colour: str) -> Block:
     marks = " ".join(map(str, view.marks))
-    title = elided(view.title, "strong", _ELASTIC - 7.0 - text_width(marks, "axis"))
+    beside = text_width(marks, "axis") + 0.5
+    lines = wrapped(view.title, "strong", _ELASTIC - 6.5 - beside)  # a name is never cut: it tells the side
+    high = _CUT_ROW + (len(lines) - 1) * line_height("strong")
     room = _EDGES[0] - _ELASTIC - 4.5
     kind = fitting(view.elastic, room)
     elastic = elided(view.elastic, kind, room)
@@ -117,8 +119,9 @@ def _cut_row(view: CutView, colour: str) -> Block:
     def paint(paper: Paper, x: float, y: float) -> None:
         base, middle = y + 3.75, y + 2.8
         paint_chip(paper, x, middle, colour or LIGHT.control)
-        paper.text(x + 4.6, base, title, "strong")
-        paper.text(x + 5.1 + text_width(title, "strong"), base - 0.9, marks, "axis")
+        last = paper.lines(x + 4.6, base - 0.74 * line_height("strong"), lines, "strong")
+        above = last - 0.26 * line_height("strong") - 0.9
+        paper.text(x + 5.1 + text_width(lines[-1], "strong"), above, marks, "axis")
         paper.text(x + _ELASTIC, base, elastic, kind, ink=LIGHT.text)
         for place, (edge, figure) in enumerate(zip(_EDGES, view.figures, strict=True)):
             paper.text(
@@ -127,9 +130,9 @@ def _cut_row(view: CutView, colour: str) -> Block:
         if view.light:
             paint_light(paper, x + _LIGHT, middle, view.light)
             paper.text(x + _WORD, base, word, "body")
-        paper.rule(x, y + _CUT_ROW, WIDE)
+        paper.rule(x, y + high, WIDE)
 
-    return Block(_CUT_ROW, paint)
+    return Block(high, paint)
 
 
 def _legend() -> Block:
@@ -174,7 +177,7 @@ def _beside(blocks: list[Block]) -> Block:
         return sum(block.height + block.gap for block in part)
 
     halves = min(
-        ((blocks[:k], blocks[k:]) for k in range(len(blocks) + 1)), key=lambda two: max(map(high, two))
+        ((blocks[:k], blocks[k:]) for k in range(len(blocks), -1, -1)), key=lambda two: max(map(high, two))
     )
 
     def paint(paper: Paper, x: float, y: float) -> None:

@@ -100,18 +100,29 @@ def other_sizes(sheet: Sheet) -> str:
 def cut_views(sheet: Sheet, order: Sequence[str]) -> tuple[list[CutView], list[str]]:
     """Return the rows of the cut list in the ``order`` of the lines, and their footnotes.
 
-    Of a shape that is no result no figure is told: nobody is to cut by it.
+    Of a shape that is no result no figure is told: nobody is to cut by it. What holds for each row is no
+    footnote, see ``shared_notes``.
     """
     footnotes: list[str] = []
-    views = []
+    views, shared = [], shared_notes(sheet)
     rows = zip(sheet.cuts.rows, sheet.pressures, strict=True)
     for cut, press in sorted(rows, key=lambda row: _place(row[0].line, order)):
-        told = (*map(say, (*cut.notes, *press.notes)), *_within_words(cut, press, sheet))
-        notes = list(dict.fromkeys(told)) if sheet.sound else []
+        notes = [note for note in _row_notes(cut, press, sheet) if note not in shared]
         footnotes += [note for note in notes if note not in footnotes]
         view = _cut_view(cut, press, tuple(footnotes.index(note) + 1 for note in notes))
         views.append(view if sheet.sound else _without_figures(view))
     return views, footnotes
+
+
+def shared_notes(sheet: Sheet) -> list[str]:
+    """Return what is noted of every row of the cut list, if there are several."""
+    rows = [_row_notes(*each, sheet) for each in zip(sheet.cuts.rows, sheet.pressures, strict=True)]
+    return [note for note in rows[0] if all(note in notes for notes in rows)] if len(rows) > 1 else []
+
+
+def _row_notes(cut: CutRow, press: PressRow, sheet: Sheet) -> list[str]:
+    told = (*map(say, (*cut.notes, *press.notes)), *_within_words(cut, press, sheet))
+    return list(dict.fromkeys(told)) if sheet.sound else []
 
 
 def _within_words(cut: CutRow, press: PressRow, sheet: Sheet) -> Iterator[str]:
