@@ -8,6 +8,7 @@ import pytest
 
 from app.presenting.asking import (
     answer_words,
+    beside_words,
     change_words,
     figure_title,
     is_met,
@@ -150,3 +151,22 @@ def test_what_a_hand_draws_is_met_on_average() -> None:
     assert is_near(off_by(-0.1, 3.0, lift=4.02), [*goals, wish])
     assert not is_near(off_by(-0.1, 3.0, lift=4.2), [*goals, wish])
     assert not is_near(reply(reached={"lift": 4.0}), [wish]), "of profiles alone"
+
+
+def test_of_a_drawn_profile_it_is_told_what_it_was_off_and_how_the_bust_point_moves_along() -> None:
+    goals = [Goal(profile_name("left", height), 200.0) for height in (300.0, 310.0)]
+    names = [goal.name for goal in goals]
+    off = reply(reached=dict(zip(names, (206.0, 199.0), strict=True)), strained=True)
+    now = {names[0]: 203.0, names[1]: 199.0, "lift": 7.3, "out": -5.3}
+    then = {"lift": 6.5, "out": -5.33}
+    said = answer_words(off, goals, None, now)
+    assert said.startswith(
+        "Not reachable: nearest is a profile off by 3.5 mm on average (6.0 mm at most), 2.0 mm before, "
+    )
+    assert beside_words(goals, now, then) == "Moves along: Bust point up +7.3 → +6.5 mm"
+    with speaking("ja"):
+        assert "の結果（変更前 2.0 mm）。理由：" in answer_words(off, goals, None, now)
+        assert beside_words(goals, now, then) == "あわせて変わるもの：BPの上昇 +7.3 → +6.5 mm"
+    assert beside_words([*goals, Goal("lift", 6.5)], now, then) == "", "it is asked for"
+    assert beside_words([Goal("out", -4.0)], now, then) == "", "no profile is"
+    assert beside_words(goals, {}, then) == "", "not known yet"

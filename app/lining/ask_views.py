@@ -11,6 +11,7 @@ from app.panels.ask_card import AskCard
 from app.panels.wish_row import WishView
 from app.presenting.asking import (
     answer_words,
+    beside_words,
     change_words,
     figure_title,
     is_met,
@@ -44,7 +45,8 @@ def show_answer(
     else:
         reply, asked = answer.reply, answer.question.goals
         met = _is_met(wishes, reply, asked)
-        said, why = answer_words(reply, asked, wishes.only_limit, answer.now), ""
+        said = answer_words(reply, asked, wishes.only_limit, answer.now)
+        why = beside_words(asked, answer.now, answer.then)
         if asks_to_be_even(asked) and wishes.only_limit is None:
             said, why = evened_words(reply, asked, answer.now, answer.then)
         changes = "\n".join(filter(None, (why, listed(change_words(design, reply)))))

@@ -9,6 +9,7 @@ import numpy as np
 
 from app.presenting.lines import told_title
 from app.wording.words import colon, listed, number, tr
+from core.aims.bust import LIFT, OUT
 from core.aims.even import FURTHER_OUT, HIGHER
 from core.aims.figure import Goal
 from core.aims.girth import GIRTH
@@ -91,7 +92,7 @@ def answer_words(
         return tr("Reached within {mm} mm.").format(mm=number(most))
     if is_near(reply, goals):
         return _near_words(reply, goals, now or {})
-    nearest = listed(_nearest(reply, goals))
+    nearest = listed(_nearest(reply, goals, now or {}))
     if not reply.agreed:
         said = tr("Nearest so far: {nearest}. Lengths, elastics and pressures did not come to agree.")
         return said.format(nearest=nearest)
@@ -103,13 +104,19 @@ def _near_words(reply: Reply, goals: Sequence[Goal], now: Mapping[str, float]) -
     """Return how nearly profiles are met, and what they were off if that was hardly more."""
     offs = profiles_off(goals, reply.reached)
     section = max(offs, key=lambda each: float(np.abs(offs[each]).mean()))
-    there = [goal for goal in goals if section_of(goal.name) == section]
-    before = [abs(now[goal.name] - goal.value) for goal in there if goal.name in now]
-    if not before or float(np.abs(offs[section]).mean()) <= _MUCH * float(np.mean(before)):
+    before = _off_before(goals, now, section)
+    if before is None or float(np.abs(offs[section]).mean()) <= _MUCH * before:
         said = tr("Met within {mean} mm on average, {most} mm at most.")
     else:
         said = tr("Nearest is {mean} mm off on average, {most} mm at most (was {before} mm).")
-    return said.format(**_mean_and_most(offs[section]), before=number(float(np.mean(before or [0.0]))))
+    return said.format(**_mean_and_most(offs[section]), before=number(before or 0.0))
+
+
+def _off_before(goals: Sequence[Goal], now: Mapping[str, float], section: str) -> float | None:
+    """Return how far a profile was off on average [mm]; None where that is not known."""
+    there = [goal for goal in goals if section_of(goal.name) == section]
+    before = [abs(now[goal.name] - goal.value) for goal in there if goal.name in now]
+    return float(np.mean(before)) if before else None
 
 
 def _come(reply: Reply, goals: Sequence[Goal]) -> Iterable[str]:
@@ -121,7 +128,7 @@ def _come(reply: Reply, goals: Sequence[Goal]) -> Iterable[str]:
         yield tr("{figure} (was {value})").format(figure=words, value=was) if moved else words
 
 
-def _nearest(reply: Reply, goals: Sequence[Goal]) -> Iterable[str]:
+def _nearest(reply: Reply, goals: Sequence[Goal], now: Mapping[str, float]) -> Iterable[str]:
     missed = [goal for goal in goals if not section_of(goal.name)]
     missed = [goal for goal in missed if abs(reply.reached[goal.name] - goal.value) > _MET] or missed
     for goal in missed:
@@ -131,7 +138,28 @@ def _nearest(reply: Reply, goals: Sequence[Goal]) -> Iterable[str]:
         said = tr("a profile off by {mean} mm on average ({most} mm at most)")
         if len(profiles) > 1:
             said = tr("{profile}: off by {mean} mm on average ({most} mm at most)")
-        yield said.format(profile=figure_title(section), **_mean_and_most(off))
+        words = said.format(profile=figure_title(section), **_mean_and_most(off))
+        before = _off_before(goals, now, section)
+        if before is not None:
+            words += tr(", {before} mm before").format(before=number(before))
+        yield words
+
+
+def beside_words(goals: Sequence[Goal], now: Mapping[str, float], then: Mapping[str, float]) -> str:
+    """Return how the bust points move with a profile where they are free; empty where they stay.
+
+    ``now`` and ``then`` [mm] are figures before and after.
+    """
+    if not any(section_of(goal.name) for goal in goals):
+        return ""
+    asked = {goal.name.removesuffix(" left").removesuffix(" right") for goal in goals}
+    free = [name for name in (LIFT, OUT) if name not in asked and name in now and name in then]
+    said = tr("{figure} {before} → {after} mm")
+    moved = []
+    for name in (name for name in free if abs(then[name] - now[name]) > _MET):
+        before, after = (number(each[name], 1, signed=True) for each in (now, then))
+        moved.append(said.format(figure=figure_title(name), before=before, after=after))
+    return tr("Moves along: {figures}").format(figures=listed(moved)) if moved else ""
 
 
 def off_words(goals: Sequence[Goal], reached: Mapping[str, float], section: str) -> str:
