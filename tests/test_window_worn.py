@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QLabel, QScrollArea
+from PySide6.QtWidgets import QApplication, QLabel, QScrollArea
 from window_tools import Script, run_main, settled, undrawn
 
 import app.keeping.worn_desk
 from app.main_window import MainWindow
+from app.panels.worn_page import WornPage, WornView
 from app.presenting.worn import bust_words, number_title
 from app.wording.samples import sample_design
 from app.wording.words import speaking
@@ -92,7 +93,7 @@ def test_a_worn_scan_is_compared_and_learnt_from(pair: tuple[str, str, str]) -> 
             == page.view.surely
             == ("Told to within 5 %: Stiffness of lines. Told weakly, as ± says: Firm chest.")
         )
-        assert page.apply.isVisible()
+        assert (page.apply.isVisible(), page.apply.property("kind")) == (True, "primary"), "one is told well"
         page.apply.click()
         yield lambda: settled(window)() and bool(page.view.rows) and not page.view.faint
         after = window.session.design
@@ -179,6 +180,15 @@ def test_where_the_bust_points_are_is_said_without_a_sign() -> None:
         "Left bust point: predicted 0.3 mm lower (±5.7 mm), 0.7 mm less far out. Right bust point: "
     )
     assert "predicted 0.0 mm higher (±10.8 mm), 0.2 mm further out." in words
+
+
+def test_what_is_no_finding_is_not_offered_with_the_strongest_button(qapp: QApplication) -> None:
+    page = WornPage()
+    for doubtful, kind in ((True, "secondary"), (False, "primary")):
+        page.show_view(WornView(better="0.9 → 0.8 mm", helped=True, doubtful=doubtful))
+        assert not page.apply.isHidden(), "it can be taken all the same"
+        assert page.apply.property("kind") == kind
+    page.deleteLater()
 
 
 def test_a_number_that_linked_lines_share_is_called_as_their_row() -> None:

@@ -42,8 +42,8 @@ class WornView:
     """All that the page says; empty where there is nothing.
 
     ``faint``: the comparison is of a former shape. ``ready``: the numbers can be sought. ``helped``: those
-    found can be applied, and ``surely`` says which are told well. ``record`` is what the design keeps of a
-    calibration.
+    found can be applied, ``doubtful`` that this is not recommended, and ``surely`` says which are told well.
+    ``record`` is what the design keeps of a calibration.
     """
 
     file: str = ""
@@ -58,6 +58,7 @@ class WornView:
     faint: bool = False
     ready: bool = False
     helped: bool = False
+    doubtful: bool = False
 
 
 class WornPage(QWidget):
@@ -191,6 +192,7 @@ class WornPage(QWidget):
         self._found.setVisible(bool(view.better))
         self.calibrate.setEnabled(view.ready)
         self.apply.setVisible(view.helped)
+        set_tag(self.apply, "kind", "secondary" if view.doubtful else "primary")
         self.unsure.setVisible(bool(view.numbers))
         for cell in self._cells:
             cell.deleteLater()
