@@ -127,32 +127,35 @@ NOW = {"left higher": -11.5, "left further out": -0.1, "lift": 6.9, "out": 1.2}
 def test_what_makes_it_even_is_told_from_where_to_where_with_its_price() -> None:
     assert asks_to_be_even(EVEN)
     assert not asks_to_be_even(EVEN[2:])
-    said, why = evened_words(evened(), EVEN, NOW, {"out": -3.0})
+    said, price, why = evened_words(evened(), EVEN, NOW, {"out": -3.0})
     assert said.splitlines() == [
         "Not reachable. Nearest:",
         "Right higher: 11.5 → 2.7 mm",
     ]
-    assert why == (
+    assert price == (
         "At the price of: Right further forward 0.1 → 3.6 mm, Bust point up +6.9 → +4.2 mm, "
-        "Bust point forward +1.2 → −3.0 mm\n"
+        "Bust point forward +1.2 → −3.0 mm"
+    )
+    assert why == (
         "Because Strap (right), Mid-bust (left) may not be longer: a longer line would have to push, "
         "and the body would be strained more than looks natural."
     )
     with speaking("ja"):
-        said, why = evened_words(evened(), EVEN, NOW, {"out": -3.0})
+        said, _, why = evened_words(evened(), EVEN, NOW, {"out": -3.0})
         assert said.splitlines()[1] == "右が高い：11.5 → 2.7 mm"
         assert "ストラップ（右）、バスト下部（左）は" in why
 
 
 def test_a_side_that_changes_is_named_and_what_is_even_has_none() -> None:
     turned = evened(reached={"left higher": 2.0, "left further out": 0.0}, reachable=True)
-    said, why = evened_words(turned, EVEN[:2], NOW, {"lift": 6.9, "out": 1.2})
+    said, price, why = evened_words(turned, EVEN[:2], NOW, {"lift": 6.9, "out": 1.2})
     assert said.splitlines() == [
         "Reached.",
         "Right higher 11.5 mm → Left higher 2.0 mm",
         "Right further forward: 0.1 → 0.0 mm",
     ]
-    assert why == ""
-    said, why = evened_words(evened(agreed=False), EVEN, NOW, {"out": 1.2})
+    assert (price, why) == ("", "")
+    said, price, why = evened_words(evened(agreed=False), EVEN, NOW, {"out": 1.2})
     assert said.startswith("Nearest so far:\n")
-    assert why.endswith("\nLengths, elastics and pressures did not come to agree.")
+    assert price.startswith("At the price of: ")
+    assert why.endswith("Lengths, elastics and pressures did not come to agree.")

@@ -46,12 +46,12 @@ def show_answer(
         reply, asked = answer.reply, answer.question.goals
         met = _is_met(wishes, reply, asked)
         said = answer_words(reply, asked, wishes.only_limit, answer.now)
-        why = beside_words(asked, answer.now, answer.then)
+        price, why = beside_words(asked, answer.now, answer.then), ""
         if asks_to_be_even(asked) and wishes.only_limit is None:
-            said, why = evened_words(reply, asked, answer.now, answer.then)
+            said, price, why = evened_words(reply, asked, answer.now, answer.then)
         changes = "\n".join(filter(None, (why, listed(change_words(design, reply)))))
         tone = "ok" if met else "" if is_near(reply, asked) else "warn"
-        card.show_answer(said, tone, changes, note, can_apply=True)
+        card.show_answer(said, tone, price, changes, note, can_apply=True)
 
 
 def is_as_wished(wishes: Wishes, answer: Answer) -> bool:

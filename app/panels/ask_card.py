@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import QEvent, QObject, Qt, Signal
+from PySide6.QtGui import QHideEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from app.dress.parts import IconLabel, OverCard, Segment, ToolButton, button, sentence
@@ -18,6 +19,7 @@ WIDTH = 674
 
 _COLUMNS = 2
 _BETWEEN = 20  # columns [px]
+_MOST = 0.5  # of the height of the view: what is more hides what is asked for [1]
 
 
 class AskCard(OverCard):
@@ -58,6 +60,8 @@ class AskCard(OverCard):
         self.row.setContentsMargins(30, 20, 30, 30)
         self.row.addLayout(column)
         self.setFixedWidth(WIDTH + 60)
+        if parent is not None:
+            parent.installEventFilter(self)
         self.hide()
 
     def _head(self) -> QHBoxLayout:
@@ -74,8 +78,9 @@ class AskCard(OverCard):
     def _said(self) -> QVBoxLayout:
         said = QVBoxLayout()
         said.setSpacing(2)
-        self.answer, self.changes, self.note = sentence("", "name"), sentence(""), sentence("", "caption")
-        for part in (self.answer, self.changes, self.note):
+        self.answer, self.price = sentence("", "name"), sentence("")
+        self.changes, self.note = sentence(""), sentence("", "caption")
+        for part in (self.answer, self.price, self.changes, self.note):
             said.addWidget(part)
         return said
 
@@ -93,6 +98,9 @@ class AskCard(OverCard):
         self.link.toggled.connect(self.linked)
         self.add = button(tr("Add a wish"), "quiet")
         self.add.clicked.connect(self._ask_more)
+        self.details = button(tr("Details"), "quiet")
+        self.details.setCheckable(True)
+        self.details.clicked.connect(self._fit)
         self.help_ = button(tr("Choose lines"), "secondary")
         self.help_.clicked.connect(self.helped)
         self.help_.hide()
@@ -100,7 +108,7 @@ class AskCard(OverCard):
         self.apply.clicked.connect(self._take)
         self.cancel = button(tr("Cancel"), "quiet")
         self.cancel.clicked.connect(self.left)
-        for part in (self.hand, self.link, self.add):
+        for part in (self.hand, self.link, self.add, self.details):
             foot.addWidget(part)
         foot.addStretch(1)
         for part in (self.help_, self.apply, self.cancel):
@@ -120,10 +128,21 @@ class AskCard(OverCard):
         self._fit()
 
     def show_answer(
-        self, answer: str = "", tone: str = "", changes: str = "", note: str = "", *, can_apply: bool = False
+        self,
+        answer: str = "",
+        tone: str = "",
+        price: str = "",
+        changes: str = "",
+        note: str = "",
+        *,
+        can_apply: bool = False,
     ) -> None:
-        """Show what came out: a sentence in a ``tone`` of "", "ok" or "warn", changes of lines, a note."""
-        for part, words in ((self.answer, answer), (self.changes, changes), (self.note, note)):
+        """Show what came out: a sentence in a ``tone`` of "", "ok" or "warn", and what moves with it.
+
+        ``changes`` of lines and a ``note`` are folded where they would hide what is asked for.
+        """
+        parts = (self.answer, self.price, self.changes, self.note)
+        for part, words in zip(parts, (answer, price, changes, note), strict=True):
             part.setText(words)
             part.setVisible(bool(words))
         self._tone, self._can_apply = tone, can_apply
@@ -198,7 +217,8 @@ class AskCard(OverCard):
         """Let the answer be faint while another figure is typed, which can be applied at once."""
         typed = any(row.field.isModified() for row in self.wishes.values())
         set_tag(self.answer, "tone", "faint" if typed else self._tone)
-        set_tag(self.changes, "tone", "faint" if typed else "")
+        for part in (self.price, self.changes):
+            set_tag(part, "tone", "faint" if typed else "")
         self.apply.setEnabled(typed or self._can_apply)
 
     def _take(self) -> None:
@@ -218,8 +238,31 @@ class AskCard(OverCard):
         self.commit()
         self.removed.emit(key)
 
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt names it
+        """Fold and unfold as the view gets lower and higher."""
+        if event.type() == QEvent.Type.Resize and self.isVisible():
+            self._fit()
+        return super().eventFilter(watched, event)
+
+    def hideEvent(self, event: QHideEvent) -> None:  # noqa: N802 - Qt names it
+        """Begin folded the next time."""
+        super().hideEvent(event)
+        self.details.setChecked(False)
+
     def _fit(self) -> None:
-        parts: list[QLabel] = [self._hint, self.answer, self.changes, self.note]
+        """Be as high as what is shown; changes and note are folded where that is too high, unless opened."""
+        self._grow(folded=False)
+        view, (_, above, _, below) = self.parentWidget(), self.MARGINS
+        foldable = bool(self.changes.text() or self.note.text())
+        tight = view is not None and self.height() - above - below > _MOST * view.height()
+        self.details.setVisible(foldable and tight)
+        if foldable and tight:
+            self._grow(folded=not self.details.isChecked())
+
+    def _grow(self, *, folded: bool) -> None:
+        for part in (self.changes, self.note):
+            part.setVisible(bool(part.text()) and not folded)
+        parts: list[QLabel] = [self._hint, self.answer, self.price, self.changes, self.note]
         for part in parts:
             # A sentence that wraps is as high as it is at the width that it really gets.
             part.setMinimumHeight(part.heightForWidth(WIDTH) if part.text() else 0)

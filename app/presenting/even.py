@@ -179,8 +179,8 @@ def asks_to_be_even(goals: Sequence[Goal]) -> bool:
 
 def evened_words(
     reply: Reply, goals: Sequence[Goal], now: Mapping[str, float], then: Mapping[str, float]
-) -> tuple[str, str]:
-    """Return in short lines what an answer brings nearer; and what that costs, and why it is no nearer.
+) -> tuple[str, str, str]:
+    """Return in short lines what an answer brings nearer; then what that costs, and why it is no nearer.
 
     ``now`` and ``then`` [mm] are figures before and after: what both sides do together is to stay.
     """
@@ -194,8 +194,7 @@ def evened_words(
     beside = tr("{figure} {before} → {after} mm")
     price = listed(_way(name, now[name], come[name], beside) for name, by in nearer.items() if by > _SEEN)
     costs = tr("At the price of: {figures}").format(figures=price) if price else ""
-    why = "" if met else _why(reply)
-    return "\n".join((_outcome(reply, met), *lines)), "\n".join(filter(None, (costs, why)))
+    return "\n".join((_outcome(reply, met), *lines)), costs, "" if met else _why(reply)
 
 
 def _outcome(reply: Reply, met: bool) -> str:
