@@ -49,6 +49,12 @@ def can_split(design: Design, template: Template, name: str) -> bool:
     return True
 
 
+def is_split(design: Design, name: str) -> bool:
+    """Tell whether a line is off while its halves, of which one at least is worn, lie in its place."""
+    pair, worn = {half.format(name=name) for half in _HALVES}, design.worn()
+    return name not in worn and pair <= {line.name for line in design.own_lines} and bool(pair & worn)
+
+
 def split(design: Design, template: Template, name: str, *, linked: bool = False) -> Design:
     """Return the design with a line split at the front centre into "NAME left" and "NAME right".
 

@@ -15,7 +15,7 @@ from core.errors import LineError
 from core.own_lines import mirrored, ready_made
 from core.pipeline import Stages, build
 from core.solution import run
-from core.splitting import can_split, halves, split
+from core.splitting import can_split, halves, is_split, split
 from core.template import read_template
 
 TEMPLATE = read_template("168")
@@ -57,6 +57,10 @@ def test_halves_are_worn_and_treated_as_the_whole_was() -> None:
         assert after.ratio(name) == 0.93
         assert after.traits_of(name) == replace(traits, name=name, linked=False)
         assert after.linked(name) == (name,)
+    assert is_split(after, "mid-bust")
+    assert is_split(after.with_line("mid-bust left", None), "mid-bust"), "one half is worn"
+    assert not is_split(after.with_line("mid-bust", 0.9), "mid-bust"), "it is worn besides"
+    assert not is_split(PLAIN.with_line("mid-bust", None), "mid-bust"), "it is off, and nothing in its place"
     tied = split(PLAIN, TEMPLATE, "mid-bust", linked=True)
     assert tied.linked("mid-bust left") == ("mid-bust left", "mid-bust right")
     elastic = find_elastic("picot 10")

@@ -16,6 +16,8 @@ from app.keeping.spread_desk import SpreadDesk
 from app.main_window import MainWindow
 from app.panels.even_card import EvenCard
 from core.evenness import BeforeAfter, evenness
+from core.splitting import split
+from core.template import read_template
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 PERSON = [str(SAMPLES / "person.ply")]
@@ -138,6 +140,20 @@ def leaves_what_is_not_worth_it(window: MainWindow) -> Script:
     yield lambda: is_fresh(window)
 
 
+def is_folded_over_the_body(window: MainWindow) -> None:
+    """Where the view is low, reason and lengths are folded: they would hide what is made even."""
+    card, view = window.ask_desk.card, window.view
+    high = view.floating.seen(card).height()
+    assert card.price.text().startswith("At the price of: ") == card.price.isVisible()
+    assert not card.changes.isVisible()
+    card.details.click()
+    assert card.changes.isVisible()
+    assert view.floating.seen(card).height() > high
+    card.details.click()
+    assert not card.changes.isVisible()
+    assert view.floating.seen(card).height() == high < 0.55 * view.height()
+
+
 def makes_even(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> Script:
     """Lines are parted in the one step that takes the answer; left, or changed meanwhile, nothing is."""
     card, desk, before = window.even_desk.card, window.ask_desk, window.session.design
@@ -156,6 +172,7 @@ def makes_even(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> Script:
         assert first in ("Reached.", "Not reachable. Nearest:")
         assert nearer[0].startswith("Right higher: 11.8 → "), "from where to where, with no sign"
         assert "Mid-bust (left) 95.0 → " in desk.card.changes.text()
+        is_folded_over_the_body(window)
         assert window.session.design is before, "seen, not taken"
         assert window.session.undo_stack.count() == count
         end()
@@ -194,14 +211,14 @@ def splits(window: MainWindow) -> Script:
     before = window.session.design
     assert before is not None
     link = window.lines.rows["mid-bust"].details._tools["link"]
-    for split in (
+    for ask_for in (
         lambda: QTest.keyClick(window.lines, Qt.Key.Key_L),
         lambda: window.lines.do("split"),
         link.click,
     ):
         window.lines.select("mid-bust")
         assert "Split it" in link.toolTip()
-        split()
+        ask_for()
         yield lambda: "mid-bust left" in window.lines.rows and window.is_settled()
         assert window.session.undo_stack.undoText() == "Mid-bust split into left and right"
         assert list(window.lines.rows)[1:4] == ["mid-bust", "mid-bust left", "mid-bust right"]
@@ -214,8 +231,31 @@ def splits(window: MainWindow) -> Script:
         window.actions_.undo.trigger()
         yield lambda: "mid-bust left" not in window.lines.rows and window.is_settled()
         assert window.session.design == before
+        window.desk.plot_now()
+        assert window.view.selected_line == "mid-bust", "it is whole again"
+    yield from parted_elsewhere(window)
     window.lines.select("under-bust")
     assert not window.lines.rows["under-bust"].view.splits, "it moves nothing"
+
+
+def parted_elsewhere(window: MainWindow) -> Script:
+    """Who looks at a line that something else splits goes on in its left half; the whole tells no gap."""
+    window.desk.select_line("mid-bust")
+    window.lines_desk.commit_length("mid-bust", 0.95)
+    template = read_template("168")
+    window.session.edit(lambda design: split(design, template, "mid-bust"), "Made even")
+    yield lambda: "mid-bust left" in window.lines.rows and window.is_settled()
+    window.desk.plot_now()
+    assert window.view.selected_line == "mid-bust left"
+    assert window.lines.rows["mid-bust left"]._open
+    window.desk.select_line("mid-bust")  # whoever wants to see it can
+    row = window.lines.rows["mid-bust"]
+    assert row._open
+    assert row.details._figures[0][3].text() == "–", "a line that does not pull has no gap"
+    assert "halves are worn in its place" in row.details._part.text()
+    assert row.view.leeway is None
+    window.actions_.undo.trigger()
+    yield lambda: "mid-bust left" not in window.lines.rows and window.is_settled()
 
 
 def test_an_even_body_has_nothing_to_be_made_even_and_a_line_is_split_all_the_same(

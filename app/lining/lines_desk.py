@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Qt
 
-from app.presenting.lines import Shown, line_views, pair_title, row_title
+from app.presenting.lines import Shown, kind_of, line_views, pair_title, row_title
 from app.presenting.pressure import pressed_view
 from app.wording.words import number, tr
 from core.design import Design
 from core.design_lines import partner_of
 from core.live import Frame
-from core.splitting import split
+from core.splitting import is_split, split
 from core.template import read_template
 
 if TYPE_CHECKING:
@@ -31,12 +31,29 @@ class LinesDesk(QObject):
         self._session = window.session
         self.leeways: Callable[[Frame], Mapping[str, Shown]] = lambda _: {}
         self._frame: Frame | None = None
+        self._parted: set[str] = set()
         self._add_actions()
 
     def show_frame(self, frame: Frame) -> None:
         """Show the lines of a frame."""
         self._frame = frame
         self.show_rows()
+        self._go_on_in_halves(frame)
+
+    def _go_on_in_halves(self, frame: Frame) -> None:
+        """Select the left half of a line that was split while it was selected, and the line once it is whole.
+
+        What is only tried on changes nothing.
+        """
+        design, selected = frame.stages.design, self._window.view.selected_line
+        if design is not self._session.design:
+            return
+        before, self._parted = self._parted, {name for name in frame.lengths if is_split(design, name)}
+        whole = kind_of(selected)
+        if selected in self._parted - before:
+            self._window.desk.select_line(f"{selected} left")
+        elif selected not in frame.lengths and whole in frame.lengths:
+            self._window.desk.select_line(whole)
 
     def show_rows(self) -> None:
         """Show the rows anew: something was hidden, or more is known of limits or pressures."""

@@ -77,11 +77,16 @@ class LineDetails(QWidget):
         tone = tone_at(view.leeway, ratio) if worn and not view.stale else ""
         for side, figures in zip(sides, self._figures, strict=False):
             _show_side(side, ratio, "" if view.elastic else tone, unit, figures, bool(view.elastic))
+        if view.parted and not worn:
+            self._figures[0][3].setText("–")  # what pulls there is told by the rows of its halves
         made = tr("Unstretched"), tr("Reached"), tr("Stretched by")
         for head, title in zip(self._heads, made if view.elastic else _titles(), strict=True):
             head.setText(title)
         part = _part_words(view).format(percent=number(ratio * 100))
-        self._part.setText(part if worn else tr("At 100 % the line is off: it measures and does not pull."))
+        off = tr("At 100 % the line is off: it measures and does not pull.")
+        if view.parted:
+            off = tr("The line is off: its left and right halves are worn in its place.")
+        self._part.setText(part if worn else off)
         self._show_whole(view, ratio)
 
     def show_view(self, view: LineView) -> None:

@@ -26,6 +26,7 @@ class LineView:
     of a linked pair has both ``sides``, and means of their lengths. ``own_title`` is empty for the usual one.
     One that is ``tried`` has a length that is only shown, and was not taken.
     One that ``splits`` goes across both sides and can be split into a left and a right line.
+    One that was ``parted`` is off, and its two halves are worn in its place.
     ``apart`` is the side, "left" or "right", of a line that is set apart from its partner; ``pair_title``
     what both are called together.
     ``elastic`` is what it is made of, if anything: its length is then that of the elastic unstretched.
@@ -61,6 +62,7 @@ class LineView:
     tone: str = ""
     splits: bool = False
     tried: bool = False
+    parted: bool = False
 
     @property
     def names(self) -> tuple[str, ...]:

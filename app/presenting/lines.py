@@ -16,7 +16,7 @@ from core.design_lines import partner_of
 from core.leeway import Leeway
 from core.lines import Line
 from core.live import Frame
-from core.splitting import can_split
+from core.splitting import can_split, is_split
 from core.template import Template, read_template
 
 LINE_COLOURS = {"full-bust": "#0A5F73", "mid-bust": "#E5536B", "under-bust": "#5A3F94"}
@@ -140,6 +140,8 @@ def line_views(
             view = _view(design, frame, [lines[each] for each in pair], colour)
             leeway, stale = (leeways or {}).get(name, (None, False))
             visible = not set(pair) <= set(hidden)
+            # Of a line that lies under its own halves no length is worth trying.
+            leeway = None if view.parted else leeway
             rows.append(replace(view, visible=visible, leeway=leeway, stale=stale))
     return rows
 
@@ -172,6 +174,7 @@ def _view(design: Design, frame: Frame, lines: list[Line], colour: str) -> LineV
         pair_title=pair_title(name, design),
         elastic=say(traits.elastic),
         splits=not partner and can_split(design, _template(design.template), name),
+        parted=is_split(design, name),
     )
 
 
