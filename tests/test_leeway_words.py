@@ -66,6 +66,7 @@ def test_a_line_that_is_folded_is_told_so_and_its_slider_says_how_far_it_reaches
         assert leeway is not None
         assert frame.verdict.told == "folded"
         assert leeway.at(0.55).tone == "red"
+        assert "folds below 67.7 %".replace(" ", "\N{NO-BREAK SPACE}") in key(leeway)["red"], "kept together"
         assert plain(key(leeway)["red"]) == "Overstrained below 85.8 % \N{MIDDLE DOT} folds below 67.7 %"
         assert "Folds below 67.7 %: a triangle" in plain(hint(leeway, 0.55))
         assert row.slider.toolTip().startswith("Length of the front part, 50 to 112 % of its rest.")

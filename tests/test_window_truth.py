@@ -150,6 +150,8 @@ def test_a_run_that_never_rests_is_no_result_and_has_a_way_out() -> None:
         notice = window.notices.notice()
         assert notice is not None
         assert "folds over" in f"{notice.sentence} {notice.hint}", "at 60 % it rests, and is no body"
+        window.desk.plot_now()
+        assert window.rail.items["result"].state() == "bad", "its badge is as red as the word"
         assert window.session.undo_stack.undoText() == "Volume control: Adaptive"
         window.actions_.undo.trigger()
         yield settled(window)

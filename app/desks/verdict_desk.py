@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject
 
 from app.presenting.verdict import state_of
+from app.showing.verdict_chip import TONES, TROUBLED
 from core.live import Frame
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
-
-_LOOK = ("strained", "overstrained", "folded", "vibrating", "diverging")
 
 
 class VerdictDesk(QObject):
@@ -25,9 +24,10 @@ class VerdictDesk(QObject):
     def show_frame(self, frame: Frame) -> None:
         """Show how a frame stands."""
         state, rail = state_of(frame), self._window.rail
-        if state in _LOOK:
-            rail.set_state("lines", "look", 1)
-            rail.set_state("result", "look")
+        if state in TROUBLED:
+            looks = "bad" if TONES[state][0] == "bad" else "look"  # one colour with the word below the body
+            rail.set_state("lines", looks, 1)
+            rail.set_state("result", looks)
         else:
             for step in ("lines", "result"):
                 rail.set_state(step, "done" if state == "settled" else "available")

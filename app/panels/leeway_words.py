@@ -11,6 +11,7 @@ KEY_ORDER = GREEN, AMBER, RED, SLACK
 """In which order the kinds of zones are explained."""
 
 _TONES = {AMBER: "warn", RED: "bad"}
+_SHORT = 28  # letters that have room in one line
 
 
 def tone_at(leeway: Leeway | None, ratio: float) -> str:
@@ -24,7 +25,13 @@ def key(leeway: Leeway) -> dict[str, str]:
     Of all that is red it is what comes first, and where it folds if that is known.
     """
     told = {tone: _in_key(leeway, tone) for tone in KEY_ORDER}
-    return {tone: _glued(_upper(" \N{MIDDLE DOT} ".join(words))) for tone, words in told.items() if words}
+    return {tone: _glued(_upper(_in_a_row(words))) for tone, words in told.items() if words}
+
+
+def _in_a_row(words: list[str]) -> str:
+    """Return words with dots between; short ones stay in one piece, so that no line begins with a number."""
+    whole = [each.replace(" ", "\N{NO-BREAK SPACE}") if len(each) <= _SHORT else each for each in words]
+    return " \N{MIDDLE DOT} ".join(whole if len(words) > 1 else words)
 
 
 def _in_key(leeway: Leeway, tone: str) -> list[str]:

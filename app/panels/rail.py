@@ -15,8 +15,8 @@ from app.wording.words import tr
 STEP_ICONS = {"scan": "scan", "landmarks": "map-pin", "lines": "lines", "result": "result"}
 """The steps in order, with their drawings."""
 
-STATES = ("missing", "available", "done", "look")
-"""A step has nothing to show yet, can be entered, is done, or wants to be looked at."""
+STATES = ("missing", "available", "done", "look", "bad")
+"""A step has nothing to show yet, can be entered, is done, wants to be looked at, or shows no result."""
 
 
 class Rail(QWidget):
@@ -95,7 +95,12 @@ class RailItem(QAbstractButton):
             raise ValueError(state)
         changed = (state, count) != (self._state, self._count)
         self._state, self._count = state, count
-        said = {"done": tr("done"), "look": tr("wants a look"), "missing": tr("not yet possible")}
+        said = {
+            "done": tr("done"),
+            "look": tr("wants a look"),
+            "bad": tr("no result"),
+            "missing": tr("not yet possible"),
+        }
         self.setAccessibleDescription(said.get(state, ""))
         if changed:
             self.update()
@@ -116,11 +121,12 @@ class RailItem(QAbstractButton):
         self._paint_badge(painter, QPointF(self.width() / 2 + 12, 12))
 
     def _paint_badge(self, painter: QPainter, at: QPointF) -> None:
-        if self._state not in ("done", "look"):
+        tones = {"done": "ok", "look": "warn", "bad": "bad"}
+        if self._state not in tones:
             return
         tokens = tokens_of(self)
         painter.setPen(QPen(QColor(tokens.panel), 1.5))
-        painter.setBrush(QColor(tokens.ok if self._state == "done" else tokens.warn))
+        painter.setBrush(QColor(getattr(tokens, tones[self._state])))
         painter.drawEllipse(at, 7, 7)
         if self._state == "done":
             painter.setPen(QPen(QColor(tokens.panel), 1.5, c=Qt.PenCapStyle.RoundCap))
