@@ -88,7 +88,11 @@ def the_handle_follows_the_hand_along_the_normal(window: MainWindow) -> None:
 def a_plane_that_faces_the_eye_is_dragged_up_and_down(window: MainWindow) -> None:
     section, handle = window.section_desk, handle_of(window.view.viewport)
     window.view.viewport.set_view("front")
+    assert not handle.at_eye
+    assert "away from you" not in handle.toolTip()
     section.choose_axis("y")
+    assert handle.at_eye
+    assert "Up moves it away from you" in handle.toolTip(), "arrows up and down alone would tell another way"
     at = place_of(window)
     drag_handle(handle, np.array([0.0, -30.0]))
     release(handle, handle.rect().center())

@@ -40,6 +40,7 @@ class PlaneHandle(Knob):
         self._ends = np.zeros(2), np.zeros(2)
         self._flat: Floats | None = None  # where it stands on the plane [mm]
         self._way = np.array([1.0, 0.0])  # of one mm along the normal over the view [px]
+        self.at_eye = False  # whether the normal points at it
 
     def show_plane(self, plane: Plane, low: Floats, high: Floats) -> None:
         """Stand on a plane through the box from ``low`` to ``high``, each (3,) [mm]."""
@@ -92,7 +93,11 @@ class PlaneHandle(Knob):
         beside = plane.in_space(self._flat[None]) + right
         across = view.to_picture(beside, self._viewport.width(), self._viewport.height())[0] - spot
         full = float(np.linalg.norm(across[:2]))
-        if np.linalg.norm(way[:2]) >= _FLATTEST * full:
+        self.at_eye = bool(np.linalg.norm(way[:2]) < _FLATTEST * full)
+        said = tr("Drag to move the section plane; Shift: finer, Esc: back")
+        towards = tr("Up moves it away from you, down towards you.")
+        self.setToolTip("\n".join((said, towards)) if self.at_eye else said)
+        if not self.at_eye:
             return way[:2]
         return np.array([0.0, full if plane.normal @ back > 0.0 else -full])
 
@@ -128,13 +133,21 @@ class PlaneHandle(Knob):
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(halo)
             painter.drawEllipse(QPointF(), 13.0, 13.0)
-        painter.rotate(float(np.degrees(np.arctan2(self._way[1], self._way[0]))))
+        if self.at_eye:
+            painter.rotate(-90.0)
+        else:
+            painter.rotate(float(np.degrees(np.arctan2(self._way[1], self._way[0]))))
         # A rim of the other brightness keeps arrows and knob apart from any skin behind them.
         painter.setPen(QPen(QColor(tokens.raised), 1.4))
         painter.setBrush(QColor(tokens.accent))
         for side in (-1.0, 1.0):
-            corners = ((13.0, -5.5), (21.0, 0.0), (13.0, 5.5))
-            painter.drawPolygon(QPolygonF([QPointF(side * x, y) for x, y in corners]))
+            # What goes away from the eye, up here, is seen smaller than what comes towards it.
+            size = 1.0 if not self.at_eye else 0.6 if side > 0.0 else 1.2
+            corners = ((0.0, -5.5), (8.0, 0.0), (0.0, 5.5))
+            painter.drawPolygon(QPolygonF([QPointF(side * (13.0 + size * x), size * y) for x, y in corners]))
         painter.setPen(QPen(QColor(tokens.accent), 2.4 if lively else 1.8))
         painter.setBrush(QColor(tokens.raised))
         painter.drawEllipse(QPointF(), 8.5, 8.5)
+        if self.at_eye:  # an arrow seen from its point
+            painter.setBrush(QColor(tokens.accent))
+            painter.drawEllipse(QPointF(), 2.0, 2.0)
