@@ -77,9 +77,9 @@ class Strip(QWidget):
             plot.quantity_chosen.connect(self.quantity_chosen)
             plot.menu_asked.connect(self._show_menu)
         self._entries: list[Entry] = []
-        self._legends = Legend(), Legend()
-        for plot, legend in zip(self.plots, self._legends, strict=True):
-            plot.head.addWidget(legend)
+        self._legends = Legend(), Legend()  # beside the title of the first plot, or below both
+        self.error_plot.head.addWidget(self._legends[0])
+        for plot in self.plots:
             plot.setMinimumWidth(120)  # a legend gives way, the plot does not
             plot.installEventFilter(self)
         self._body, self._line = QWidget(), QWidget()
@@ -149,14 +149,11 @@ class Strip(QWidget):
         self._share_legend()
 
     def _share_legend(self) -> None:
-        """Name the curves beside the title of the first plot, those without room there beside the other."""
-        left = list(self._entries)
-        for plot, legend in zip(self.plots, self._legends, strict=True):
-            room = plot.width() - plot.title.width() - 8
-            shown: list[Entry] = []
-            while left and legend_width([*shown, left[0]]) <= room:
-                shown.append(left.pop(0))
-            legend.show_entries(shown)
+        """Name all curves in one place: beside the first plot's title, or below both if that is narrow."""
+        beside = legend_width(self._entries) <= self.error_plot.width() - self.error_plot.title.width() - 8
+        for legend, here in zip(self._legends, (beside, not beside), strict=True):
+            legend.show_entries(self._entries if here else [])
+            legend.setVisible(here)
 
     def set_verdict(self, verdict: VerdictView) -> None:
         """Show how the run stands; call it before ``set_run``, which takes its colour from it."""
@@ -204,8 +201,14 @@ class Strip(QWidget):
         row.addLayout(self._verdict())
         self._nothing = sentence(tr("The plots fill while you drag a line."), "secondary")
         self._nothing.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        row.addWidget(self.error_plot, 1)
-        row.addWidget(self.height_plot, 1)
+        plots = QGridLayout()
+        plots.setHorizontalSpacing(18)
+        plots.setVerticalSpacing(0)
+        for column, plot in enumerate(self.plots):
+            plots.addWidget(plot, 0, column)
+            plots.setColumnStretch(column, 1)
+        plots.addWidget(self._legends[1], 1, 0, 1, 2, Qt.AlignmentFlag.AlignHCenter)
+        row.addLayout(plots, 2)
         row.addWidget(self._nothing, 1)
         row.addLayout(self._tools())
 
@@ -284,10 +287,8 @@ class Strip(QWidget):
 
     def _show_emptiness(self, empty: bool) -> None:
         self._nothing.setVisible(empty)
-        self.chip.setVisible(not empty)
-        self._small_chip.setVisible(not empty)
-        self.error_plot.setVisible(not empty)
-        self.height_plot.setVisible(not empty)
+        for each in (self.chip, self._small_chip, *self.plots):
+            each.setVisible(not empty)
 
 
 def _control_tips() -> tuple[str, str, str, str]:
