@@ -81,6 +81,7 @@ class Legend(FloatingPanel):
         column.addWidget(self.bar)
         self._note = label("", "caption")
         self._note.setWordWrap(True)
+        self._note.setContentsMargins(0, 4, 0, 0)  # else it nearly touches the number at the lower end
         column.addWidget(self._note)
         self.row.addLayout(column)
         self._note.setFixedWidth(WIDTH)
