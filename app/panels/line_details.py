@@ -85,7 +85,7 @@ class LineDetails(QWidget):
         part = _part_words(view).format(percent=number(ratio * 100))
         off = tr("At 100 % the line is off: it measures and does not pull.")
         if view.parted:
-            off = tr("The line is off: its left and right halves are worn in its place.")
+            off = tr("Off: its left and right halves are worn instead.")
         self._part.setText(part if worn else off)
         self._show_whole(view, ratio)
 
