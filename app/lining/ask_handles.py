@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import QObject, QPoint, QRect, QTimer
+from PySide6.QtCore import QObject, QPoint, QRect
 
 from app.lining.ask_profile import AskProfile
 from app.presenting.bust import bust_move
@@ -26,6 +26,7 @@ KINDS = {"bust": ("lift", "out"), "apex": ("apex lift", "apex out")}
 """What the handles wish for, up and out, by what they are dragged at."""
 
 _CLEAR = 12  # between the card and a handle [px]
+_SMALLEST = 0.5  # of what was seen: where there is no room at all nothing gets tiny [1]
 _ASIDE = 0.25  # of the way of a hand: less to the side of it is not meant [1]
 _STILL = 0.05  # no way at all; Shift drags in small steps [mm]
 _NAMES = {"left": lambda: tr("Left handle"), "right": lambda: tr("Right handle")}
@@ -48,7 +49,6 @@ class AskHandles(QObject):
         self._before: tuple[dict[str, float | None], dict[str, Drawn]] | None = None
         self._height = 0  # of the card, when the picture was moved for it
         self._pulled: dict[str, float] = {}  # how far the hand has gone each way since it closed [mm]
-        desk.card.details.clicked.connect(lambda: QTimer.singleShot(0, self, self.clear))
         window.view.floating.rearranged.connect(self._clear_label)
         self.profile.taken.connect(self._take_profile)
         self.profile.pulled.connect(self._draw)
@@ -116,7 +116,7 @@ class AskHandles(QObject):
         if not grown or low <= floor:
             return
         if low - high > floor - _CLEAR:
-            heading = heading.zoom(max((floor - _CLEAR - SIZE) / (low - high - SIZE), 0.2))
+            heading = heading.zoom(max((floor - _CLEAR - SIZE) / (low - high - SIZE), _SMALLEST))
             _, low = self._reach(heading)
         self._desk.back.look(heading.pan(0.0, floor - low, room))
 
