@@ -9,12 +9,12 @@ from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
-from app.dress.parts import Disclosure, ElidedLabel, button, hairline, sentence
+from app.dress.parts import Disclosure, button, hairline, sentence
 from app.dress.theme import font, label, set_tag, set_tip, tokens_of
 from app.wording.words import tr
 
 _FADED = 0.4  # how strongly bars of a former shape are seen
-_BAR = QSize(34, 20)
+_BAR = QSize(30, 20)
 _HEAD = 4  # figures that are always seen, the most telling first
 
 
@@ -83,11 +83,29 @@ class EvenBar(QWidget):
             painter.fillRect(QRectF(at - 0.75, middle - 5.0, 1.5, 10.0), QColor(tokens.text_caption))
 
 
+class EvenTitle(QLabel):
+    """A name with its unit, of which the name alone ends in dots where there is no room for both."""
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Paint what there is room for."""
+        painter = QPainter(self)
+        painter.setPen(self.palette().color(self.foregroundRole()))
+        where = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+        painter.drawText(self.rect(), where, self.shown())
+
+    def shown(self) -> str:
+        """Return what there is room for."""
+        name, bracket, unit = self.text().rpartition(" [")
+        metrics, rest = self.fontMetrics(), f"{bracket}{unit}"
+        room = self.width() - metrics.horizontalAdvance(rest)
+        return metrics.elidedText(name, Qt.TextElideMode.ElideRight, room) + rest
+
+
 class _Row:
     """The parts of one figure, in a row of a grid."""
 
     def __init__(self, grid: QGridLayout, row: int) -> None:
-        self.title = ElidedLabel()
+        self.title = EvenTitle()
         self.title.setFont(font("body"))
         self.title.setMinimumWidth(60)
         roles = "body", "name", "caption"
@@ -146,7 +164,7 @@ class EvenCard(QWidget):
         self.summary: EvenSummary | None = None
         self._grid = QGridLayout()
         self._grid.setContentsMargins(0, 2, 0, 2)
-        self._grid.setHorizontalSpacing(5)
+        self._grid.setHorizontalSpacing(4)
         self._grid.setVerticalSpacing(2)
         self._grid.setColumnStretch(0, 1)
         self._rows: list[_Row] = []

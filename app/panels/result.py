@@ -97,6 +97,7 @@ class ResultPanel(QStackedWidget):
         self._area = QScrollArea()
         self._area.setAccessibleName(tr("Measures"))
         self._area.setWidgetResizable(True)
+        self._area.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click beside its figures is no wish for keys
         self._area.setFrameShape(QFrame.Shape.NoFrame)
         self._area.setWidget(inside)
         return self._area

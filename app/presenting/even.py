@@ -46,7 +46,7 @@ def even_summary(
     hint, possible = _hint(stages, now) if not doubt else (doubt, False)
     offs = _offs(spread)
     return EvenSummary(
-        _sentence(now, offs),
+        _sentence(now, {}, tr("Bust points before: {how}.")) if doubt else _sentence(now, offs),
         tuple(_view(rows[key], bool(doubt), offs.get(key)) for key in _titles()),
         (*map(say, told.notes), *_rests_on()),
         hint,
@@ -68,7 +68,7 @@ def _offs(spread: Spread | None) -> dict[str, float]:
     return {key: off for key, off in known.items() if off is not None}
 
 
-def _sentence(now: Evenness, offs: Mapping[str, float]) -> str:
+def _sentence(now: Evenness, offs: Mapping[str, float], words: str = "") -> str:
     if now.furthest < ENOUGH:
         return tr("Both bust points lie alike within {mm} mm.").format(mm=number(ENOUGH))
     parts, within = [], True
@@ -81,7 +81,7 @@ def _sentence(now: Evenness, offs: Mapping[str, float]) -> str:
             mm = number(abs(value)) if off is None else f"{number(abs(value))} {plus_minus(off)}"
             parts.append((left if value > 0.0 else right).format(mm=mm))
             within &= off is not None and abs(value) <= off
-    said = tr("Bust points: {how}.").format(how=listed(parts))
+    said = (words or tr("Bust points: {how}.")).format(how=listed(parts))
     return joined((said, tr("Within the error they lie alike."))) if within else said
 
 
@@ -194,7 +194,18 @@ def evened_words(
     beside = tr("{figure} {before} → {after} mm")
     price = listed(_way(name, now[name], come[name], beside) for name, by in nearer.items() if by > _SEEN)
     costs = tr("At the price of: {figures}").format(figures=price) if price else ""
-    return "\n".join((_outcome(reply, met), *lines)), costs, "" if met else _why(reply)
+    why = "\n".join(filter(None, ("" if met else _why(reply), _by_turns(reply.design))))
+    return "\n".join((_outcome(reply, met), *lines)), costs, why
+
+
+def _by_turns(design: Design) -> str:
+    """Return why the measures of a design will tell other figures than its exact answer, if they will."""
+    if design.volume in ("exact", "none") or design.volume_of == "both":
+        return ""
+    return tr(
+        "Figures are those of the exact answer, where each breast keeps its volume. Turns keep both "
+        "together: Measures may differ by some tenths of a mm and 10 to 20 ml."
+    )
 
 
 def _outcome(reply: Reply, met: bool) -> str:

@@ -148,7 +148,7 @@ class ProfilePlot(QWidget):
         painter.setClipping(False)
         if self._drawn.most is not None and not self._drawn.faint and self._mark is None:
             place, way, text = self._drawn.most
-            write_off(painter, self._spot(place), way, text, self._room(), tokens.accent)
+            write_off(painter, self._spot(place), way, text, self._room(), tokens.accent, self._taken())
         if self._mark is not None:
             self._paint_gap(painter, *self._mark)
         if self.hasFocus():
@@ -212,6 +212,12 @@ class ProfilePlot(QWidget):
         from pyqtgraph import arrayToQPath  # noqa: PLC0415 (see load_curves)
 
         return QPainterPath(arrayToQPath(*self.to_pixels(places).T))
+
+    def _taken(self) -> Floats:
+        """Return where curves and marked places are drawn, (k, 2) [px]."""
+        drawn = [places for each in self._drawn.curves.values() for places in each]
+        drawn += [np.atleast_2d(place) for pair in self._drawn.marks for place in pair]
+        return self.to_pixels(np.concatenate(drawn)) if drawn else np.zeros((0, 2))
 
     def _spot(self, place: Floats) -> QPointF:
         x, y = self.to_pixels(place)[0].tolist()
