@@ -142,7 +142,7 @@ class PlaneHandle(Knob):
         painter.setBrush(QColor(tokens.accent))
         for side in (-1.0, 1.0):
             # What goes away from the eye, up here, is seen smaller than what comes towards it.
-            size = 1.0 if not self.at_eye else 0.6 if side > 0.0 else 1.2
+            size = 1.0 if not self.at_eye else 0.75 if side > 0.0 else 1.2
             corners = ((0.0, -5.5), (8.0, 0.0), (0.0, 5.5))
             painter.drawPolygon(QPolygonF([QPointF(side * (13.0 + size * x), size * y) for x, y in corners]))
         painter.setPen(QPen(QColor(tokens.accent), 2.4 if lively else 1.8))
