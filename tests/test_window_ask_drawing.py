@@ -34,7 +34,8 @@ def room_below(window: MainWindow) -> int:
 
 def over_the_card(window: MainWindow) -> bool:
     """Whether all handles of the profile can be taken."""
-    return all(handle.isVisible() for handle in handles(window)) and room_below(window) > 0
+    seen = all(handle.isVisible() and handle.y() >= 0 for handle in handles(window))
+    return seen and room_below(window) > 0
 
 
 def laid(window: MainWindow) -> Callable[[], bool]:
@@ -133,9 +134,27 @@ def is_taken_back_step_by_step(window: MainWindow) -> Script:
     yield settled(window)
 
 
+def is_as_large_as_fits(window: MainWindow) -> None:
+    """Look so that no room is left over the handles, nor under them."""
+    viewport = window.view.viewport
+
+    def lowered() -> None:
+        viewport.look_from(viewport.view.pan(0.0, room_below(window) - 1.0, viewport.height()))
+
+    fits = viewport.view
+    lowered()
+    for _ in range(40):
+        if over_the_card(window):
+            fits = viewport.view
+        viewport.look_from(viewport.view.zoom(1.03))
+        lowered()
+    viewport.look_from(fits)
+    assert over_the_card(window)
+
+
 def keeps_its_handles_over_the_card(window: MainWindow) -> Script:
     """Also once it has shrunk and grown again."""
-    desk, viewport = window.ask_desk, window.view.viewport
+    desk = window.ask_desk
     desk.begin()
     yield answered(window)
     spots = []
@@ -145,7 +164,7 @@ def keeps_its_handles_over_the_card(window: MainWindow) -> Script:
         yield laid(window)
         spots.append(desk.card.hand.mapTo(window, QPoint()))
         height = desk.card.height()
-        viewport.look_from(viewport.view.pan(0.0, room_below(window) - 1.0, viewport.height()))
+        is_as_large_as_fits(window)
         drag(handles(window)[1], -4, -4)
         yield answered(window)
         yield lambda: over_the_card(window)
