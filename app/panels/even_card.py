@@ -14,7 +14,7 @@ from app.dress.theme import font, label, set_tag, set_tip, tokens_of
 from app.wording.words import tr
 
 _FADED = 0.4  # how strongly bars of a former shape are seen
-_BAR = QSize(30, 20)
+_BAR = QSize(26, 20)
 _HEAD = 4  # figures that are always seen, the most telling first
 
 
@@ -164,7 +164,7 @@ class EvenCard(QWidget):
         self.summary: EvenSummary | None = None
         self._grid = QGridLayout()
         self._grid.setContentsMargins(0, 2, 0, 2)
-        self._grid.setHorizontalSpacing(4)
+        self._grid.setHorizontalSpacing(5)
         self._grid.setVerticalSpacing(2)
         self._grid.setColumnStretch(0, 1)
         self._rows: list[_Row] = []
