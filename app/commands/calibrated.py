@@ -127,17 +127,10 @@ def _plain(done: Calibrated) -> Iterator[str]:
         yield "It did not help: no number moved by more than its ±, or the prediction came no nearer."
     if found.helped and found.explains_little:
         yield "Most of predicted less real remains: posture, breath or cloth may have made these numbers."
-    if found.helped and (found.slight or found.weak):
-        yield doubt(found)
+    if found.helped and found.weak:
+        yield "None of these numbers is told well: take them as a hint."
     if done.out:
         yield f"written to {done.out}{'' if found.helped else ', as it was'}"
-
-
-def doubt(found: CalibrationResult) -> str:
-    """Return why a calibration that helped is no finding to build on."""
-    if found.slight:
-        return f"Nothing to gain: skin that no line moves is off by more ({found.still:.1f} mm)."
-    return "None of these numbers is told well: a guess, no finding."
 
 
 def told(found: CalibrationResult) -> str:
@@ -227,7 +220,7 @@ def _figures(done: Calibrated) -> dict[str, Any]:
         "helped": found.helped,
         "at_end": list(found.at_end),
         "explains_little": found.explains_little,
-        "slight": found.slight,
+        "weak": found.weak,
         "written_to": done.out or None,
         "versions": {"busk": __version__},
     }

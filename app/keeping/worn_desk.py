@@ -250,7 +250,7 @@ class WornDesk(QObject):
             faint=faint,
             ready=bool(worn) and self._window.is_settled() and not at_work and not faint,
             helped=found is not None and found.helped,
-            doubtful=found is not None and (found.slight or found.weak),
+            doubtful=found is not None and found.weak,
         )
 
 

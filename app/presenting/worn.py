@@ -163,15 +163,8 @@ def better_words(found: CalibrationResult, design: Design) -> str:
         return tr("No number moved by more than its ±: it stays at {before} mm.").format(before=before)
     nearer = tr("Predicted less real: {before} → {after} mm.").format(before=before, after=after)
     left = tr("Most of it remains: posture, breath or cloth may have made these numbers.")
-    return joined([nearer, left if found.explains_little else "", _doubt(found)])
-
-
-def _doubt(found: CalibrationResult) -> str:
-    """Return why a calibration is no finding to build on, or nothing."""
-    if found.slight:
-        slight = tr("Nothing to gain: skin that no line moves is off by more ({mm} mm).")
-        return slight.format(mm=number(found.still, 1))
-    return tr("None of these numbers is told well: a guess, no finding.") if found.weak else ""
+    weak = tr("None of these numbers is told well: take them as a hint.")
+    return joined([nearer, left if found.explains_little else "", weak if found.weak else ""])
 
 
 def record_words(record: Calibration | None) -> str:

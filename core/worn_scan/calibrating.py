@@ -43,8 +43,7 @@ class CalibrationResult:
     the moving skin. ``confused`` tells for numbers that stayed what they cannot be told from. ``singular``
     are the singular values of the slopes in units of what is known before: below 1 that tells more of a
     combination of numbers than the scans. ``solves`` exact answers were needed. ``at_end`` names numbers that
-    went as far as they may: what the scan shows is not what these lines do. ``noise`` [mm] is the scan's,
-    ``still`` [mm] how far off it lies where no line moves the skin.
+    went as far as they may: what the scan shows is not what these lines do. ``noise`` [mm] is the scan's.
     """
 
     design: Design
@@ -57,7 +56,6 @@ class CalibrationResult:
     solves: int
     at_end: tuple[str, ...] = ()
     noise: float = 0.0
-    still: float = 0.0
 
     @property
     def calibration(self) -> Calibration:
@@ -74,12 +72,6 @@ class CalibrationResult:
             if not number.kept
         )
         return moved and not self.at_end and self.after.all_of_it.rms < self.before.all_of_it.rms
-
-    @property
-    def slight(self) -> bool:
-        """Whether what the numbers explain is less than what skin is off that they do not move."""
-        before, after = self.before.all_of_it.rms, self.after.all_of_it.rms
-        return before**2 - after**2 < self.still**2
 
     @property
     def weak(self) -> bool:
@@ -155,7 +147,6 @@ def calibrate(
         fit.solves,
         at_end,
         worn.skin.noise,
-        worn.alignment.rms,
     )
 
 
