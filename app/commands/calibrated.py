@@ -112,6 +112,12 @@ def _plain(done: Calibrated) -> Iterator[str]:
                 f"{_value(number, number.after):>10}{_value(number, number.plus_minus):>9}"
                 f"{'' if number.told else '   told weakly'}"
             )
+    yield from _plain_outcome(done)
+
+
+def _plain_outcome(done: Calibrated) -> Iterator[str]:
+    """Yield what the numbers are worth, and what became of them."""
+    found, design = done.found, done.stages.design
     yield told(found)
     for number in found.calibration.numbers:
         if number.kept:

@@ -123,18 +123,22 @@ def calibrate(
         here = fit.least(stages.design, ~stays)
     # What stays is the answer from rest, as everywhere.
     last = fit.look(here.stages.design, beside=here.beside)
-    sure = _sure(fit, last)
-    before = compare(stages, first.points, worn, thickness)
+    return _result(fit, first, last, stays.tolist(), worn)
+
+
+def _result(fit: Fit, first: Look, last: Look, stays: list[bool], worn: Worn) -> CalibrationResult:
+    """Return what was found between the ``first`` look and the ``last``; ``stays`` tells what was not."""
+    numbers, thickness = fit.numbers, fit.thickness
+    sure, seen = _sure(fit, last), known(first.gaps)
+    before = compare(fit.start, first.points, worn, thickness)
     after = compare(last.stages, last.points, worn, thickness)
-    found = tuple(_found(sure, numbers, stays.tolist(), stages.design, last.stages.design))
+    found = tuple(_found(sure, numbers, stays, fit.start.design, last.stages.design))
     record = Calibration(worn.name, before.all_of_it.rms, after.all_of_it.rms, found, thickness)
     design = replace(last.stages.design, calibration=record)
     confused = {numbers[at].name: confused_with(sure, numbers, at) for at in np.flatnonzero(stays).tolist()}
     singular = singular_values(first.slopes[seen, : len(numbers)], numbers)
     at_end = tuple(
-        number.name
-        for number, kept in zip(numbers, stays.tolist(), strict=True)
-        if not kept and number.at_end(design)
+        number.name for number, kept in zip(numbers, stays, strict=True) if not kept and number.at_end(design)
     )
     return CalibrationResult(
         design,

@@ -70,7 +70,7 @@ class Fit:
         progress: Progress,
     ) -> None:
         self.start, self.numbers, self.solves = stages, numbers, 0
-        self._thickness, self._progress, self._laid = thickness, progress, worn.alignment
+        self.thickness, self._progress, self._laid = thickness, progress, worn.alignment
         low, high = stages.moving.rest.min(axis=0) - REACH, stages.moving.rest.max(axis=0) + REACH
         every = worn.skin.mesh.vertices
         near = np.flatnonzero(((every > low) & (every < high)).all(axis=1))
@@ -99,7 +99,7 @@ class Fit:
         slopes[feet.rows] = np.concatenate([feet.of(moved), -turned, -feet.normals, common], axis=1)
         beside = np.zeros(BESIDE) if beside is None else beside
         gaps = np.full(len(self._points), np.nan)
-        gaps[feet.rows] = feet.gaps + self._thickness + slopes[feet.rows, len(self.numbers) :] @ beside
+        gaps[feet.rows] = feet.gaps + self.thickness + slopes[feet.rows, len(self.numbers) :] @ beside
         rest = np.zeros_like(self._points)
         rest[feet.rows] = feet.of(stages.moving.rest)
         return Look(stages, answer, rest, beside, gaps, slopes)
