@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +9,9 @@ import numpy.typing as npt
 from scipy.spatial import ConvexHull, QhullError
 
 from core.mesh import Floats, Indices, Mesh, Points
+
+MOST_STEPS = 100_000
+"""So many points are laid along a curve: one of a torn skin may run to and fro over kilometres."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,9 +100,9 @@ def arc_length(curve: Points) -> Floats:
 
 
 def resample(curve: Points, step: float) -> Points:
-    """Return points every ``step`` [mm] along ``curve``, both ends kept."""
+    """Return points every ``step`` [mm] along ``curve``, both ends kept; at most ``MOST_STEPS`` of them."""
     s = arc_length(curve)
-    count = max(2, round(float(s[-1]) / step) + 1)
+    count = min(max(2, round(float(s[-1]) / step) + 1), MOST_STEPS)
     at = np.linspace(0.0, s[-1], count)
     return np.stack([np.interp(at, s, curve[:, k]) for k in range(curve.shape[1])], axis=1)
 
@@ -112,6 +114,17 @@ def curvature(x: Floats, y: Floats) -> Floats:
     dx, dy = np.gradient(x), np.gradient(y)
     bend = dx * np.gradient(dy) - dy * np.gradient(dx)
     return np.asarray(bend / np.maximum(dx**2 + dy**2, 1e-9) ** 1.5)
+
+
+def hull_corners(places: Floats) -> Indices:
+    """Return the rows of the corners of the convex outline of ``places``, (k, 2), counter-clockwise.
+
+    None where they span no area.
+    """
+    try:
+        return np.asarray(ConvexHull(places).vertices, dtype=np.int64)
+    except (QhullError, ValueError):  # too few of them, or all on a line
+        return np.empty(0, dtype=np.int64)
 
 
 def hull_perimeter(points: Points) -> float:
@@ -127,10 +140,8 @@ def hull_perimeter(points: Points) -> float:
 def hull_slopes(points: Points) -> Points:
     """Return the slopes of ``hull_perimeter`` by the points' places in their level, shape (k, 2) [1]."""
     slopes = np.zeros((len(points), 2))
-    if len(points) >= 3:
-        with suppress(QhullError):
-            corners = ConvexHull(points[:, :2]).vertices
-            sides = points[corners, :2] - points[np.roll(corners, 1), :2]
-            sides /= np.linalg.norm(sides, axis=1, keepdims=True)
-            slopes[corners] = sides - np.roll(sides, -1, axis=0)
+    corners = hull_corners(points[:, :2])
+    sides = points[corners, :2] - points[np.roll(corners, 1), :2]
+    sides /= np.linalg.norm(sides, axis=1, keepdims=True)
+    slopes[corners] = sides - np.roll(sides, -1, axis=0)
     return slopes

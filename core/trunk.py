@@ -7,11 +7,10 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 from scipy.ndimage import median_filter
-from scipy.spatial import ConvexHull
 
 from core.errors import LandmarkError
 from core.mesh import SIGNS, Flags, Floats, Indices, Mesh, Points
-from core.sections import hull_perimeter
+from core.sections import hull_corners, hull_perimeter
 from core.slicing.arms import SLACK
 from core.slicing.gaps import bearing_bin, bridge, eroded, gaps
 from core.slicing.outline import BINS, Outlines, outlines, places, reach
@@ -51,12 +50,9 @@ class Level:
     @property
     def longest_straight(self) -> float:
         """Length of the longest hollow that a tape on the skin bridges, or of the longest flat [mm]."""
-        skin = self.segments.reshape(-1, 3)
-        if hull_perimeter(skin) == 0.0:
-            return 0.0
-        hull = ConvexHull(skin[:, :2])
-        ring = hull.points[hull.vertices]
-        return float(np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1).max())
+        skin = self.segments.reshape(-1, 3)[:, :2]
+        ring = skin[hull_corners(skin)]
+        return float(np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1).max(initial=0.0))
 
     @property
     def skin(self) -> float:

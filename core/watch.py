@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
-from scipy.spatial import ConvexHull, cKDTree
+from scipy.spatial import cKDTree
 
 from core.control_mesh import ControlMesh
 from core.landmark import Landmarks
 from core.mesh import Flags, Floats, Indices, Mesh, Points
 from core.moving import MovingFaces
-from core.sections import cut, hull_perimeter, hull_slopes
+from core.sections import cut, hull_corners, hull_perimeter, hull_slopes
 from core.solver import Marks
 from core.tffd import Binding
 from core.trunk import trunk_levels
@@ -169,7 +169,8 @@ def _outline(still: Mesh, body: Mesh, z: float) -> Points:
         return np.empty((0, 2))
     away, _ = cKDTree(level.segments.reshape(-1, 3)[:, :2]).query(points)
     kept = np.concatenate([points[away < 1e-6], level.bridges.reshape(-1, 3)[:, :2]])
-    return np.asarray(kept[ConvexHull(kept).vertices] if len(kept) > 3 else kept)
+    corners = hull_corners(kept)
+    return np.asarray(kept[corners] if len(corners) else kept)
 
 
 def _cut(places: Points, edges: Indices, z: float) -> Points:

@@ -89,12 +89,17 @@ def frame_of(places: Points) -> tuple[Floats, Floats]:
     around = places - places.mean(axis=0)
     normal = _area_vector(places)
     if not normal.any():
-        normal = np.linalg.svd(around)[2][2]
+        normal = _axes(around)[2]
     normal = unit(normal)
     flat = around - np.outer(around @ normal, normal)
-    along = np.linalg.svd(flat)[2][0]
+    along = _axes(flat)[0]
     axes = np.stack([along, np.cross(normal, along), normal])
     return axes, np.asarray(np.ptp(around @ axes.T, axis=0))
+
+
+def _axes(places: Points) -> Floats:
+    """Return the axes of places round the origin, the longest extent first, as rows, shape (3, 3)."""
+    return np.asarray(np.linalg.svd(places, full_matrices=len(places) < 3)[2])
 
 
 def _area_vector(places: Points) -> Floats:

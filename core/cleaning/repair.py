@@ -103,9 +103,7 @@ def _merge_equal(skin: Skin) -> tuple[Skin, int]:
     lowest = skin.vertices.min(axis=0)
     extent = float(np.ptp(skin.vertices, axis=0).max())
     # three places of 20 bits make one number to sort by
-    grain = max(SAME_PLACE * float(np.linalg.norm(high - low)), extent / (2**20 - 1))
-    if not grain > 0.0:
-        return skin, 0
+    grain = max(SAME_PLACE * float(np.linalg.norm(high - low)), extent / (2**20 - 1), 1e-300)
     cell = np.rint((skin.vertices - lowest) / grain).astype(np.int64)
     first = first_equal((cell[:, 0] << 40) | (cell[:, 1] << 20) | cell[:, 2])
     keep = first == np.arange(len(first))
@@ -124,6 +122,8 @@ def _drop_empty_faces(skin: Skin) -> tuple[Skin, int]:
     ranked = where[np.lexsort((where, high[where], pair[where]))]
     same = (pair[ranked[1:]] == pair[ranked[:-1]]) & (high[ranked[1:]] == high[ranked[:-1]])
     keep[ranked[1:][same]] = False
+    if not skin.areas.any():  # all on a line
+        keep[:] = False
     return skin.with_faces(keep), int((~keep).sum())
 
 

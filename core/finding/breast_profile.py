@@ -22,6 +22,12 @@ BRIDGE = 100.0
 SHORT, LOOSE = 60.0, 15.0
 """What is shorter than this [mm] may be a marker on the skin: longer pieces count as so much nearer [mm]."""
 
+LONGEST = 1500
+"""A profile is followed so far [mm]: on a body it is at most 600 mm long, on a torn skin it may wind."""
+
+MOST_PIECES = 200
+"""So many pieces of a cut are looked at, the longest ones; on a body with holes there are at most 20."""
+
 MARGIN = 9.0
 """So near to a hole [mm] a smoothed profile bends as the hole does, not as the body."""
 
@@ -53,7 +59,7 @@ def profiles(mesh: Mesh, bust: Points, bottom: float) -> list[Profile]:
 
 
 def _profile(mesh: Mesh, bust: Points, offset: float, bottom: float) -> Profile:
-    pieces = chains(cut(mesh, bust + np.array([offset, 0.0, 0.0]), (1.0, 0.0, 0.0)))
+    pieces = chains(cut(mesh, bust + np.array([offset, 0.0, 0.0]), (1.0, 0.0, 0.0)))[:MOST_PIECES]
     start = bust + np.array([offset, 0.0, 0.0])
     if not pieces:
         return _measured(start[None], np.empty((0, 2, 3)), bottom)
@@ -69,17 +75,20 @@ def _profile(mesh: Mesh, bust: Points, offset: float, bottom: float) -> Profile:
         closed
     ):  # without a hole: where the body is narrower below, the profile ends at the back of what is here
         curve, ends = curve[: int(np.argmax(curve[:, 1])) + 1], []
-    while curve[-1, 2] > bottom and ends:
-        jumps = [
-            float(np.linalg.norm(end[0] - curve[-1])) if end[0, 2] < curve[-1, 2] + 25.0 else np.inf
-            for end in ends
-        ]
+    starts, parts = np.array([end[0] for end in ends]).reshape(-1, 3), [curve]
+    free = np.ones(len(ends), dtype=bool)
+    while parts[-1][-1, 2] > bottom and free.any():
+        last = parts[-1][-1]
+        jumps = np.where(
+            free & (starts[:, 2] < last[2] + 25.0), np.linalg.norm(starts - last, axis=1), np.inf
+        )
         nearest = int(np.argmin(jumps))
         if jumps[nearest] > BRIDGE:
             break
-        bridges.append([curve[-1], ends[nearest][0]])
-        curve = np.concatenate([curve, ends[nearest]])
-        del ends[nearest - nearest % 2 : nearest - nearest % 2 + 2]
+        bridges.append([last, starts[nearest]])
+        parts.append(ends[nearest])
+        free[nearest - nearest % 2 : nearest - nearest % 2 + 2] = False
+    curve = np.concatenate(parts)
     below = np.flatnonzero(curve[:, 2] < bottom)
     curve = curve[: below[0] + 1] if len(below) else curve
     return _measured(curve, np.reshape(bridges, (-1, 2, 3)), np.inf if closed else bottom)
@@ -100,7 +109,7 @@ def _measured(curve: Points, bridges: Points, bottom: float) -> Profile:
     """Smooth ``curve`` by 4 mm, at a step of 1 mm of its smoothed length, and measure how it bends."""
     if len(curve) < 2:
         return Profile(curve, np.zeros(len(curve)), np.zeros(len(curve), dtype=bool), False)
-    points = resample(gaussian_filter1d(resample(curve, 1.0), 4.0, axis=0, mode="nearest"), 1.0)
+    points = resample(gaussian_filter1d(resample(curve, 1.0), 4.0, axis=0, mode="nearest"), 1.0)[:LONGEST]
     seen = np.ones(len(points), dtype=bool)
     for a, b in bridges:
         length = float(np.linalg.norm(b - a))

@@ -139,6 +139,8 @@ def _foremost(patch: Patch) -> tuple[Points, bool]:
     """Return the foremost surface point near the pole, and whether it is a summit of the breast."""
     forward = np.where(patch.distance < WIDE, -patch.points[..., 1], np.nan)
     calm: Floats = np.where(np.isnan(forward), np.nan, smoothed(_finite(forward), (3.0, 3.0)))
+    if np.isnan(calm).all():
+        return patch.centre, False
     row, column = np.unravel_index(int(np.nanargmax(calm)), calm.shape)
     return np.asarray(patch.points[row, column]), bool(patch.distance[row, column] < WIDE - 2.0 * GRID)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.ndimage import gaussian_filter, maximum_filter, maximum_filter1d, uniform_filter1d
-from scipy.spatial import ConvexHull
+from scipy.spatial import ConvexHull, QhullError
 
 from core.errors import LandmarkError
 from core.mesh import SIGNS, Floats, Indices, Points
@@ -136,9 +136,7 @@ def find_poles(survey: Survey, anchor: Anchor) -> tuple[Pole, Pole]:
     depth = 0.5 * (survey.front + survey.back)[row] - p[:, 1]
     under = (survey.z > anchor.z - 45.0) & (survey.z < anchor.z - 10.0) & (survey.tape > 0.0)
     if not under.any() or survey.z[0] > anchor.z - 12.0:
-        raise LandmarkError(
-            "The trunk under the breasts is missing.", "Open a scan that shows the whole trunk."
-        )
+        raise _no_base()
     width = float(np.median(survey.half_width[under]))
     window = (depth > 0.0) & (np.abs(x) > BESIDE * width) & (np.abs(x) < max(1.25 * width, width + 35.0))
     azimuth = np.degrees(np.arctan2(np.abs(x), depth))
@@ -151,10 +149,17 @@ def find_poles(survey: Survey, anchor: Anchor) -> tuple[Pole, Pole]:
     return left, right
 
 
+def _no_base() -> LandmarkError:
+    return LandmarkError("The trunk under the breasts is missing.", "Open a scan that shows the whole trunk.")
+
+
 def _prominence(survey: Survey, anchor: Anchor, p: Points, row: Indices) -> Floats:
     shown = np.unique(survey.row)  # a gap all round leaves levels without skin
     base = shown[np.argmin(np.abs(survey.z[shown] - (anchor.z - 12.0)))]
-    hull = ConvexHull(survey.samples[survey.row == base][:, :2]).equations
+    try:
+        hull = ConvexHull(survey.samples[survey.row == base][:, :2]).equations
+    except (QhullError, ValueError):  # nothing there, or a line
+        raise _no_base() from None
     back = survey.back_width()
     shrink = np.clip(back[base] / back, 0.7, 1.0)[row]
     flat = np.column_stack([survey.middle + (p[:, 0] - survey.middle) * shrink, p[:, 1]])
@@ -168,8 +173,10 @@ def _pole(p: Points, azimuth: Floats, prominence: Floats, anchor: Anchor) -> Pol
     high = p[:, 2] - anchor.z
     score = prominence - STRAYING * np.abs(azimuth - np.clip(azimuth, *USUAL))
     score -= RISING * np.maximum(high - HIGH, 0.0)
+    shape = (round((BELOW + ABOVE) / TALL), round(90.0 / TURN))
     cells = (np.floor((high + BELOW) / TALL).astype(np.int64), np.floor(azimuth / TURN).astype(np.int64))
-    grid = np.full((round((BELOW + ABOVE) / TALL), round(90.0 / TURN)), -np.inf)
+    cells = (np.clip(cells[0], 0, shape[0] - 1), np.clip(cells[1], 0, shape[1] - 1))  # rounding at the border
+    grid = np.full(shape, -np.inf)
     np.maximum.at(grid, cells, score)
     grid = smoothed(grid, (1.2, 0.9))
     grid = np.where(np.isnan(grid), -np.inf, grid)

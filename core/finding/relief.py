@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.ndimage import correlate, maximum_filter
-from scipy.spatial import Delaunay
+from scipy.spatial import Delaunay, QhullError
 
+from core.errors import LandmarkError
 from core.mesh import MIRROR, Floats, Mesh, Points, quadric_terms, unit
 
 NEAR = 24.0
@@ -48,8 +49,9 @@ class Patch:
 
     @property
     def centre(self) -> Points:
-        """The surface point at the pole, shape (3,) [mm]."""
-        return np.asarray(self.points[len(self.points) // 2, len(self.points) // 2])
+        """The surface point at the pole, or nearest to it, shape (3,) [mm]."""
+        shown = np.isfinite(self.points).all(axis=-1)
+        return np.asarray(self.points.reshape(-1, 3)[np.argmin(np.where(shown, self.distance, np.inf))])
 
     def nearest(self, point: Points) -> Points:
         """Return the surface point of the grid nearest to ``point``, shape (3,) [mm]."""
@@ -87,7 +89,10 @@ class Patch:
 
 
 def breast_patch(mesh: Mesh, pole: Points) -> Patch:
-    """Lay a grid over the surface round ``pole``, shape (3,) [mm], and measure the relief on it."""
+    """Lay a grid over the surface round ``pole``, shape (3,) [mm], and measure the relief on it.
+
+    Raises LandmarkError if there is no surface.
+    """
     near = ((mesh.vertices - pole) ** 2).sum(axis=1)
     axis = unit(mesh.vertex_normals[near < 30.0**2].sum(axis=0))
     across = unit(np.cross([0.0, 0.0, 1.0], axis))
@@ -99,12 +104,20 @@ def breast_patch(mesh: Mesh, pole: Points) -> Patch:
     t = np.arange(-np.ceil(reach / GRID), np.ceil(reach / GRID) + 1) * GRID
     u, v = np.meshgrid(t, t)
     height = _height(local, np.stack([u, v], axis=-1))
+    if not np.isfinite(height).any():
+        raise LandmarkError(
+            "The skin of a breast is missing, or its points are too far apart.",
+            "Open a scan that shows the whole bust.",
+        )
     return Patch(pole + np.stack([u, v, height], axis=-1) @ frame, np.hypot(u, v), _relief(height))
 
 
 def _height(surface: Points, places: Points) -> Floats:
     """Return the third coordinate of ``surface``, shape (n, 3), over ``places``, (..., 2); NaN beside it."""
-    flat = Delaunay(surface[:, :2])
+    try:
+        flat = Delaunay(surface[:, :2])
+    except (QhullError, ValueError):  # fewer than three points, or all on a line
+        return np.full(places.shape[:-1], np.nan)
     at = flat.find_simplex(places)
     form, start = flat.transform[at, :2], flat.transform[at, 2]
     share = np.einsum("...ij,...j->...i", form, places - start)

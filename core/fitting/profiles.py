@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
 
 from core.mesh import Floats, Mesh, Points, unit
-from core.sections import Section, arc_length, chains, cut, resample
+from core.sections import Section, arc_length, chains, cut, hull_corners, resample
 
 STEP = 2.0
 """Distance of the points on which a profile is judged [mm]."""
@@ -152,11 +151,8 @@ def _outline(flat: Points) -> np.ndarray | None:
     """Return the points of a profile, shape (k, 2), that lie on the convex outline seen from outside."""
     inner = flat[:, 0].min() - 1000.0
     closing = [(inner, flat[:, 1].max()), (inner, flat[:, 1].min())]
-    try:
-        corners = ConvexHull(np.concatenate([flat, closing])).vertices
-    except QhullError:
-        return None
-    return np.sort(corners[corners < len(flat)])
+    corners = hull_corners(np.concatenate([flat, closing]))
+    return np.sort(corners[corners < len(flat)]) if len(corners) else None
 
 
 def _turning(flat: Points) -> Floats:

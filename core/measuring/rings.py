@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
 
 from core.mesh import Points
-from core.sections import Section, ordered
+from core.sections import Section, hull_corners, ordered
 from core.trunk import Level
 
 ROUNDED = 4
@@ -15,11 +14,7 @@ ROUNDED = 4
 
 def tape_ring(level: Level) -> Points:
     """Return where a tape lies round a level, bridging hollows: a closed curve, shape (k, 3) [mm]."""
-    points = level.points
-    try:
-        corners = points[ConvexHull(points[:, :2]).vertices] if len(points) > 2 else points[:0]
-    except QhullError:
-        return points[:0]
+    corners = level.points[hull_corners(level.points[:, :2])]
     return np.concatenate([corners, corners[:1]])
 
 
@@ -32,14 +27,19 @@ def skin_ring(level: Level) -> Points:
     ids = np.unique(rounded, axis=0, return_inverse=True)[1].reshape(len(segments), 2)
     whole = ids[:, 0] != ids[:, 1]
     section = Section(segments[whole], ids[whole])
-    ring, *others = [section.points[rows] for rows in ordered(section)]
-    while others:
+    pieces = [section.points[rows] for rows in ordered(section)]
+    if not pieces:
+        return np.empty((0, 3))
+    ends = np.array([[piece[0], piece[-1]] for piece in pieces])
+    free, parts = np.ones((len(pieces), 1), dtype=bool), pieces[:1]
+    free[0] = False
+    for _ in pieces[1:]:
         # The piece whose end lies nearest to where the ring has come to goes on from there.
-        ends = np.array([[piece[0], piece[-1]] for piece in others])
-        away = np.linalg.norm(ends - ring[-1], axis=2)
-        next_, turned = np.unravel_index(int(np.argmin(away)), away.shape)
-        piece = others.pop(int(next_))
-        ring = np.concatenate([ring, piece[::-1] if turned else piece])
+        away = np.where(free, np.linalg.norm(ends - parts[-1][-1], axis=2), np.inf)
+        piece, turned = divmod(int(np.argmin(away)), 2)
+        parts.append(pieces[piece][::-1] if turned else pieces[piece])
+        free[piece] = False
+    ring = np.concatenate(parts)
     return ring if np.array_equal(ring[0], ring[-1]) else np.concatenate([ring, ring[:1]])
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.ndimage import minimum_filter
 from scipy.spatial.distance import cdist
 
-from core.mesh import Floats, Points
+from core.mesh import Floats, Indices, Points
 from core.sections import resample
 
 SPACING = 5.0
@@ -17,6 +17,21 @@ STEP_OUT = 28.0
 
 SLACK = 6.0
 """So much wider than below the armpit may the trunk be above it, on each side [mm]."""
+
+MOST_POINTS = 1000
+"""An outline of more points, 5 m long, is that of a torn skin: a trunk with joined arms has at most 300."""
+
+MOST_NECKS = 200
+"""At most so many necks of a level are measured closely, the narrowest ones; a body has fewer than 20."""
+
+ASIDE = 62.0, 150.0
+"""An arm is joined to the trunk between these azimuths [degrees]."""
+
+LEAST_AREA, MOST_SHARE = 1000.0, 0.6
+"""A neck cuts off at least this area [mm^2], and less than this part of the rest of the level [1]."""
+
+LOOSE = 1e-6
+"""The quick test of a neck is looser than the exact one by this part [1], for rounding."""
 
 
 def necks(ring: Points, centre: Points) -> list[tuple[float, float] | None]:
@@ -29,13 +44,16 @@ def necks(ring: Points, centre: Points) -> list[tuple[float, float] | None]:
     """
     at = resample(ring, SPACING)[:-1]
     count = len(at)
-    if count < 60:
+    if not 60 <= count <= MOST_POINTS:
         return [None, None]
     length = float(np.linalg.norm(np.diff(ring, axis=0), axis=1).sum())
     away = cdist(at, at)
     near = np.abs(np.arange(count)[:, None] - np.arange(count))
     away[np.minimum(near, count - near) < 10] = np.inf
     first, second = np.nonzero((away == minimum_filter(away, 7, mode="wrap")) & (away < 130.0))
+    likely = _likely(at, first, second, centre)
+    likely = likely[np.argsort(away[first[likely], second[likely]], kind="stable")[:MOST_NECKS]]
+    first, second = first[likely], second[likely]
     doubled = np.concatenate([at, at])
     found: list[list[tuple[float, float, float, float]]] = [[], []]
     for i, j in zip(first.tolist(), second.tolist(), strict=True):
@@ -49,6 +67,28 @@ def necks(ring: Points, centre: Points) -> list[tuple[float, float] | None]:
     return [_best(side) for side in found]
 
 
+def _likely(at: Points, first: Indices, second: Indices, centre: Points) -> Indices:
+    """Return the chords from place ``first`` to ``second`` of a closed outline that may cut off an arm.
+
+    The first tests of ``_lobe`` for all chords at once, by running sums: a torn outline has thousands.
+    """
+    count, at, centre = len(at), at - at[0], centre - at[0]
+    doubled = np.concatenate([at, at])
+    x, y = doubled.T
+    sums = np.concatenate([np.zeros((1, 2)), np.cumsum(doubled, axis=0)])
+    turns = np.concatenate([[0.0], np.cumsum(x[:-1] * y[1:] - y[:-1] * x[1:])])
+    stop = np.where(second > first, second, second + count)
+    out = (sums[stop + 1] - sums[first]) / (stop + 1 - first)[:, None] - centre
+    azimuth = np.degrees(np.arctan2(np.abs(out[:, 0]), -out[:, 1]))
+    chord = x[stop] * y[first] - y[stop] * x[first]
+    area, rest = turns[stop] - turns[first] + chord, turns[first + count] - turns[stop] - chord
+    small = (stop - first < first + count - stop) & (area * rest > 0.0)
+    wide = 0.5 * np.abs(area) > (1.0 - LOOSE) * LEAST_AREA
+    part = np.abs(area) < (1.0 + LOOSE) * MOST_SHARE * np.abs(rest)
+    aside = (azimuth > (1.0 - LOOSE) * ASIDE[0]) & (azimuth < (1.0 + LOOSE) * ASIDE[1])
+    return np.flatnonzero(small & wide & part & aside)
+
+
 def _best(found: list[tuple[float, float, float, float]]) -> tuple[float, float] | None:
     """Of necks (width, area cut off, two places) nearly as narrow as the narrowest return the inmost."""
     if not found:
@@ -60,10 +100,10 @@ def _best(found: list[tuple[float, float, float, float]]) -> tuple[float, float]
 def _lobe(lobe: Points, rest: Points, centre: Points, side: float) -> float:
     """Return the area of what a chord cuts off [mm^2] if that can be an arm; else 0."""
     out = lobe.mean(axis=0) - centre
-    if not 62.0 < np.degrees(np.arctan2(side * out[0], -out[1])) < 150.0:
+    if not ASIDE[0] < np.degrees(np.arctan2(side * out[0], -out[1])) < ASIDE[1]:
         return 0.0
     area, trunk = _area(lobe), _area(rest)
-    if area * trunk <= 0.0 or not 1000.0 < abs(area) < 0.6 * abs(trunk):
+    if area * trunk <= 0.0 or not LEAST_AREA < abs(area) < MOST_SHARE * abs(trunk):
         return 0.0
     chord = lobe[-1] - lobe[0]
     thick = float(np.linalg.norm(chord))

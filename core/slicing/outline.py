@@ -19,6 +19,10 @@ BEARINGS = (np.arange(BINS) + 0.5) * (2.0 * np.pi / BINS) - np.pi
 """Bearing of each direction [rad]: 0 is the front (-y), positive towards the left (+x)."""
 
 
+MOST_JOINED = 200
+"""Open pieces of a level that are joined to one outline; scans with holes have at most 10."""
+
+
 @dataclass(frozen=True, eq=False)
 class Pieces:
     """Connected pieces of outline: their box in the level [mm], their level, and whether they close."""
@@ -127,14 +131,15 @@ def ring(segments: Points, ids: Indices) -> tuple[Indices, Points]:
     """Return the rows of segments in order round an outline, shape (r,), and where each begins, (r, 2) [mm].
 
     ``segments``, shape (s, 2, 3) [mm], with ``ids`` of their ends, shape (s, 2). Pieces that are open are
-    joined, the nearest ends first; of closed ones only the longest counts. Source: ours.
+    joined, the nearest ends first, at most ``MOST_JOINED`` of them, the longest; of closed ones only the
+    longest counts. Source: ours.
     """
     paths = sorted(_paths(ids), key=len, reverse=True)
     closed = [path for path in paths if _is_closed(ids, path)]
     if closed and len(closed[0]) >= len(paths[0]):
         whole = closed[0]
     else:
-        whole = _joined(segments, [path for path in paths if not _is_closed(ids, path)])
+        whole = _joined(segments, [path for path in paths if not _is_closed(ids, path)][:MOST_JOINED])
     ends = np.array(whole)
     return ends >> 1, segments[ends >> 1, ends & 1, :2]
 
@@ -167,14 +172,15 @@ def _is_closed(ids: Indices, path: list[int]) -> bool:
 
 def _joined(segments: Points, paths: list[list[int]]) -> list[int]:
     """Join open chains, longest first, each time with the nearest end of the others."""
-    whole, rest = paths[0], paths[1:]
-    while rest:
-        end = segments[whole[-1] >> 1, 1 - (whole[-1] & 1)]
-        ways = [way for path in rest for way in (path, [at ^ 1 for at in reversed(path)])]
-        away = [float(((segments[way[0] >> 1, way[0] & 1] - end) ** 2).sum()) for way in ways]
-        nearest = int(np.argmin(away))
-        whole = whole + ways[nearest]
-        del rest[nearest // 2]
+    ends = np.array([[path[0], path[-1] ^ 1] for path in paths])
+    doors = segments[ends >> 1, ends & 1]
+    free = np.ones((len(paths), 1), dtype=bool)
+    whole, at, free[0] = list(paths[0]), doors[0, 1], False
+    for _ in paths[1:]:
+        away = np.where(free, ((doors - at) ** 2).sum(axis=2), np.inf)
+        path, end = divmod(int(np.argmin(away)), 2)
+        whole += [entry ^ 1 for entry in reversed(paths[path])] if end else paths[path]
+        at, free[path] = doors[path, 1 - end], False
     return whole
 
 

@@ -18,6 +18,9 @@ LIP = 110.0
 BROAD = 220.0
 """What hangs in front of the body and is longer than this [mm] in its level is an arm."""
 
+MOST_LIMBS = 200
+"""Closed pieces of a level beside the trunk that may be limbs, the largest ones; a body has fewer than 10."""
+
 
 def limbs(pieces: Pieces, main: Indices, z: Floats, middle: float) -> Flags:
     """Tell which closed ``pieces`` belong to an arm, a hand or a leg, and not to an overhanging breast.
@@ -33,7 +36,9 @@ def limbs(pieces: Pieces, main: Indices, z: Floats, middle: float) -> Flags:
     odd = free & ((body < 0) | beside(pieces, body, middle))
     odd |= free & (np.linalg.norm(pieces.high - pieces.low, axis=1) > BROAD)
     pairs = []
-    order = member[np.argsort(pieces.level[member], kind="stable")]
+    order = member[np.lexsort((-pieces.size[member], pieces.level[member]))]
+    first = np.searchsorted(pieces.level[order], pieces.level[order])
+    order = order[np.arange(len(order)) - first < MOST_LIMBS]
     start = np.searchsorted(pieces.level[order], np.arange(len(z) + 1))
     for k in range(len(z) - 1):
         low, high = order[start[k] : start[k + 1]], order[start[k + 1] : start[min(k + 2, len(z))]]
@@ -114,17 +119,19 @@ def kept_pieces(cuts: Outlines, main: Indices, limb: Flags, sides: Floats) -> tu
             open_[k] = True
             loose = rows[~pieces.closed[rows]]
             low, high = np.fmin(low, sides[k, 0]), np.fmax(high, sides[k, 1])
-            more = np.zeros(len(loose), dtype=bool)
-            while True:
-                centre = pieces.centre[loose, 0]
-                near = (pieces.low[loose, 0] <= high + GAP) & (pieces.high[loose, 0] >= low - GAP)
-                near |= (low <= centre) & (centre <= high)
-                if np.array_equal(near, more):
-                    break
-                more = near
-                low = min(low, pieces.low[loose[more], 0].min())
-                high = max(high, pieces.high[loose[more], 0].max())
-            kept[loose[more]] = True
+            more = loose[_linked(pieces.low[loose, 0], pieces.high[loose, 0], low, high)]
+            low, high = pieces.low[more, 0].min(initial=low), pieces.high[more, 0].max(initial=high)
+            kept[more] = True
         centre = pieces.centre[rows, 0]
         kept[rows[inner & (low <= centre) & (centre <= high)]] = True
     return kept, open_
+
+
+def _linked(lows: Floats, highs: Floats, low: float, high: float) -> Flags:
+    """Tell which ranges, from ``lows`` to ``highs`` (p,), are linked to one by gaps of at most ``GAP``."""
+    begin, end = np.append(lows, low), np.append(highs, high)
+    order = np.argsort(begin, kind="stable")
+    apart = begin[order][1:] > np.maximum.accumulate(end[order])[:-1] + GAP
+    group = np.empty(len(order), dtype=np.int64)
+    group[order] = np.concatenate([[0], np.cumsum(apart)])
+    return np.asarray(group[:-1] == group[-1])
