@@ -9,6 +9,8 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QAction, QActionGroup, QKeySequence
 from PySide6.QtWidgets import QMenu, QMenuBar, QWidget
 
+from app.dress.menu import Menu
+from app.dress.tip import set_tip
 from app.wording.words import tr
 
 Key = str | QKeySequence.StandardKey
@@ -32,9 +34,7 @@ class Menus:
             "help": tr("Help"),
         }
         # Alt and the letter open a menu in any language: the first one of its name in English.
-        self.menus = {name: self.bar.addMenu(_with_key(title, name[0])) for name, title in titles.items()}
-        for menu in self.menus.values():
-            menu.setToolTipsVisible(True)
+        self.menus = {name: self._menu(_with_key(title, name[0])) for name, title in titles.items()}
         self._ends: dict[str, QAction] = {}
         self._of_document: list[QAction] = []
 
@@ -54,7 +54,7 @@ class Menus:
         if key is not None:
             action.setShortcut(QKeySequence(key))
         if tip:
-            action.setToolTip(tip)
+            set_tip(action, tip)
             action.setStatusTip(tip)
         action.setCheckable(checkable)
         if do is not None:
@@ -79,10 +79,14 @@ class Menus:
         """Let the ``last`` actions of a menu stay at its foot, whatever is added later."""
         self._ends[menu] = self.menus[menu].actions()[-last]
 
-    def submenu(self, menu: str, name: str, title: str) -> QMenu:
+    def _menu(self, title: str) -> Menu:
+        result = Menu(self.bar, title)
+        self.bar.addMenu(result)
+        return result
+
+    def submenu(self, menu: str, name: str, title: str) -> Menu:
         """Return a new menu within a menu, to be added to by ``name``."""
-        result = self.menus[name] = QMenu(title, self.menus[menu])
-        result.setToolTipsVisible(True)
+        result = self.menus[name] = Menu(self.menus[menu], title)
         self.place(menu, result.menuAction())
         return result
 

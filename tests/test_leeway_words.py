@@ -7,11 +7,12 @@ import threading
 import pytest
 from PySide6.QtCore import QEvent, QPoint
 from PySide6.QtGui import QHelpEvent
-from PySide6.QtWidgets import QApplication, QToolTip
+from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 from window_tools import Script, run_main, settled
 
 import app.lining.limits_desk
+from app.dress.tip import set_tip, shown_tip
 from app.main_window import MainWindow
 from app.panels.leeway_key import LeewayKey
 from app.panels.leeway_words import hint, key, placed, refusal, tone_at
@@ -150,7 +151,7 @@ def test_the_groove_shows_what_lies_between_its_ends() -> None:
 @pytest.fixture
 def slider(qtbot: QtBot) -> LengthSlider:
     slider = LengthSlider()
-    slider.setToolTip("keys")
+    set_tip(slider, "keys")
     slider.resize(300, 28)
     qtbot.addWidget(slider)
     slider.show()
@@ -158,10 +159,9 @@ def slider(qtbot: QtBot) -> LengthSlider:
 
 
 def hovered(slider: LengthSlider, ratio: float) -> str:
-    QToolTip.hideText()
     at = QPoint(round(slider._x_of(ratio)), 10)
     QApplication.sendEvent(slider, QHelpEvent(QEvent.Type.ToolTip, at, slider.mapToGlobal(at)))
-    return plain(QToolTip.text())
+    return plain(shown_tip(slider))
 
 
 def test_a_slider_tells_the_zone_under_the_pointer_and_on_its_handle_the_set_one(

@@ -7,9 +7,10 @@ import pytest
 from hand_tools import LEFT, PLAIN, SHIFT, move, press, release
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QToolTip, QWidget
+from PySide6.QtWidgets import QWidget
 from window_tools import Script, points, run_main, settled, undrawn
 
+from app.dress.tip import shown_tip
 from app.lining.band_pull import STEP
 from app.main_window import MainWindow
 from app.panels.length_groove import RESISTANCE
@@ -192,7 +193,7 @@ def the_red_resists_as_in_the_slider(window: MainWindow) -> None:
     window.lines_desk.show_rows()
     pull(window, start, QPoint(0, -10 - round(RESISTANCE) + 2))
     assert window.band_pull._ratio == pytest.approx(ratio - 0.01)
-    assert f"folds below {100 * (ratio - 0.01):.1f} %" in QToolTip.text()
+    assert f"folds below {100 * (ratio - 0.01):.1f} %" in shown_tip(window)
     move(canvas_of(window), start + QPoint(0, -10 - round(RESISTANCE) - 5))
     release(canvas_of(window), start)
     assert ratio_of(window) == pytest.approx(ratio - 0.015)
@@ -205,7 +206,7 @@ def a_locked_band_says_so_and_stays(window: MainWindow) -> Script:
     at = on_band(window, "mid-bust")
     assert hover(window, at) == Qt.CursorShape.ForbiddenCursor
     pull(window, at, QPoint(0, -40))
-    assert "locked" in QToolTip.text()
+    assert "locked" in shown_tip(window)
     release(canvas_of(window), at)
     assert window.session.design is design
     assert window.view.viewport.scene.view == seen

@@ -78,10 +78,12 @@ def tell(error: UserError, of_window: bool) -> None:
     print(f"busk: {error}", file=sys.stderr)
     if not (of_window and sys.__stderr__ is None and has_display()):
         return
+    from PySide6.QtCore import Qt  # noqa: PLC0415
     from PySide6.QtWidgets import QApplication, QMessageBox  # noqa: PLC0415
 
     app = QApplication.instance() or QApplication(sys.argv[:1])
     box = QMessageBox(QMessageBox.Icon.Warning, "Busk", error.message)
+    box.setTextFormat(Qt.TextFormat.PlainText)  # of this and the next text: a path may look like HTML
     box.setInformativeText(error.hint)
     box.exec()
     del app

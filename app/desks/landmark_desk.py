@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QObject, QSettings, Qt, QTimer
 from PySide6.QtGui import QCursor, QKeyEvent
-from PySide6.QtWidgets import QToolTip
 
 from app.dress.theme import tone_of
+from app.dress.tip import show_tip
 from app.presenting.scan import kind_of, landmark_title, landmark_views, other_side, spot_of
 from app.wording.words import joined, say, tr
 from core.body import Body
@@ -234,7 +234,7 @@ class LandmarkDesk(QObject):
         self.hover(name)
         row = self._window.landmarks.rows.get(name)
         words = "" if row is None or self._carried else f"{row.view.title}\n{row.view.words()}"
-        QToolTip.showText(QCursor.pos(), words, self._window.view.viewport)
+        show_tip(QCursor.pos(), words, self._window.view.viewport)
 
     # -- inside
 

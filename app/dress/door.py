@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QAbstractButton, QHBoxLayout, QPushButton
 from app.dress.icons import icon, paint_icon
 from app.dress.parts import ToolButton
 from app.dress.theme import font, label, tokens_of
+from app.dress.tip import set_tip
 
 DOOR_HEIGHT = 52
 """Height of a door at the foot of the inspector [px]."""
@@ -32,7 +33,7 @@ class Door(QAbstractButton):
         """Say what is behind it."""
         self._said = words
         self.setAccessibleDescription(self._said)
-        self.setToolTip(f"<p>{self._said}</p>")
+        set_tip(self, self._said)
         self.update()
 
     def paintEvent(self, event: QPaintEvent) -> None:

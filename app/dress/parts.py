@@ -6,18 +6,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QAction, QColor, QFont, QHelpEvent, QKeySequence, QPainter, QPaintEvent, QPen
+from PySide6.QtGui import QAction, QColor, QFont, QKeySequence, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import (
     QAbstractButton,
     QButtonGroup,
     QFrame,
     QHBoxLayout,
     QLabel,
-    QMenu,
     QPushButton,
     QSizePolicy,
     QToolButton,
-    QToolTip,
     QVBoxLayout,
     QWidget,
 )
@@ -25,6 +23,7 @@ from PySide6.QtWidgets import (
 from app.dress.icons import icon, pixmap
 from app.dress.shadow import MARGINS, RADIUS, floating_ground
 from app.dress.theme import Sentence, font, label, set_tag, tokens_of
+from app.dress.tip import set_tip, watch_tip
 
 
 def button(text: str, kind: str = "secondary") -> QPushButton:
@@ -47,6 +46,10 @@ def sentence(text: str = "", role: str = "secondary") -> QLabel:
 
 class ElidedLabel(QLabel):
     """Text on one line that ends in dots where there is no room for all of it."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setTextFormat(Qt.TextFormat.PlainText)  # a name may look like HTML
 
     def paintEvent(self, event: QPaintEvent) -> None:
         painter = QPainter(self)
@@ -109,8 +112,9 @@ class ToolButton(QToolButton):
         if action is not None:
             action.setIconVisibleInMenu(False)
             self.setDefaultAction(action)
+        watch_tip(self)
         if tip:
-            self.setToolTip(tip)
+            set_tip(self, tip)
             self.setAccessibleName(tip)
         self._repaint_icon()
 
@@ -120,11 +124,8 @@ class ToolButton(QToolButton):
         key = "" if action is None else action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
         return f"{said}  {key}" if key and not said.endswith((key, f"({key})")) else said
 
-    def event(self, event: QEvent) -> bool:
-        if isinstance(event, QHelpEvent) and event.type() == QEvent.Type.ToolTip and self.toolTip():
-            QToolTip.showText(event.globalPos(), self.tip(), self)
-            return True
-        return super().event(event)
+    def tip_at(self, place: QPoint) -> str:
+        return self.tip() if self.toolTip() else ""
 
     def show_icon(self, drawing: str) -> None:
         """Show another drawing."""
@@ -231,17 +232,6 @@ class Disclosure(QAbstractButton):
         painter.setPen(QColor(tokens.text_quiet))
         words = QRectF(self.rect()).adjusted(28, 0, 0, 0)
         painter.drawText(words, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, self.text())
-
-
-def pull_down(menu: QMenu, under: QWidget) -> None:
-    """Open a menu under a button, which is lit no longer once the menu has gone."""
-
-    def unlit() -> None:
-        under.setAttribute(Qt.WidgetAttribute.WA_UnderMouse, False)
-        under.update()
-
-    menu.aboutToHide.connect(unlit, Qt.ConnectionType.SingleShotConnection)
-    menu.popup(under.mapToGlobal(QPoint(0, under.height() + 2)))
 
 
 class FloatingPanel(QWidget):

@@ -8,6 +8,7 @@ from PySide6.QtCore import SignalInstance
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
 from app.dress.parts import button
+from app.dress.tip import set_tip
 
 
 def press_row(choices: Iterable[tuple[str, str, SignalInstance]], top: int = 0) -> QWidget:
@@ -18,7 +19,7 @@ def press_row(choices: Iterable[tuple[str, str, SignalInstance]], top: int = 0) 
     row.setSpacing(6)
     for text, tip, signal in choices:
         press = button(text)
-        press.setToolTip(tip)
+        set_tip(press, tip)
         press.clicked.connect(signal)
         row.addWidget(press)
     row.addStretch(1)

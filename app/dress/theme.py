@@ -80,8 +80,8 @@ def label(text: str = "", role: str = "body", tabular: bool = False, kind: type[
     It is shown letter by letter: names of files and elastics are others' and may look like marks of a page.
     """
     result = kind()
-    result.setText(text)
     result.setTextFormat(Qt.TextFormat.PlainText)
+    result.setText(text)
     result.setFont(font(role, tabular))
     result.setProperty("role", role)
     return result
@@ -93,12 +93,6 @@ def set_tag(widget: QWidget, name: str, value: object) -> None:
         widget.setProperty(name, value)
         widget.style().unpolish(widget)
         widget.style().polish(widget)
-
-
-def set_tip(widget: QWidget, tip: str) -> None:
-    """Say something else on hovering; what is said already makes no event."""
-    if widget.toolTip() != tip:
-        widget.setToolTip(tip)
 
 
 def tokens_of(widget: QWidget) -> Tokens:

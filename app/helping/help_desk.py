@@ -8,6 +8,7 @@ from PySide6.QtCore import QObject, QPoint
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QWhatsThis, QWidget
 
+from app.dress.tip import set_tip
 from app.helping.folders import folders, show_folder
 from app.helping.guide import first_page, fitting_page, show_page
 from app.helping.keys import keys_of_parts
@@ -46,7 +47,7 @@ class HelpDesk(QObject):
         window.actions_.first_steps.triggered.connect(self.show_first_steps)
         window.actions_.about.triggered.connect(self.show_about)
         menu = QAction(tr("Help"), window)
-        menu.setToolTip(tr("Keys, tour, What's This and more"))
+        set_tip(menu, tr("Keys, tour, What's This and more"))
         tool = window.rail.add_tool("question", menu)
         menu.triggered.connect(lambda: self._show_menu(tool))
 

@@ -14,6 +14,7 @@ from PySide6.QtCore import QDateTime, QLocale, QSettings
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QMenu
 
+from app.dress.tip import set_tip
 from app.dress.wishes import wish
 from app.keeping.project_picture import STATE
 from app.panels.project_card import ProjectView
@@ -79,7 +80,7 @@ def fill_recent_menu(menu: QMenu, open_file: Callable[[str], None]) -> None:
     menu.clear()
     for path in recent_files():
         action = menu.addAction(Path(path).name)
-        action.setToolTip(path)
+        set_tip(action, path)
         action.setEnabled(Path(path).exists())
         action.triggered.connect(lambda _=False, chosen=path: open_file(chosen))
     if menu.isEmpty():

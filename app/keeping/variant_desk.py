@@ -6,9 +6,10 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Qt, Signal
-from PySide6.QtWidgets import QMenu
 
+from app.dress.menu import Menu
 from app.dress.parts import Segment, ToolButton
+from app.dress.tip import set_tip
 from app.presenting.variants import variant_titles
 from app.wording.words import tr
 from core.design import Design
@@ -74,7 +75,7 @@ class VariantDesk(QObject):
             text = (
                 tr("Variant {name}") if name in there else tr("Variant {name}: begins as a copy of {shown}")
             )
-            button.setToolTip(text.format(name=name, shown=shown))
+            set_tip(button, text.format(name=name, shown=shown))
             button.setAccessibleName(button.toolTip())
             button.setText(name if name in there else f"+{name}")
         if self._window.view.beside.way == "variants" and self._beside != self._others():
@@ -194,8 +195,8 @@ class VariantDesk(QObject):
             lambda place: self._menu_of(name).popup(button.mapToGlobal(place))
         )
 
-    def _menu_of(self, name: str) -> QMenu:
-        menu = QMenu(self.segment)
+    def _menu_of(self, name: str) -> Menu:
+        menu = Menu(self.segment)
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         document = self._session.document
         there = document.variants if document is not None else {}

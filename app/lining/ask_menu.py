@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QMenu
 
-from app.dress.parts import pull_down
+from app.dress.menu import Menu, pull_down
 from app.keeping.dialogs import ask_table
 from app.presenting.asking import figure_title, profile_title
 from app.wording.words import tr
@@ -28,7 +28,7 @@ class AskMenu(QObject):
     def __init__(self, window: MainWindow, desk: AskDesk) -> None:
         super().__init__(desk)
         self._window, self._desk = window, desk
-        self.menu = QMenu(window)
+        self.menu = Menu(window)
 
     def show(self) -> None:
         """Open the menu under its button."""
@@ -41,8 +41,8 @@ class AskMenu(QObject):
         self._offer(self.menu, _BOTH)
         for side, title in (("left", tr("Left side alone")), ("right", tr("Right side alone"))):
             names = tuple(f"{name} {side}" for name in _BOTH if name != GIRTH)
-            self._offer(self.menu.addMenu(title), names)
-        self._offer(self.menu.addMenu(tr("Left against right")), EVEN.names)
+            self._offer(self.menu.add_submenu(title), names)
+        self._offer(self.menu.add_submenu(tr("Left against right")), EVEN.names)
         self.menu.addSeparator()
         for side in ("left", "right"):
             if f"profile {side}" not in self._desk.drawn:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QCursor, QHelpEvent
-from PySide6.QtWidgets import QToolTip
 
+from app.dress.tip import hide_tip, show_tip
 from app.panels.leeway_words import refusal
 from app.panels.length_groove import LONGEST, RESISTANCE, SHORTEST, resisted, wall_of
 from app.panels.line_row import LineRow, locked_tip
@@ -67,7 +67,7 @@ class BandPull(QObject):
         said = tr("Drag up: shorter, down: longer; 0.1 % a pixel, Shift 0.01 %. Esc: back.")
         if cursor is not None:
             locked = cursor == Qt.CursorShape.ForbiddenCursor
-            QToolTip.showText(event.globalPos(), locked_tip() if locked else said, self._viewport)
+            show_tip(event.globalPos(), locked_tip() if locked else said, self._viewport)
         return cursor is not None
 
     def _cursor_of(self, name: str) -> Qt.CursorShape | None:
@@ -89,7 +89,7 @@ class BandPull(QObject):
         if row is None or design is None:
             return
         if row.view.locked:
-            QToolTip.showText(QCursor.pos(), locked_tip(), self._viewport)
+            show_tip(QCursor.pos(), locked_tip(), self._viewport)
             return
         self._name, self._way = name, 0.0
         self._start = self._ratio = design.ratio(name)
@@ -113,7 +113,7 @@ class BandPull(QObject):
     def _tell(self, stopped: bool) -> None:
         """Say why it goes no further without a stronger pull."""
         words = refusal(self._leeway) if stopped else ""
-        QToolTip.showText(QCursor.pos(), words, self._viewport)
+        show_tip(QCursor.pos(), words, self._viewport)
 
     def _drop(self) -> None:
         name = self._open_hand()
@@ -124,6 +124,6 @@ class BandPull(QObject):
         """Hold nothing any longer; returns the line that was held."""
         name, self._name = self._name, ""
         if name:
-            QToolTip.hideText()
+            hide_tip(self._viewport)
             self._window.job_desk.show()
         return name

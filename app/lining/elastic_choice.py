@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, cast
 
 from PySide6.QtCore import QObject
 from PySide6.QtGui import QActionGroup
-from PySide6.QtWidgets import QMenu, QWidget
+from PySide6.QtWidgets import QWidget
 
 from app.asking.jobs import Job
-from app.dress.parts import pull_down
+from app.dress.menu import Menu, pull_down
 from app.lining.elastic_menu import fill_elastics
 from app.presenting.bust import move_between, up_words
 from app.presenting.lines import row_title
@@ -53,8 +53,7 @@ class ElasticChoice(QObject):
         self._job: Job | None = None
         self._asked: Design | None = None
         self._variant, self._index = "", 0
-        self._menu = QMenu(window)
-        self._menu.setToolTipsVisible(True)
+        self._menu = Menu(window)
         window.garment.elastic_asked.connect(self.show_menu)
         window.lines.elastic_asked.connect(self.show_menu)
         window.garment.all_asked.connect(self.show_menu_of_all)

@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 
 from PySide6.QtGui import QAction
-from PySide6.QtWidgets import QMenu
 
+from app.dress.menu import Menu
+from app.dress.tip import set_tip
 from app.wording.words import say, tr
 from core.design_elastics import Elastic
 from core.elastics import built_in, own_elastics
@@ -15,7 +16,7 @@ from core.elastics import built_in, own_elastics
 Choose = Callable[[Elastic | None], None]
 
 
-def fill_elastics(menu: QMenu, chosen: str | None, kept: Iterable[Elastic], choose: Choose) -> None:
+def fill_elastics(menu: Menu, chosen: str | None, kept: Iterable[Elastic], choose: Choose) -> None:
     """Fill ``menu`` anew, the one called ``chosen`` ticked; ``kept`` are those that the project brings along.
 
     An empty name is no elastic, None several: then nothing is ticked.
@@ -29,7 +30,7 @@ def fill_elastics(menu: QMenu, chosen: str | None, kept: Iterable[Elastic], choo
     brought = [each for each in kept if known.get(each.name) != each]
     elsewhere = "" if chosen in {each.name for each in brought} else chosen
     for kind, elastics in _kinds(each for each in built_in() if known[each.name] == each).items():
-        widths = menu.addMenu(kind)
+        widths = menu.add_submenu(kind)
         _tick(widths.menuAction(), elsewhere in {each.name for each in elastics})
         for each in elastics:
             words = tr("{width} mm").format(width=f"{each.width_mm:g}")
@@ -42,7 +43,7 @@ def fill_elastics(menu: QMenu, chosen: str | None, kept: Iterable[Elastic], choo
     _group(menu, tr("In this project"), titles, chosen, choose)
     for problem in problems:
         action = menu.addAction(say(problem.message))
-        action.setToolTip(say(problem.hint))
+        set_tip(action, say(problem.hint))
         action.setEnabled(False)
 
 
@@ -59,7 +60,7 @@ def _kinds(elastics: Iterable[Elastic]) -> dict[str, list[Elastic]]:
 
 
 def _group(
-    menu: QMenu, heading: str, elastics: Mapping[str, Elastic], chosen: str | None, choose: Choose
+    menu: Menu, heading: str, elastics: Mapping[str, Elastic], chosen: str | None, choose: Choose
 ) -> None:
     """Add elastics by what they are called here, under a heading."""
     if elastics:
@@ -68,7 +69,7 @@ def _group(
         _add(menu, title, each.name == chosen, partial(choose, each))
 
 
-def _add(menu: QMenu, words: str, ticked: bool, do: Callable[[], None]) -> None:
+def _add(menu: Menu, words: str, ticked: bool, do: Callable[[], None]) -> None:
     _tick(menu.addAction(words, do), ticked)
 
 

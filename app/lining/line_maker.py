@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
-from PySide6.QtWidgets import QMenu
 
-from app.dress.parts import pull_down
+from app.dress.menu import Menu, pull_down
 from app.lining.line_dialog import ask_own_line
 from app.presenting.lines import LINE_COLOURS, line_title, pair_title
 from app.wording.words import tr
@@ -25,7 +24,7 @@ class LineMaker(QObject):
     def __init__(self, window: MainWindow) -> None:
         super().__init__(window)
         self._window = window
-        self.menu = QMenu(window)
+        self.menu = Menu(window)
 
     def show_menu(self) -> None:
         """Offer what can be added, and no more, under the button that asks for it."""

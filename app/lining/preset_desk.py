@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject
 
 from app.dress.ask import ask, ask_name
-from app.dress.parts import pull_down
+from app.dress.menu import pull_down
+from app.dress.tip import set_tip
 from app.presenting.lines import row_title
 from app.wording.words import listed, say, tr
 from core.design import Design
@@ -53,12 +54,12 @@ class PresetDesk(QObject):
         for group in (built_in(), own):
             for preset in group:
                 action = menu.addAction(say(preset.title), partial(self.wear, preset))
-                action.setToolTip(say(preset.leaves_out) if preset.leaves_out else "")
+                set_tip(action, say(preset.leaves_out) if preset.leaves_out else "")
                 action.setEnabled(opened)
             menu.addSeparator()
         for problem in problems:
             action = menu.addAction(say(problem.message))
-            action.setToolTip(say(problem.hint))
+            set_tip(action, say(problem.hint))
             action.setEnabled(False)
         menu.addAction(tr("Save lines as preset…"), self.ask).setEnabled(opened)
 

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QStackedWidget, QWidget
 from app.dress.parts import Segment, button, sentence
 from app.dress.sheet import Sheet, reading
 from app.dress.theme import label
+from app.dress.tip import set_tip
 from app.wording.words import tr
 
 Facts = Sequence[tuple[str, Sequence[tuple[str, str]]]]
@@ -70,7 +71,7 @@ class DiagnosticsSheet(Sheet):
         for title, folder in folders:
             opener = self.openers[title] = button(title)
             opener.setEnabled(folder.is_dir())
-            opener.setToolTip(str(folder) if folder.is_dir() else tr("Nothing has been written there yet."))
+            set_tip(opener, str(folder) if folder.is_dir() else tr("Nothing has been written there yet."))
             opener.setAccessibleName(tr("Open the folder: {name}").format(name=title))
             opener.setAutoDefault(False)
             opener.clicked.connect(lambda _=False, folder=folder: self.folder_asked.emit(folder))

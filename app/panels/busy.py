@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from app.dress.icons import paint_icon
 from app.dress.parts import FloatingPanel, button
 from app.dress.theme import font, label, tokens_of
+from app.dress.tip import set_tip
 from app.panels.status import ProgressBar
 from app.wording.words import tr
 
@@ -43,7 +44,7 @@ class BusyCard(FloatingPanel):
         words.addWidget(self._bar)
         words.addWidget(self._steps)
         self.stop = button(tr("Cancel"))
-        self.stop.setToolTip(tr("What was there before stays (Esc)"))
+        set_tip(self.stop, tr("What was there before stays (Esc)"))
         self.stop.clicked.connect(self.cancelled)
         self.row.setContentsMargins(28, 20, 24, 24)
         self.row.addLayout(words)

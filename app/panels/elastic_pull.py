@@ -8,7 +8,8 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QPushButton, QSizePolicy
 
 from app.dress.icons import paint_icon
-from app.dress.theme import font, set_tip, tokens_of
+from app.dress.theme import font, tokens_of
+from app.dress.tip import set_tip
 from app.wording.words import tr
 
 

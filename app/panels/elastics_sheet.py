@@ -21,6 +21,7 @@ from PySide6.QtWidgets import (
 from app.dress.parts import sentence
 from app.dress.sheet import Sheet
 from app.dress.theme import font, label, set_tag, tokens_of
+from app.dress.tip import set_tip
 from app.panels.notice import NoticeBar
 from app.wording.words import number, tr
 
@@ -101,13 +102,13 @@ class ElasticsSheet(Sheet):
 
     def _make_foot(self) -> None:
         brought = self.add_button(tr("Import CSV…"), self.import_asked.emit)
-        brought.setToolTip(tr("Bring in a table of your own: elongation and force, with units"))
+        set_tip(brought, tr("Bring in a table of your own: elongation and force, with units"))
         handed_on = self.add_button(tr("Export CSV…"), lambda: self.export_asked.emit(self.marked), "quiet")
-        handed_on.setToolTip(tr("Write the marked elastic as a table, to hand it on or to change it"))
+        set_tip(handed_on, tr("Write the marked elastic as a table, to hand it on or to change it"))
         template = self.add_button(tr("Save a template…"), self.template_asked.emit, "quiet")
-        template.setToolTip(tr("Write an empty table (CSV) to fill in with what you measure"))
+        set_tip(template, tr("Write an empty table (CSV) to fill in with what you measure"))
         self.delete = self.add_button(tr("Delete…"), lambda: self.delete_asked.emit(self.marked), "quiet")
-        self.delete.setToolTip(tr("Take an elastic of your own away; projects that use it keep it"))
+        set_tip(self.delete, tr("Take an elastic of your own away; projects that use it keep it"))
         for place, each in enumerate((brought, handed_on, template, self.delete)):
             self.foot.removeWidget(each)
             self.foot.insertWidget(place, each)

@@ -10,7 +10,8 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from app.dress.parts import Disclosure, button, hairline, sentence
-from app.dress.theme import font, label, set_tag, set_tip, tokens_of
+from app.dress.theme import font, label, set_tag, tokens_of
+from app.dress.tip import set_tip
 from app.wording.words import tr
 
 _FADED = 0.4  # how strongly bars of a former shape are seen
@@ -106,6 +107,7 @@ class _Row:
 
     def __init__(self, grid: QGridLayout, row: int) -> None:
         self.title = EvenTitle()
+        self.title.setTextFormat(Qt.TextFormat.PlainText)
         self.title.setFont(font("body"))
         self.title.setMinimumWidth(60)
         roles = "body", "name", "caption"
@@ -156,10 +158,10 @@ class EvenCard(QWidget):
         self.fold = Disclosure(tr("More figures, and what they rest on"))
         self.fold.toggled.connect(lambda _: self._show())
         self.look = button(tr("Show on the body"))
-        self.look.setToolTip(tr("Lay the map Left and right over the body (C)"))
+        set_tip(self.look, tr("Lay the map Left and right over the body (C)"))
         self.look.clicked.connect(lambda: self.shown.emit(not self._mapped))
         self.make = button(tr("Make even…"))
-        self.make.setToolTip(tr("Find the lengths at which both bust points lie alike, and ask for them"))
+        set_tip(self.make, tr("Find the lengths at which both bust points lie alike, and ask for them"))
         self.make.clicked.connect(self.asked)
         self.summary: EvenSummary | None = None
         self._grid = QGridLayout()

@@ -22,6 +22,7 @@ from app.dress.icons import paint_icon
 from app.dress.parts import IconLabel, hairline, paint_card, sentence
 from app.dress.sheet import Sheet
 from app.dress.theme import font, label, set_tag, tokens_of
+from app.dress.tip import set_tip
 from app.panels.setting_field import Field, field_of
 from app.wording.export_choices import Export
 from app.wording.model_choices import Choice
@@ -150,7 +151,7 @@ class _Item(QAbstractButton):
         super().__init__()
         self._drawing = export.drawing
         self.setText(export.title)
-        self.setToolTip(export.tip)
+        set_tip(self, export.tip)
         self.setAccessibleName(export.title)
         self.setAccessibleDescription(export.tip)
         self.setCheckable(True)

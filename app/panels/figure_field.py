@@ -8,6 +8,7 @@ import unicodedata
 from PySide6.QtCore import QSize, Qt, Signal
 
 from app.dress.theme import font
+from app.dress.tip import set_tip
 from app.panels.typed_field import TypedField, read_figure
 from app.wording.words import number, tr
 
@@ -31,7 +32,7 @@ class FigureField(TypedField):
         self.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         self.setProperty("kind", "number")
         self.setAccessibleName(name)
-        self.setToolTip(name)
+        set_tip(self, name)
         self._make_room()
 
     def set_unit(self, unit: str, digits: int, signed: bool) -> None:

@@ -8,7 +8,8 @@ from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QFrame, QGridLayout, QSizePolicy, QWidget
 
 from app.dress.parts import ElidedLabel, sentence
-from app.dress.theme import font, label, set_tag, set_tip, tokens_of
+from app.dress.theme import font, label, set_tag, tokens_of
+from app.dress.tip import set_tip
 from app.panels.elastic_pull import ElasticPull
 from app.panels.figure_field import FigureField
 from app.panels.garment_view import CutView, PressureView
@@ -35,7 +36,7 @@ class PressureMark(QWidget):
         """Show what a line presses with."""
         if view != self.view:
             self.view = view
-            self.setToolTip(view.tip)
+            set_tip(self, view.tip)
             self.setAccessibleName(f"{view.kpa} kPa {view.word}" if view.kpa else "")
             self.update()
 

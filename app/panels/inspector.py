@@ -6,6 +6,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication, QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
 
 from app.dress.parts import Segment
+from app.dress.tip import set_tip
 from app.wording.words import tr
 
 
@@ -21,7 +22,7 @@ class Inspector(QWidget):
         self._panels: dict[str, QWidget] = {}
         self._titled: set[str] = set()
         self.tabs = Segment((), wide=True)
-        self.tabs.setToolTip(tr("What this step shows here: lengths, measures or what was done"))
+        set_tip(self.tabs, tr("What this step shows here: lengths, measures or what was done"))
         self.tabs.chosen.connect(self.open)
         self._head = QWidget()
         row = QHBoxLayout(self._head)

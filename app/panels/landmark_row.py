@@ -20,6 +20,7 @@ from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
 from app.dress.parts import paint_card
 from app.dress.theme import font, tokens_of, tone_of
+from app.dress.tip import set_tip
 from app.wording.words import say, tr
 from core.landmark import CERTAIN
 
@@ -114,7 +115,7 @@ class LandmarkRow(QAbstractButton):
         """Show new values of the same landmark."""
         self.view = view
         self.setText(view.title)
-        self.setToolTip(view.words())
+        set_tip(self, view.words())
         self.setAccessibleName(f"{view.title} {view.state}")
         self.update()
 

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QApplication, QFrame, QHBoxLayout, QScrollArea, QV
 
 from app.dress.parts import Disclosure, EmptyState, ToolButton, button, hairline, sentence
 from app.dress.theme import label, tokens_of
+from app.dress.tip import set_tip
 from app.panels.landmark_row import LandmarkRow, LandmarkView
 from app.wording.words import joined, say, tr
 
@@ -124,7 +125,7 @@ class LandmarksPanel(QWidget):
         self._rule_title, self._rule = sentence("", "name"), sentence()
         self._hint = sentence(role="caption")
         self.place, self.right = button(tr("Place it")), button(tr("It is right"))
-        self.right.setToolTip(tr("Keep it where it was found, and ask no more"))
+        set_tip(self.right, tr("Keep it where it was found, and ask no more"))
         self.reset, self.reset_all = button(tr("Find it again")), button(tr("Find all again"), "quiet")
         self.place.clicked.connect(lambda: self.place_asked.emit(self._selected))
         self.right.clicked.connect(self._confirm)

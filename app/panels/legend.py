@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QHBoxLayout, QMenu, QVBoxLayout, QWidget
 
 from app.dress.parts import FloatingPanel, ToolButton
 from app.dress.theme import label
+from app.dress.tip import set_tip
 from app.panels.legend_bar import LegendBar, Mark
 from app.showing.live_plot import PullTitle, Quantity
 from app.wording.words import tr
@@ -101,7 +102,7 @@ class Legend(FloatingPanel):
         # What the sign means can be guessed from no colour.
         shown = self._size == "full" or (self._size == "small" and self._kind.both_ways)
         self._note.setVisible(shown)
-        self.title.setToolTip("\n".join(filter(None, (self._kind.tip, "" if shown else note))))
+        set_tip(self.title, "\n".join(filter(None, (self._kind.tip, "" if shown else note))))
 
     def size_taken(self) -> str:
         """Return which of ``SIZES`` it has."""

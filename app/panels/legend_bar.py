@@ -11,6 +11,7 @@ from PySide6.QtGui import QColor, QLinearGradient, QMouseEvent, QPainter, QPaint
 from PySide6.QtWidgets import QWidget
 
 from app.dress.theme import font, tokens_of
+from app.dress.tip import set_tip
 from app.panels.figure_field import FigureField
 from app.wording.words import number, tr
 
@@ -63,7 +64,7 @@ class LegendBar(QWidget):
     def say(self, note: str) -> None:
         """Tell in a tip what the values are, and how their range is set."""
         how = tr("Drag an end or type a number to set the range; double click: automatic.")
-        self.setToolTip("\n".join(filter(None, (note, how))))
+        set_tip(self, "\n".join(filter(None, (note, how))))
 
     def set_small(self, small: bool) -> None:
         """Be shorter, or as high as usual."""

@@ -3,10 +3,9 @@
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QPoint, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QColor,
-    QHelpEvent,
     QKeyEvent,
     QMouseEvent,
     QPainter,
@@ -15,7 +14,7 @@ from PySide6.QtGui import (
     QPolygonF,
     QWheelEvent,
 )
-from PySide6.QtWidgets import QAbstractSlider, QSizePolicy, QToolTip, QWidget
+from PySide6.QtWidgets import QAbstractSlider, QSizePolicy, QWidget
 
 from app.dress.theme import tokens_of
 from app.panels.leeway_words import hint
@@ -120,13 +119,12 @@ class LengthSlider(QAbstractSlider):
             self._strong = strong
             self.update()
 
-    def event(self, event: QEvent) -> bool:
-        if isinstance(event, QHelpEvent) and self._leeway is not None:
-            ratio = self._ratio_under(event.pos().x())
-            told = tr("How far it can go is being worked out.") if self._stale else hint(self._leeway, ratio)
-            QToolTip.showText(event.globalPos(), f"{told}\n\n{self.toolTip()}", self)
-            return True
-        return super().event(event)
+    def tip_at(self, place: QPoint) -> str:
+        if self._leeway is None:
+            return self.toolTip()
+        known = hint(self._leeway, self._ratio_under(place.x()))
+        told = tr("How far it can go is being worked out.") if self._stale else known
+        return f"{told}\n\n{self.toolTip()}"
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         if event.button() != Qt.MouseButton.LeftButton:

@@ -8,7 +8,8 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from app.dress.parts import ToolButton, hairline, sentence
-from app.dress.theme import label, set_tag, set_tip
+from app.dress.theme import label, set_tag
+from app.dress.tip import set_tip
 from app.panels.elastic_pull import ElasticPull
 from app.panels.leeway_key import LeewayKey
 from app.panels.leeway_words import tone_at

@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 from app.dress.icons import paint_icon
 from app.dress.parts import ToolButton, button, sentence
 from app.dress.theme import font, tokens_of
+from app.dress.tip import set_tip
 from app.wording.words import tr
 
 _WIDEST = 170  # room for the title of a preset [px]
@@ -66,7 +67,7 @@ def _in_words(text: str, tip: str) -> QPushButton:
     result = button(text, "word")
     result.setFixedWidth(result.fontMetrics().horizontalAdvance(text) + 20)
     result.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-    result.setToolTip(tip)
+    set_tip(result, tip)
     result.setAccessibleName(tip)
     return result
 
@@ -80,7 +81,7 @@ class _PullDown(QPushButton):
         self.setFont(font("name"))
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setCursor(Qt.CursorShape.PointingHandCursor)
-        self.setToolTip(tr("Sets of lines to begin with, and your own"))
+        set_tip(self, tr("Sets of lines to begin with, and your own"))
 
     def setText(self, text: str) -> None:
         """Show a title, shortened where there is no room for it."""

@@ -15,10 +15,12 @@ from PySide6.QtGui import (
     QPixmap,
     QResizeEvent,
 )
-from PySide6.QtWidgets import QLineEdit, QMenu, QSizePolicy, QWidget
+from PySide6.QtWidgets import QLineEdit, QSizePolicy, QWidget
 
+from app.dress.menu import Menu
 from app.dress.parts import ElidedLabel
 from app.dress.theme import font, tokens_of
+from app.dress.tip import set_tip
 from app.panels.typed_field import TypedField, read_figure
 from app.wording.tokens import LINE_COLORS
 from app.wording.words import number, tr
@@ -60,7 +62,7 @@ class SideMark(QWidget):
         super().__init__()
         self._letter = ""
         self.setFixedSize(QSize(17, 16))
-        self.setToolTip(tr("Set apart: left and right have lengths of their own"))
+        set_tip(self, tr("Set apart: left and right have lengths of their own"))
 
     def show_side(self, side: str) -> None:
         """Show "left" or "right"; anything else is no side, and nothing is shown."""
@@ -149,9 +151,7 @@ class _Editor(QLineEdit):
         super().__init__(parent)
         self.setMaxLength(LONGEST_TITLE)
         self.setAccessibleName(tr("Name of the line"))
-        self.setToolTip(
-            tr("Enter keeps the name, Esc the old one; nothing typed brings the usual name back.")
-        )
+        set_tip(self, tr("Enter keeps the name, Esc the old one; nothing typed brings the usual name back."))
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         if event.key() == Qt.Key.Key_Escape:
@@ -177,7 +177,7 @@ class StiffnessField(TypedField):
             "Stiffness of this line, {low} to {high} times that of the skin at a point;"
             " leave it empty to have it as the model."
         )
-        self.setToolTip(tip.format(low=low, high=number(high, 0)))
+        set_tip(self, tip.format(low=low, high=number(high, 0)))
         self.name_line("")
 
     def name_line(self, title: str) -> None:
@@ -211,7 +211,7 @@ def _plain(value: float) -> str:
     return f"{value:g}"
 
 
-class PaletteMenu(QMenu):
+class PaletteMenu(Menu):
     """The colours that a line can have; ``chosen`` carries one, or an empty text for the usual one."""
 
     chosen = Signal(str)

@@ -9,7 +9,8 @@ from PySide6.QtWidgets import QApplication, QFrame, QHBoxLayout, QVBoxLayout, QW
 
 from app.dress.parts import ToolButton, sentence
 from app.dress.spoken import speak_value
-from app.dress.theme import label, set_tag, set_tip, tokens_of
+from app.dress.theme import label, set_tag, tokens_of
+from app.dress.tip import set_tip
 from app.panels.leeway_words import length_tip
 from app.panels.length_slider import LengthSlider
 from app.panels.line_details import LineDetails

@@ -6,9 +6,10 @@ from collections.abc import Mapping
 
 from PySide6.QtCore import Signal
 from PySide6.QtGui import QActionGroup
-from PySide6.QtWidgets import QMenu, QSizePolicy
+from PySide6.QtWidgets import QSizePolicy
 
-from app.dress.parts import pull_down
+from app.dress.menu import Menu, pull_down
+from app.dress.tip import set_tip
 from app.panels.setting_field import PullDown
 from app.wording.words import tr
 
@@ -25,9 +26,9 @@ class MarkField(PullDown):
         super().__init__()
         self._none = none
         self._titles: Mapping[str, str] = {}
-        self._menu = QMenu(self)
+        self._menu = Menu(self)
         self.setAccessibleName(title)
-        self.setToolTip(tr("Choose a landmark, or click it on the body"))
+        set_tip(self, tr("Choose a landmark, or click it on the body"))
         self.setMinimumHeight(28)
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self.clicked.connect(lambda: pull_down(self._menu, self))

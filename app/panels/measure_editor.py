@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QAbstractButton, QFormLayout, QHBoxLayout, QLineEd
 
 from app.dress.parts import Segment, ToolButton, button, hairline, sentence
 from app.dress.theme import font, label, set_tag
+from app.dress.tip import set_tip
 from app.panels.figure_field import FigureField
 from app.panels.mark_field import MarkField
 from app.wording.words import tr
@@ -73,11 +74,11 @@ class MeasureEditor(QWidget):
         self.name.setMaxLength(LONGEST_NAME)
         self.name.setMinimumHeight(28)
         self.name.setAccessibleName(tr("Name of the measure"))
-        self.name.setToolTip(tr("What it is called in the table and in files"))
+        set_tip(self.name, tr("What it is called in the table and in files"))
         self.name.textEdited.connect(lambda text: self._set(name=text.strip()))
         kinds = (("straight", tr("Straight")), ("skin", tr("Over the skin")), ("girth", tr("Girth")))
         self.kind = Segment(kinds, small=True, wide=True)
-        self.kind.setToolTip(tr("Straight through the air, along the skin, or round with a level tape"))
+        set_tip(self.kind, tr("Straight through the air, along the skin, or round with a level tape"))
         self.kind.chosen.connect(lambda kind: self._set(kind=kind))
         self.start, self.end = MarkField(tr("From")), MarkField(tr("To"))
         self.at = MarkField(tr("Level of"), tr("a height"))

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from itertools import groupby
 
 from PySide6.QtCore import QEvent, QPoint, QRect, QRectF, Qt, Signal
-from PySide6.QtGui import QColor, QHelpEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
-from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
+from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.dress.press_row import press_row
 from app.dress.spoken import announce
@@ -141,12 +141,12 @@ class MeasureTable(QWidget):
         if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.ShortcutOverride:
             event.setAccepted(event.key() in _OWN_KEYS)
             return True
-        if not isinstance(event, QHelpEvent) or event.type() != QEvent.Type.ToolTip:
-            return super().event(event)
-        view = self._view_at(event.pos())
-        hidden = view is None or (view.key and view.key == self.mark)  # an open row tells it itself
-        QToolTip.showText(event.globalPos(), "" if view is None or hidden else view.told(), self)
-        return True
+        return super().event(event)
+
+    def tip_at(self, place: QPoint) -> str:
+        """Return how the measure at a place is taken, unless its open row shows that."""
+        view = self._view_at(place)
+        return "" if view is None or (view.key and view.key == self.mark) else view.told()
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Paint what lies in the part that is asked for."""

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWi
 from app.dress.door import DOOR_HEIGHT, Door, page_head
 from app.dress.parts import button, hairline, sentence
 from app.dress.theme import label, set_tag
+from app.dress.tip import set_tip
 from app.panels.setting_field import AmountField, Field, field_of
 from app.wording.model_choices import Setting, consequences, defaults, groups, summary
 from app.wording.words import colon, number, tr
@@ -103,7 +104,7 @@ class ModelPanel(QWidget):
         self.fields[setting.key] = field
         title = label(setting.title, "secondary")
         for each in (title, field):
-            each.setToolTip(f"<p>{setting.tip}</p>")  # a paragraph wraps
+            set_tip(each, setting.tip)
         field.describe(setting.title, setting.tip)
         row = QWidget()
         line = QHBoxLayout(row)

@@ -16,6 +16,7 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 from app.dress.parts import IconLabel, ToolButton, button
 from app.dress.sheet import reading
 from app.dress.theme import label, tokens_of
+from app.dress.tip import set_tip
 from app.wording.words import held_together, say, tr
 
 Action = tuple[str, Callable[[], None]]
@@ -137,7 +138,7 @@ class NoticeBar(QWidget):
         row.setSpacing(8)
         self._icon = IconLabel("info", "info", 19)
         self._words, self.more = label("", "body"), button("", "quiet")
-        self.more.setToolTip(tr("Show the next of them; this one waits"))
+        set_tip(self.more, tr("Show the next of them; this one waits"))
         self.more.clicked.connect(self._turn_over)
         self._words.setTextFormat(Qt.TextFormat.RichText)
         self._words.setWordWrap(True)

@@ -7,6 +7,7 @@ from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QFocusEvent
 
 from app.dress.theme import font
+from app.dress.tip import set_tip
 from app.panels.typed_field import TypedField
 from app.wording.words import joined, number, say, tr
 from core.errors import LineError
@@ -35,7 +36,7 @@ class NumberField(TypedField):
         self.setTextMargins(0, 0, self._unit_width(), 0)
         self.setFixedSize(self.sizeHint())
         said = tr("Type 94, −6%, −20mm, 440mm or 44cm: of the front part, 50 to 130 % of its length at rest.")
-        self.setToolTip(said)
+        set_tip(self, said)
         self.name_line("")
 
     def sizeHint(self) -> QSize:

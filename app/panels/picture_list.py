@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFontMetricsF, QImage, QPainter, QPainterPath, QPen
+from PySide6.QtGui import QColor, QFontMetricsF, QHelpEvent, QImage, QPainter, QPainterPath, QPen
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QListWidget,
@@ -20,6 +20,7 @@ from PySide6.QtWidgets import (
 
 from app.dress.icons import paint_icon
 from app.dress.theme import font, tokens_of
+from app.dress.tip import show_tip
 from app.wording.words import tr
 
 VIEW, PRESENT = Qt.ItemDataRole.UserRole, Qt.ItemDataRole.UserRole + 1
@@ -70,7 +71,7 @@ class PaintedList(QListWidget):
             item = QListWidgetItem(view.title, self)
             item.setData(VIEW, view)
             said = "  ".join((view.time, *view.words))
-            item.setToolTip(f"{view.title}\n{said}")
+            item.setData(Qt.ItemDataRole.ToolTipRole, f"{view.title}\n{said}")
             item.setData(Qt.ItemDataRole.AccessibleDescriptionRole, said)
             self.mark(item, view.present)
 
@@ -103,6 +104,17 @@ class RowPainter(QStyledItemDelegate):
         painter.drawRoundedRect(area, 6, 6)
         self.paint_row(painter, area, index)
         painter.restore()
+
+    def helpEvent(
+        self,
+        event: QHelpEvent,
+        view: QAbstractItemView,
+        option: QStyleOptionViewItem,
+        index: QModelIndex | QPersistentModelIndex,
+    ) -> bool:
+        """Show the tooltip of a row."""
+        show_tip(event.globalPos(), index.data(Qt.ItemDataRole.ToolTipRole) or "", view.viewport())
+        return True
 
     def paint_row(self, painter: QPainter, area: QRectF, index: QModelIndex | QPersistentModelIndex) -> None:
         """Paint what stands in a row."""

@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QGridLayout, QWidget
 from app.dress.parts import sentence
 from app.dress.sheet import Sheet
 from app.dress.theme import label
+from app.dress.tip import set_tip
 from app.panels.setting_field import Field, field_of
 from app.wording.model_choices import Amount, Choice, Setting
 from app.wording.words import LANGUAGES, tr
@@ -40,7 +41,7 @@ class PreferencesSheet(Sheet):
         self.body.addLayout(grid)
         self.body.addStretch(1)
         log = self.add_button(tr("Open the log folder"), self.log_asked.emit, "quiet")
-        log.setToolTip(tr("Busk writes faults there, never a scan or its measures"))
+        set_tip(log, tr("Busk writes faults there, never a scan or its measures"))
         self.foot.removeWidget(log)
         self.foot.insertWidget(0, log)
         self.add_close()
@@ -54,7 +55,7 @@ class PreferencesSheet(Sheet):
         name, tip = label(setting.title, "body"), sentence(setting.tip, "caption")
         field.describe(setting.title, setting.tip)
         for each in (name, field):
-            each.setToolTip(f"<p>{setting.tip}</p>")
+            set_tip(each, setting.tip)
         field.chosen.connect(lambda chosen: self._choose(setting.key, chosen))
         self.fields[setting.key] = field
         tip.setContentsMargins(0, 0, 0, 8)

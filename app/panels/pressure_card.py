@@ -12,7 +12,8 @@ from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from app.dress.folded_list import folded_list
 from app.dress.parts import ToolButton, button, hairline, sentence
-from app.dress.theme import font, label, set_tag, set_tip, tokens_of
+from app.dress.theme import font, label, set_tag, tokens_of
+from app.dress.tip import set_tip
 from app.wording.words import number, tr
 
 LIGHTS = ("green", "amber", "red")
@@ -110,7 +111,7 @@ class PressureScale(QWidget):
         """Show where lines stand: title, colour, pressure [kPa]."""
         self.marks, self._faint = marks, faint
         said = [f"{title} {number(kpa)} kPa" for title, _, kpa in marks]
-        self.setToolTip("\n".join(said))
+        set_tip(self, "\n".join(said))
         self.setAccessibleName(", ".join(said))
         self.update()
 

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QHBoxLayout, QSlider, QStyle, QStyleOptionSlider, 
 from app.dress.parts import FloatingPanel, ToolButton
 from app.dress.spoken import speak_value
 from app.dress.theme import font, label, tokens_of
+from app.dress.tip import set_tip
 from app.dress.wishes import wish, wish_for
 from app.panels.figure_field import FigureField
 from app.showing.live_plot import PullTitle, Quantity
@@ -61,7 +62,7 @@ class ProfilePanel(FloatingPanel):
         column.addLayout(self._head())
         self.plot = ProfilePlot()
         self.plot.setAccessibleName(tr("Curves of the section in millimetres"))
-        self.plot.setToolTip(tr("Wheel: zoom. Drag: move. Double click: all that changed."))
+        set_tip(self.plot, tr("Wheel: zoom. Drag: move. Double click: all that changed."))
         column.addWidget(self.plot)
         column.addLayout(self._place_row())
         self.keys = CurveKeys()
@@ -105,7 +106,7 @@ class ProfilePanel(FloatingPanel):
         self.fold.setEnabled(not self._cramped)
         said = tr("Show the curves") if folded else tr("Fold the curves away")
         self.fold.setAccessibleName(tr("No room for the curves here") if self._cramped else said)
-        self.fold.setToolTip(self.fold.accessibleName())
+        set_tip(self.fold, self.fold.accessibleName())
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if isinstance(event, QResizeEvent) and watched is self.parent():
@@ -122,7 +123,7 @@ class ProfilePanel(FloatingPanel):
         row.setSpacing(6)
         self.slider = PlaneSlider()
         self.slider.setAccessibleName(tr("Place of the section plane"))
-        self.slider.setToolTip(tr("Move the section plane [mm]; ← → 0.5 mm"))
+        set_tip(self.slider, tr("Move the section plane [mm]; ← → 0.5 mm"))
         self.slider.setPageStep(10 * STEPS)
         self.slider.valueChanged.connect(lambda value: self.moved.emit(value / STEPS))
         self._axis = label("", "caption")
@@ -137,7 +138,7 @@ class ProfilePanel(FloatingPanel):
         head = QHBoxLayout()
         head.setSpacing(2)
         self.title = PullTitle(list(self._axes.values()))
-        self.title.setToolTip(tr("Choose the plane, or write its curves to a file"))
+        set_tip(self.title, tr("Choose the plane, or write its curves to a file"))
         self.title.chosen.connect(self.axis_chosen)
         menu = self.title.menu
         menu.addSeparator()
@@ -227,8 +228,8 @@ class CurveKeys(QWidget):
             "other": tr("other side, mirrored"),
             "band": tr("may be off"),
         }
-        self.setToolTip(
-            tr("Each place of the skin lies within the band in 95 % of cases, if errors are normal.")
+        set_tip(
+            self, tr("Each place of the skin lies within the band in 95 % of cases, if errors are normal.")
         )
         self.setFixedHeight(self.sizeHint().height())
 

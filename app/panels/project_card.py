@@ -20,11 +20,13 @@ from PySide6.QtGui import (
     QPen,
     QRadialGradient,
 )
-from PySide6.QtWidgets import QAbstractButton, QMenu
+from PySide6.QtWidgets import QAbstractButton
 
 from app.dress.icons import paint_icon
+from app.dress.menu import Menu
 from app.dress.parts import ToolButton
 from app.dress.theme import font, tokens_of
+from app.dress.tip import set_tip
 from app.wording.words import tr
 
 WIDTH, HEIGHT, PICTURE = 218, 272, 208
@@ -70,7 +72,7 @@ class ProjectCard(QAbstractButton):
         said = tr("It is no longer there.") if view.gone else view.look
         self.setAccessibleName(view.name)
         self.setAccessibleDescription("  ".join(filter(None, (view.day, said))))
-        self.setToolTip("<p>{}</p>".format("<br>".join(filter(None, (view.path, said)))))
+        set_tip(self, "\n".join(filter(None, (view.path, said))))
         self.clicked.connect(self._act)
         self._remove = ToolButton("x", tr("Remove from this list (Del)"), size=14, room=26)
         self._remove.setParent(self)
@@ -106,7 +108,7 @@ class ProjectCard(QAbstractButton):
             super().keyPressEvent(event)
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
-        menu = QMenu(self)
+        menu = Menu(self)
         for text, act in (
             (tr("Locate…") if self.view.gone else tr("Open"), self._act),
             (tr("Remove from this list"), self._forget),

@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QAbstractButton, QButtonGroup, QVBoxLayout, QWidge
 from app.dress.icons import paint_icon
 from app.dress.parts import ToolButton, paint_card
 from app.dress.theme import font, tokens_of
+from app.dress.tip import set_tip
 from app.wording.words import tr
 
 STEP_ICONS = {"scan": "scan", "landmarks": "map-pin", "lines": "lines", "result": "result"}
@@ -76,7 +77,7 @@ class RailItem(QAbstractButton):
         self.setText(title)
         self.setCheckable(True)
         self.setAutoExclusive(True)
-        self.setToolTip(f"{title}  {key.toString(QKeySequence.SequenceFormat.NativeText)}")
+        set_tip(self, f"{title}  {key.toString(QKeySequence.SequenceFormat.NativeText)}")
         self.setAccessibleName(title)
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QScrollArea, QVBoxLay
 
 from app.dress.parts import EmptyState, Segment, button, hairline, sentence
 from app.dress.theme import label, set_tag
+from app.dress.tip import set_tip
 from app.wording.scan_formats import KINDS
 from app.wording.words import number, say, tr
 
@@ -136,7 +137,7 @@ class ScanPanel(QWidget):
             "up": tr("The axis of the file that points to the head"),
             "front": tr("The axis of the file that the body faces"),
         }
-        result.setToolTip(tips[key])
+        set_tip(result, tips[key])
         result.chosen.connect(lambda value: self.told.emit(key, value))
         return result
 
@@ -149,7 +150,7 @@ class ScanPanel(QWidget):
         self.pictures = button(tr("Choose by pictures…"))
         self.pictures.clicked.connect(self.front_asked)
         self._forget = button(tr("As found"), "quiet")
-        self._forget.setToolTip(tr("Forget what was said of unit, up and front: find them again"))
+        set_tip(self._forget, tr("Forget what was said of unit, up and front: find them again"))
         self._forget.clicked.connect(lambda: self.told.emit("", ""))
         for each in (self.pictures, self._forget):
             row.addWidget(each)

@@ -7,11 +7,13 @@ from typing import Any
 
 from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QAction, QActionGroup, QKeyEvent, QPainter, QPaintEvent
-from PySide6.QtWidgets import QHBoxLayout, QMenu, QPushButton, QSizePolicy, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSizePolicy, QWidget
 
 from app.dress.icons import paint_icon
+from app.dress.menu import Menu
 from app.dress.parts import Segment
 from app.dress.theme import font, tokens_of
+from app.dress.tip import set_tip
 from app.panels.typed_field import TypedField, read_figure
 from app.wording.model_choices import Amount, Choice, Setting
 from app.wording.words import number, tr
@@ -28,7 +30,7 @@ class Field(QWidget):
 
     def describe(self, title: str, tip: str) -> None:
         """Tell those who do not see the title what this is."""
-        self.setToolTip(f"<p>{tip}</p>")
+        set_tip(self, tip)
         self._inside.setAccessibleName(title)
         self._inside.setAccessibleDescription(tip)
 
@@ -64,7 +66,7 @@ class MenuField(Field):
     def __init__(self, choice: Choice) -> None:
         super().__init__()
         self._choice = choice
-        self._menu = QMenu(self)
+        self._menu = Menu(self)
         group = QActionGroup(self._menu)
         self.actions_by_value: dict[Any, QAction] = {}
         for value, words in choice.options:

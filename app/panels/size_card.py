@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QPushButton, QVB
 
 from app.dress.parts import Disclosure, button, hairline, sentence
 from app.dress.theme import font, label, set_tag
+from app.dress.tip import set_tip
 from app.panels.figure_field import FigureField
 from app.wording.words import number, tr
 from core.sizes import ALLOWANCE
@@ -103,7 +104,7 @@ class SizeCard(QWidget):
             return
         main = next((view for view in views if view.key == chosen), views[0])
         self.main.setText(main.title)
-        self.main.setToolTip(main.tip)
+        set_tip(self.main, main.tip)
         self.caution.setText(main.caution)
         self.within.setText(main.within)
         self.within.setVisible(bool(main.within))
@@ -132,7 +133,7 @@ class SizeCard(QWidget):
         for view in views:
             press = self.button(view.key)
             press.setText(view.title)
-            press.setToolTip(view.tip)
+            set_tip(press, view.tip)
             press.setAccessibleName(f"{view.title} {view.caution}".rstrip())
             self._cautions[view.key].setText(view.caution)
             self._cautions[view.key].setVisible(bool(view.caution))

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QLineEdit, QScrollArea, QVBox
 from app.dress.icons import icon
 from app.dress.parts import EmptyState, IconLabel, button, hairline, sentence
 from app.dress.theme import label, set_tag, tokens_of
+from app.dress.tip import set_tip
 from app.panels.drop_zone import DropZone
 from app.panels.project_card import HEIGHT, WIDTH, ProjectCard, ProjectView
 from app.wording.samples import SAMPLES
@@ -95,12 +96,12 @@ class StartPage(QWidget):
         tour.clicked.connect(self.tour_asked)
         column.addWidget(tour)
         guide = button(tr("First customer in ten minutes"), "quiet")
-        guide.setToolTip(tr("In the user guide, which opens in the browser"))
+        set_tip(guide, tr("In the user guide, which opens in the browser"))
         guide.clicked.connect(self.guide_asked)
         column.addWidget(guide)
         column.addStretch(1)
         self.back = button("", "secondary")
-        self.back.setToolTip(tr("Back to what is open  Esc"))
+        set_tip(self.back, tr("Back to what is open  Esc"))
         self.back.clicked.connect(self.left)
         self.back.hide()
         column.addWidget(self.back)
@@ -165,7 +166,7 @@ class StartPage(QWidget):
         search = QLineEdit()
         search.setPlaceholderText(tr("Search"))
         search.setAccessibleName(tr("Search the recent files"))
-        search.setToolTip(tr("Show only files with these letters in their names"))
+        set_tip(search, tr("Show only files with these letters in their names"))
         search.setClearButtonEnabled(True)
         search.setFixedSize(220, 30)
         self._glass = QAction(self)

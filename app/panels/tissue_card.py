@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.dress.parts import hairline, sentence
 from app.dress.theme import label
+from app.dress.tip import set_tip
 from app.panels.figure_field import FigureField
 from app.wording.words import number, tr
 from core.design_elastics import TISSUE_LIMITS, TISSUE_STIFFNESS
@@ -31,7 +32,7 @@ class TissueCard(QWidget):
         column.setSpacing(4)
         row = QHBoxLayout()
         words = label(tr("Stiffness of skin and tissue"), "secondary")
-        words.setToolTip(self.field.toolTip())
+        set_tip(words, self.field.toolTip())
         row.addWidget(words, 1)
         row.addWidget(self.field)
         column.addWidget(hairline())
@@ -54,7 +55,7 @@ class _TissueField(FigureField):
             " It was not measured on this body: all newtons go with it, and how far elastics pull it in."
         )
         low, high = TISSUE_LIMITS
-        self.setToolTip(tip.format(low=f"{low:g}", high=f"{high:g}", usual=f"{TISSUE_STIFFNESS:g}"))
+        set_tip(self, tip.format(low=f"{low:g}", high=f"{high:g}", usual=f"{TISSUE_STIFFNESS:g}"))
 
     def _read(self, text: str) -> float:
         value, (low, high) = super()._read(text.replace("N/m", "")), TISSUE_LIMITS

@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLayout, QMenuBar, QWidg
 
 from app.dress.parts import ToolButton, button
 from app.dress.theme import label, tokens_of
+from app.dress.tip import set_tip
 from app.wording.words import tr
 
 
@@ -35,7 +36,7 @@ class TopBar(QWidget):
         right.addSpacing(8)
         self.export = button(tr("Export…"))
         self.export.setEnabled(export.isEnabled())
-        self.export.setToolTip(export.toolTip())
+        set_tip(self.export, export.toolTip())
         self.export.clicked.connect(export.trigger)
         export.enabledChanged.connect(self.export.setEnabled)
         right.addWidget(self.export)
@@ -52,7 +53,7 @@ class TopBar(QWidget):
         """Put what the work leads to at the end."""
         self.primary = button(action.text(), "primary")
         self.primary.setEnabled(action.isEnabled())
-        self.primary.setToolTip(action.toolTip())
+        set_tip(self.primary, action.toolTip())
         self.primary.clicked.connect(action.trigger)
         action.enabledChanged.connect(self.primary.setEnabled)
         self._right.addSpacing(8)
@@ -72,7 +73,7 @@ class TopBar(QWidget):
         middle.setSpacing(8)
         self._title = label("", "name")
         self._dot = _Dot()
-        self._dot.setToolTip(tr("Not saved"))
+        set_tip(self._dot, tr("Not saved"))
         self._dot.setAccessibleName(tr("Not saved"))
         middle.addWidget(self._title)
         middle.addWidget(self._dot)

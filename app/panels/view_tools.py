@@ -7,6 +7,7 @@ from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QWidget
 
 from app.dress.parts import FloatingPanel, Segment, ToolButton, hairline
+from app.dress.tip import set_tip
 from app.wording.words import tr
 
 VIEWS = ("front", "left", "right", "back", "three-quarter", "top")
@@ -45,7 +46,7 @@ class Toolbar(FloatingPanel):
         """Return an action that menus and keys have, without a button."""
         action = self.actions_by_name[name] = QAction(title, self)
         action.setShortcut(key)
-        action.setToolTip(f"{title}  {key}")
+        set_tip(action, f"{title}  {key}")
         return action
 
     def _rule(self) -> None:
@@ -117,7 +118,7 @@ class CompareTools(Toolbar):
         self._segment = Segment((("before", tr("Before")), ("after", tr("After"))))
         self._segment.chosen.connect(self.way_chosen)
         for name in ("before", "after"):
-            self._segment.button(name).setToolTip(tr("Body at rest and reshaped  Space"))
+            set_tip(self._segment.button(name), tr("Body at rest and reshaped  Space"))
         self.row.addWidget(self._segment)
         self.row.addSpacing(4)
         self._add_layer("ghost", "ghost", tr("Body at rest as a fringe"), "G")

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QScrollA
 from app.dress.door import page_head
 from app.dress.parts import ElidedLabel, Segment, button, hairline, sentence
 from app.dress.theme import font, label, set_tag
+from app.dress.tip import set_tip
 from app.panels.figure_field import FigureField
 from app.wording.words import tr
 from core.calibration import THICKEST
@@ -159,8 +160,9 @@ class WornPage(QWidget):
         row.addWidget(self.calibrate)
         row.addStretch(1)
         column.addLayout(row)
-        self.calibrate.setToolTip(
-            tr("Find the numbers of tissue and lines at which the prediction comes nearest to the worn scan")
+        set_tip(
+            self.calibrate,
+            tr("Find the numbers of tissue and lines at which the prediction comes nearest to the worn scan"),
         )
 
     def _lay_found(self, column: QVBoxLayout) -> None:

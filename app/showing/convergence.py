@@ -4,13 +4,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Protocol
 
 from PySide6.QtCore import QEvent, QObject, QPoint, QSize, Qt, Signal
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QMenu, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QSizePolicy, QVBoxLayout, QWidget
 
-from app.dress.parts import Segment, ToolButton, sentence
+from app.dress.menu import Menu
+from app.dress.parts import ToolButton, sentence
 from app.dress.theme import label
+from app.dress.tip import set_tip
+from app.showing.control_choice import control_segment
 from app.showing.live_plot import LivePlot
 from app.showing.plot_canvas import Turns
 from app.showing.plot_curves import Curve, Event
@@ -18,9 +22,6 @@ from app.showing.plot_legend import Entry, Legend, legend_entries, legend_width,
 from app.showing.tracks import Exact, Track, error_quantities, height_quantities, tolerance_of
 from app.showing.verdict_chip import VerdictChip, VerdictLine
 from app.wording.words import tr
-
-CONTROLS = ("adaptive", "conventional", "none", "exact")
-"""Ways to control the volume, as named in the run."""
 
 _HIGH, _LOW, _FOLDED = 172, 150, 36
 
@@ -82,7 +83,7 @@ class Strip(QWidget):
         for plot in self.plots:
             plot.setMinimumWidth(120)  # a legend gives way, the plot does not
             plot.installEventFilter(self)
-        self._body, self._line = QWidget(), QWidget()
+        self._body, self._line, self._turns = QWidget(), QWidget(), label("", "secondary", tabular=True)
         self._build_body()
         self._build_line()
         self._build_menu()
@@ -161,7 +162,7 @@ class Strip(QWidget):
         self.chip.set_state(verdict.state)
         self._small_chip.set_state(verdict.state)
         self._turns.setText(verdict.pace)
-        self._turns.setToolTip(f"<p>{verdict.effort}</p>")
+        set_tip(self._turns, verdict.effort)
         pairs = verdict.numbers[: len(self._pairs)]
         for place, (name, value) in enumerate(self._pairs):
             pair = pairs[place] if place < len(pairs) else ("", "")
@@ -173,7 +174,7 @@ class Strip(QWidget):
         self._said.show_parts((verdict.hint, *said, verdict.pace))  # what to do stands first
 
     def set_control(self, control: str) -> None:
-        """Show which of ``CONTROLS`` is on; nothing is emitted."""
+        """Show which of the controls is on; nothing is emitted."""
         self._segment.set_choice(control)
 
     def is_folded(self) -> bool:
@@ -199,7 +200,7 @@ class Strip(QWidget):
         row.setContentsMargins(14, 7, 6, 7)
         row.setSpacing(18)
         row.addLayout(self._verdict())
-        self._nothing = sentence(tr("The plots fill while you drag a line."), "secondary")
+        self._nothing = sentence(tr("The plots fill while you drag a line."))
         self._nothing.setAlignment(Qt.AlignmentFlag.AlignCenter)
         plots = QGridLayout()
         plots.setHorizontalSpacing(18)
@@ -229,16 +230,15 @@ class Strip(QWidget):
         self.menu.exec(at)
 
     def _build_menu(self) -> None:
-        self.menu = QMenu(self)
+        self.menu = Menu(self)
         for kind, text in (
             ("csv", tr("Save the turns as a table (CSV)…")),
             ("png", tr("Save the plots as a picture (PNG)…")),
             ("svg", tr("Save the plots as a drawing (SVG)…")),
         ):
-            entry = self.menu.addAction(text)
-            entry.triggered.connect(lambda _=False, kind=kind: self.export_asked.emit(kind))
+            self.menu.addAction(text, partial(self.export_asked.emit, kind))
         self.menu.addSeparator()
-        self.menu.addAction(tr("Show all turns")).triggered.connect(lambda: self.show_turns(None))
+        self.menu.addAction(tr("Show all turns"), partial(self.show_turns, None))
 
     def _verdict(self) -> QVBoxLayout:
         column = QVBoxLayout()
@@ -246,7 +246,6 @@ class Strip(QWidget):
         head = QHBoxLayout()
         head.addWidget(self.chip)
         head.addStretch(1)
-        self._turns = label("", "secondary", tabular=True)
         head.addWidget(self._turns)
         column.addLayout(head)
         column.addSpacing(4)
@@ -266,10 +265,7 @@ class Strip(QWidget):
         column.addSpacing(2)
         column.addWidget(self._hint)
         column.addStretch(1)
-        titles = (tr("Adaptive"), tr("Conventional"), tr("Off"), tr("Exact"))
-        self._segment = Segment(tuple(zip(CONTROLS, titles, strict=True)), small=True)
-        for control, tip in zip(CONTROLS, _control_tips(), strict=True):
-            self._segment.button(control).setToolTip(f"<p>{tip}</p>")  # a paragraph wraps
+        self._segment = control_segment()
         self._segment.chosen.connect(self.control_chosen)
         column.addWidget(self._segment)
         return column
@@ -289,12 +285,3 @@ class Strip(QWidget):
         self._nothing.setVisible(empty)
         for each in (self.chip, self._small_chip, *self.plots):
             each.setVisible(not empty)
-
-
-def _control_tips() -> tuple[str, str, str, str]:
-    return (
-        tr("Keeps the volume with an adaptive force: it learns in each turn how strong it must be"),
-        tr("Keeps the volume with a force in proportion to the volume error; it may vibrate"),
-        tr("Does not keep the volume"),
-        tr("Keeps the volume exactly: the balance is solved at once"),
-    )

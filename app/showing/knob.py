@@ -8,6 +8,7 @@ from PySide6.QtCore import QEvent, QObject, QPointF, Qt, Signal
 from PySide6.QtGui import QEnterEvent, QHideEvent, QMouseEvent
 from PySide6.QtWidgets import QWidget
 
+from app.dress.tip import set_tip
 from app.showing.viewport import Viewport
 from core.mesh import Floats
 
@@ -32,7 +33,7 @@ class Knob(QWidget):
         self.setFixedSize(size, size)
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.setAccessibleName(name)
-        self.setToolTip(tip)
+        set_tip(self, tip)
         viewport.view_changed.connect(self._stand_anew)
         viewport.installEventFilter(self)
         self.hide()

@@ -8,10 +8,12 @@ from dataclasses import dataclass
 
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QActionGroup, QColor, QFontMetrics, QPainter, QPaintEvent, QPen
-from PySide6.QtWidgets import QAbstractButton, QHBoxLayout, QMenu, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QAbstractButton, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from app.dress.icons import pixmap
+from app.dress.menu import Menu
 from app.dress.theme import font, tokens_of
+from app.dress.tip import set_tip
 from app.showing.plot_canvas import PlotCanvas, Turns
 from app.showing.plot_curves import Curve, Event, Plotted
 from app.showing.plot_painting import is_dense
@@ -132,8 +134,8 @@ class PullTitle(QAbstractButton):
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
         if self._pulls:
             self.setCursor(Qt.CursorShape.PointingHandCursor)
-            self.setToolTip(tr("Choose what is plotted"))
-        self.menu = QMenu(self)
+            set_tip(self, tr("Choose what is plotted"))
+        self.menu = Menu(self)
         group = QActionGroup(self)
         self._entries = {}
         for each in quantities:

@@ -8,6 +8,7 @@ from PySide6.QtCore import QPointF, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QPolygonF
 
 from app.dress.theme import tokens_of
+from app.dress.tip import set_tip
 from app.seeing.framing import sheet_ends
 from app.showing.knob import Knob
 from app.showing.viewport import Viewport
@@ -96,7 +97,7 @@ class PlaneHandle(Knob):
         self.at_eye = bool(np.linalg.norm(way[:2]) < _FLATTEST * full)
         said = tr("Drag to move the section plane; Shift: finer, Esc: back")
         towards = tr("Up moves it away from you, down towards you.")
-        self.setToolTip("\n".join((said, towards)) if self.at_eye else said)
+        set_tip(self, "\n".join((said, towards)) if self.at_eye else said)
         if not self.at_eye:
             return way[:2]
         return np.array([0.0, full if plane.normal @ back > 0.0 else -full])

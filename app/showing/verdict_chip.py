@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QAbstractButton, QLabel, QSizePolicy
 
 from app.dress.icons import paint_icon, pixmap
 from app.dress.theme import font, tokens_of
+from app.dress.tip import set_tip
 from app.wording.words import tr
 
 TONES = {
@@ -146,7 +147,7 @@ class VerdictChip(QAbstractButton):
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents, not on)
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus if on else Qt.FocusPolicy.NoFocus)
         self.setCursor(Qt.CursorShape.PointingHandCursor if on else Qt.CursorShape.ArrowCursor)
-        self.setToolTip(tr("Say what fights in this design, and what ends it") if on else "")
+        set_tip(self, tr("Say what fights in this design, and what ends it") if on else "")
 
     def _run_spin(self) -> None:
         if self._state == "settling" and self.isVisible():
@@ -168,6 +169,7 @@ class VerdictLine(QLabel):
     def __init__(self) -> None:
         super().__init__()
         self._parts: tuple[str, ...] = ()
+        self.setTextFormat(Qt.TextFormat.PlainText)
         self.setFont(font("secondary", tabular=True))
         self.setProperty("role", "secondary")
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
@@ -176,7 +178,7 @@ class VerdictLine(QLabel):
         """Show these parts; empty ones are none."""
         self._parts = tuple(filter(None, parts))
         self.setText(_GAP.join(self._parts))
-        self.setToolTip(f"<p>{self.text()}</p>" if self._parts else "")
+        set_tip(self, self.text() if self._parts else "")
 
     def seen(self) -> str:
         """Return what there is room for."""

@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QAbstractSlider, QWidget
 from app.dress.icons import pixmap
 from app.dress.spoken import speak_value
 from app.dress.theme import tokens_of
+from app.dress.tip import set_tip
 from app.wording.words import tr
 
 REACH = 12
@@ -40,7 +41,7 @@ class WipeHandle(QAbstractSlider):
         self.setCursor(Qt.CursorShape.SplitHCursor)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAccessibleName(tr("Border between before and after"))
-        self.setToolTip(tr("Drag, or use the arrow keys. A double click puts it in the middle."))
+        set_tip(self, tr("Drag, or use the arrow keys. A double click puts it in the middle."))
         self._room = parent
         self._grip = 0.0
         self._bare = False
