@@ -23,6 +23,7 @@ from PySide6.QtWidgets import QApplication
 from app.dress.icons import program_icon
 from app.dress.theme import apply_theme, load_fonts
 from app.dress.wishes import wish
+from app.helping.log import LimitedLog, trim
 from app.wording.words import use_language
 from core import __version__
 from core.errors import UserError
@@ -138,12 +139,12 @@ def log_kept() -> Iterator[Path]:
     folder = log_folder()
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        trim(folder / "crash.log")
         crashes = open(folder / "crash.log", "a", encoding="utf-8")  # noqa: SIM115 - closed below
     except OSError:
         yield folder
         return
-    handler = logging.FileHandler(folder / "busk.log", encoding="utf-8", delay=True)
-    handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
+    handler = LimitedLog(folder / "busk.log")
     logging.getLogger().addHandler(handler)
     hooks, told = (sys.excepthook, threading.excepthook), faulthandler.is_enabled()
     sys.excepthook = _log_fault

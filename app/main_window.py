@@ -168,6 +168,11 @@ class MainWindow(QMainWindow):
         """Keep the design aside after a fault; returns where, or an empty text if it was not kept."""
         return self.keeping_desk.rescue()
 
+    def end(self) -> None:
+        """Close without a question; what is not saved stays where it is kept aside, for the next start."""
+        self.keeping_desk.leaves = True
+        self.close()
+
     def focusNextPrevChild(self, next: bool) -> bool:  # noqa: N802
         """Lead the keyboard in the order that eyes read, whenever the parts were made."""
         return self.layout_.next_stop(next)
@@ -195,7 +200,7 @@ class MainWindow(QMainWindow):
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
         """Ask about changes; then solver, background work and 3D view end before the window does."""
-        if not self.desk.may_leave():
+        if not self.keeping_desk.leaves and not self.desk.may_leave():
             event.ignore()
             return
         self.layout_.keep()

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from app.application import application, hand_files_to, log_kept
 from app.dress.first_paint import when_painted
+from app.helping.termination import Termination
 from app.keeping.recent import file_at_start, is_first_start
 from app.showing.graphics import begin_graphics, graphics_work
 from app.wording.display import has_display
@@ -18,6 +19,8 @@ from core.design import Design
 from core.errors import UserError
 
 if TYPE_CHECKING:
+    from PySide6.QtWidgets import QApplication
+
     from app.main_window import MainWindow
 
 
@@ -46,11 +49,21 @@ def run_window(file: str | None = None, safe: bool = False) -> int:
         window.recovery_desk.look()
         if first:
             window.start_desk.tour.begin_when_settled()
-        code = app.exec()
+        code = _run(app, window)
         hand_files_to(None)
         graphics_work()
     # What the window leaves is taken away here, in the thread that it belongs to.
     gc.collect()
+    return code
+
+
+def _run(app: QApplication, window: MainWindow) -> int:
+    """Run the event loop until the window is closed or a signal ends the program; returns the exit code."""
+    termination = Termination(window)
+    code = app.exec()
+    termination.close()
+    if termination.code:
+        window.end()
     return code
 
 

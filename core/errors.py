@@ -13,6 +13,15 @@ class UserError(Exception):
         return f"{self.message} {self.hint}".strip()
 
 
+def as_exception(error: BaseException) -> Exception:
+    """Return what a thread raised as an Exception: SystemExit and its like become a RuntimeError."""
+    if isinstance(error, Exception):
+        return error
+    wrapped = RuntimeError(f"{type(error).__name__} in a thread: {error}")
+    wrapped.__cause__ = error
+    return wrapped
+
+
 class ScanError(UserError):
     """The scan cannot be read, or it is not an upper body."""
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from core.comparison import Comparison
+from core.errors import UserError
 from core.mesh import Points
 from core.pipeline import Stages
 from core.solver import Marks, Record
@@ -44,6 +45,13 @@ class Failure:
 
     revision: int
     error: Exception
+
+    @property
+    def refuses(self) -> bool:
+        """Whether the design itself cannot be solved, for a reason that the user can change; else the fault
+        is in the program or the machine.
+        """
+        return isinstance(self.error, UserError)
 
 
 def make_frame(revision: int, stages: Stages, comparison: Comparison, seconds: float = 0.0) -> Frame:

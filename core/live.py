@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import threading
 import time
+import traceback
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 
 from threadpoolctl import threadpool_limits
@@ -17,7 +19,7 @@ from core import kernels
 from core.answer import NoBalanceError
 from core.comparison import Comparison
 from core.design import Design
-from core.errors import UserError
+from core.errors import UserError, as_exception
 from core.frame import Failure, Frame, make_frame
 from core.pipeline import Stages, StuckError, build, targets_of
 from core.progress import Cancelled, Progress, quiet
@@ -75,7 +77,7 @@ class LiveSolver:
         self._frame: Frame | None = None
         self._asked_at = self._shown_at = 0.0
         self._failure: Failure | None = None
-        self._revision = 0
+        self._revision = self._asked = self._taken = 0
         self._stopping = False
         self._stages: Stages | None = None
         self._stuck: StuckError | None = None
@@ -155,43 +157,49 @@ class LiveSolver:
     def _work(self) -> None:
         # Two BLAS threads make these small products many times slower.
         with threadpool_limits(1):
-            asked = taken = 0
-            while True:
-                with self._wake:
-                    while (patience := self._patience()) != 0.0:
-                        self._wake.wait(patience)
-                    if self._stopping:
-                        return
-                    request, self._request = self._request, None
+            while not self._stopping:
                 try:
-                    if request is not None:
-                        asked = request.revision
-                        self._take(request)
-                        self._refuse_what_has_no_balance()
-                        # Only now: the frames after a failure are still those of the design before it.
-                        taken = asked
-                    unseen = request is None and self._frame is not None
-                    self._advance(_FIRST_SLICE if request else _LONG_SLICE if unseen else _SLICE)
-                    self._refuse_what_has_no_balance()
-                    if self._stages is not None and self._comparison is not None:
-                        self._publish(make_frame(taken, self._stages, self._comparison, self._seconds))
-                        self._warm_up(self._stages)
+                    self._serve()
                 except Cancelled:
                     pass
                 except UserError as error:
-                    # It is kept as long as it is shown: not so what every caller on its way held.
-                    self._fail(Failure(asked, error.with_traceback(None)))
-                except Exception as error:
-                    # A fault of ours: do not run into it again with every turn; the window shows it.
+                    # It is kept while it is shown, what its callers held is not.
+                    self._fail(Failure(self._asked, error.with_traceback(None)))
+                except BaseException as error:
+                    # A fault, SystemExit included: no iterations before the next request. Arrays of the
+                    # callers are released, as memory may be short.
                     self._comparison = None
-                    self._fail(Failure(asked, error))
+                    traceback.clear_frames(error.__traceback__)
+                    self._fail(Failure(self._asked, as_exception(error)))
                 time.sleep(_NAP)
+
+    def _serve(self) -> None:
+        """Wait until there is something to do, then build what was requested, iterate, publish a frame."""
+        with self._wake:
+            while (patience := self._patience()) != 0.0:
+                self._wake.wait(patience)
+            request, self._request = self._request, None
+        if request is not None and not self._stopping:
+            self._asked = request.revision
+            self._take(request)
+            self._refuse_what_has_no_balance()
+            # Only now: the frames after a failure are still those of the design before it.
+            self._taken = self._asked
+        unseen = request is None and self._frame is not None
+        advanced = self._advance(_FIRST_SLICE if request else _LONG_SLICE if unseen else _SLICE)
+        self._refuse_what_has_no_balance()
+        if self._stages is None or self._comparison is None or not (request or advanced):
+            return
+        self._publish(make_frame(self._taken, self._stages, self._comparison, self._seconds))
+        self._warm_up(self._stages)
 
     def _warm_up(self, stages: Stages) -> None:
         """Load the compiled loops once a body is shown that is large enough to gain from them."""
         if self._warmer is None and len(stages.moving.vertices) >= LARGE:
-            self._warmer = threading.Thread(target=kernels.warm, name="busk-warm", daemon=True)
-            self._warmer.start()
+            warmer = threading.Thread(target=kernels.warm, name="busk-warm", daemon=True)
+            with suppress(RuntimeError):  # memory for a thread is missing: the loops stay as they are
+                warmer.start()
+                self._warmer = warmer
 
     def _patience(self) -> float | None:
         """Return in how many seconds there is something to do; None while nobody asks for anything."""
@@ -207,10 +215,6 @@ class LiveSolver:
         if self._comparison is None or self._comparison.resting or (unseen and self._pace is not None):
             return None
         return max(min(self._shown_at + _NEXT_MOVE, rests_at) - now, self._pause, 0.0)
-
-    @property
-    def _called(self) -> bool:
-        return self._stopping or self._request is not None
 
     @property
     def _pause(self) -> float:
@@ -252,21 +256,24 @@ class LiveSolver:
             self._comparison.retarget(stages.model, targets, request.fresh)
         self._seconds = time.perf_counter() - start
 
-    def _advance(self, seconds: float) -> None:
-        comparison = self._comparison
+    def _advance(self, seconds: float) -> bool:
+        """Make turns for so many seconds; returns whether there was time for one."""
+        comparison, advanced = self._comparison, False
         if comparison is None:
-            return
+            return False
         end = time.perf_counter() + seconds
         while not comparison.resting and (start := time.perf_counter()) < end:
-            if self._held and not self._called:
+            if self._held and not (self._stopping or self._request):
                 time.sleep(_NAP)
                 end = max(end, time.perf_counter() + _NAP)
             elif self._held or self._pause > 0.0:
-                return
+                return advanced
             else:
                 self._turned_at = start
                 comparison.advance()
+                advanced = True
                 self._seconds += time.perf_counter() - start
+        return advanced
 
     def _refuse_what_has_no_balance(self) -> None:
         """Rather than a body half way to a balance, or torn apart by held lines, the last frame stays."""

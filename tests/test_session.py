@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 from pytestqt.qtbot import QtBot
 
-import app.asking.edit
 from app.asking.session import Session
 from core.errors import LineError
 from core.live import Failure
@@ -70,21 +69,6 @@ def test_who_goes_on_working_while_a_file_opens_loses_nothing(
     assert session.path is None
     assert session.undo_stack.count() == (2 if way == "edit" else 1)
     assert [str(each).split(",")[0] for each in told] == ["berta.busk was not opened"]
-
-
-def test_quick_steps_that_are_refused_leave_those_that_were_held(
-    session: Session, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(app.asking.edit, "PAUSE", 60.0)
-    for ratio in (0.98, 0.97, 0.96, 0.95):
-        session.commit_line("mid-bust", "Mid-bust line", ratio)
-    for ratio in (0.96, 0.97):
-        session._fail(Failure(session._revision, LineError("It cannot be held.")))
-        assert session.design.ratio("mid-bust") == ratio
-    stack = session.undo_stack
-    assert (stack.count(), stack.undoText()) == (1, "Mid-bust line 97.0 %")
-    stack.undo()
-    assert not session.design.lines
 
 
 def test_what_a_drag_was_refused_late_is_no_news_of_the_length_it_ended_at(session: Session) -> None:

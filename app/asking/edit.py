@@ -30,8 +30,10 @@ class Edit(QUndoCommand):
         self._session = session
         self.before = before
         self.after = after
-        self._former: list[tuple[Document, str]] = []
+        self.is_solved = False
+        self._solved: list[tuple[Document, str]] = []
         self._shown = shown
+        self._in_place = False
         self._what = what
         self._made = time.monotonic()
 
@@ -43,28 +45,37 @@ class Edit(QUndoCommand):
         """Take in the edit that follows, if it goes on with this one."""
         if not isinstance(other, Edit) or other._what != self._what or other._made - self._made > PAUSE:
             return False
-        self._former.append((self.after, self.text()))
-        self.after, self._made = other.after, other._made
+        if self.is_solved:
+            self._solved.append((self.after, self.text()))
+        self.after, self._made, self.is_solved = other.after, other._made, False
         self.setText(other.text())
         # There and back again is no edit.
         self.setObsolete(self.after == self.before)
         return True
 
-    def step_back(self) -> bool:
-        """Be as before the last edit that was taken in; returns whether there is one to give up."""
-        if not self._former:
-            return False
-        self.after, text = self._former.pop()
+    def split(self) -> Edit | None:
+        """End this edit at its last solved step; returns what follows as an edit of its own, if both exist.
+
+        The edit that is returned is in place: its first redo changes nothing.
+        """
+        if not self._solved:
+            return None
+        after, text = self._solved.pop()
+        rest = Edit(self._session, after, self.after, self.text(), shown=False)
+        rest._in_place = True
+        self.after, self.is_solved = after, True
         self.setText(text)
-        return True
+        return rest
 
     def redo(self) -> None:
         """Make the edit."""
-        if self._shown:
+        if self._in_place:
+            self._in_place = False
+        elif self._shown:
             self._shown = False
             self._session.settle_preview(self.after)
         else:
-            self._session.take(self.after)
+            self._session.take_step(self.after)
 
     def undo(self) -> None:
         """Take it back."""

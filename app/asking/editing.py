@@ -36,6 +36,7 @@ class Editing(QObject):
         self.document: Document | None = None
         self._preview: Design | None = None
         self._told = False
+        self._revision = self._step = 0
 
     @property
     def design(self) -> Design | None:
@@ -108,16 +109,20 @@ class Editing(QObject):
 
     def take(self, document: Document) -> None:
         """Make ``document`` the present one, as the undo stack asks."""
-        self._preview, before = None, self.design
-        self.document = document
-        alike = before is not None and before.acts_as(document.design)
-        self._submit(document.design, fresh=not alike)
+        self._replace(document)
+        self.design_changed.emit(document.design)
+
+    def take_step(self, document: Document) -> None:
+        """Make ``document`` the present one by a step forward, which a refusal may take back."""
+        self._replace(document)
+        self._step = self._revision
         self.design_changed.emit(document.design)
 
     def settle_preview(self, document: Document) -> None:
         """Commit what the preview already shows: its run goes on without a break."""
         self.document = document
         self._submit(document.design)
+        self._step = self._revision
         self.design_changed.emit(document.design)
 
     def edit(self, edit: Callable[[Design], Design], text: str, what: str = "") -> None:
@@ -149,19 +154,33 @@ class Editing(QObject):
         if self.document is not None:
             self._push(self.document.without(name), tr("Variant {name} removed").format(name=name))
 
-    def _take_back(self) -> bool:
-        """Let an edit that cannot be carried out leave the history as if it had not been made."""
+    def _replace(self, document: Document) -> None:
+        self._preview, before = None, self.design
+        self.document = document
+        alike = before is not None and before.acts_as(document.design)
+        self._submit(document.design, fresh=not alike)
+
+    def _last_edit(self) -> Edit | None:
+        """Return the edit that made the present document, if one did."""
         edit = self.undo_stack.command(self.undo_stack.index() - 1) if self.undo_stack.canUndo() else None
-        if not isinstance(edit, Edit) or edit.after is not self.document:
+        return edit if isinstance(edit, Edit) and edit.after is self.document else None
+
+    def _take_back(self) -> bool:
+        """Undo the step that was submitted last, and only that; redo makes it again.
+
+        Of quick edits that became one, those that were solved stay. Returns whether there was such a step:
+        an undo, or what follows from taking back, is none.
+        """
+        edit = self._last_edit()
+        if edit is None or self._step != self._revision:
             return False
-        if edit.step_back():
-            self.take(edit.after)
-            return True
-        before = edit.before
-        edit.setObsolete(True)
-        # Qt drops an obsolete command without undoing it.
+        rest = edit.split()
+        if rest is not None:
+            saved = self.undo_stack.isClean()
+            self.undo_stack.push(rest)
+            if saved:
+                self.undo_stack.resetClean()  # the file holds more than the entry that stays
         self.undo_stack.undo()
-        self.take(before)
         return True
 
     def _commit(self, after: Design, text: str, what: str = "") -> None:
@@ -182,7 +201,7 @@ class Editing(QObject):
             self.undo_stack.push(Edit(self, self.document, after, text, previewing, what))
 
     def _submit(self, design: Design, fresh: bool = False) -> None:
-        """Have a committed design solved."""
+        """Have a committed design solved; ``_revision`` is that of the request."""
         raise NotImplementedError
 
     def _try(self, design: Design, fresh: bool) -> bool:

@@ -10,6 +10,7 @@ from typing import Any
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
+from core.errors import as_exception
 from core.progress import Cancelled, Pieces, Progress
 
 LOOKS = 100
@@ -91,8 +92,12 @@ class Jobs(QObject):
         if not job.wanted:
             return job
         thread = threading.Thread(target=self._work, args=(job, work), name="busk-job", daemon=True)
+        try:
+            thread.start()
+        except RuntimeError as error:  # memory for a thread is missing
+            failed(error)
+            return job
         self._threads[job] = thread
-        thread.start()
         self._clock.start()
         self.changed.emit()
         return job
@@ -161,8 +166,8 @@ class Jobs(QObject):
             result = work(job.hear)
         except Cancelled:
             job.wanted = False
-        except Exception as error:
-            fault = error
+        except BaseException as error:  # of a thread that ends in silence nobody would know
+            fault = as_exception(error)
         self._ended.emit(job, result, fault)
 
     def _end(self, job: Job, result: object, fault: Exception | None) -> None:

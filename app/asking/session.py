@@ -41,7 +41,8 @@ class Session(Editing):
     Verbs (open, preview, commit, save ...) are called by the window; what follows is told by signals.
     ``working`` tells the work in hand and the share done; ``asked`` hands out the StuckError of a scan
     that was opened and cannot go on before somebody says how it stands or places its landmarks; ``saving``
-    says that a project is being written, or no longer, and ``not_saved`` why this has failed.
+    says that a project is being written, or no longer, and ``not_saved`` why this has failed. ``failure`` is
+    why the frame is not that of the present document, and stays so until something else is requested.
     """
 
     opened = Signal(object)
@@ -55,12 +56,12 @@ class Session(Editing):
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.frame: Frame | None = None
+        self.failure: Failure | None = None
         self.path: Path | None = None
         self.stamp: Stamp | None = None
         self._opening: _Opening | None = None
         self._saving = Writing(self)
         self._oldest = 0
-        self._revision = 0
         self._solving = Solving(self)
         self._solving.answered.connect(self._answer)
         self._solving.refused.connect(self._fail)
@@ -214,6 +215,11 @@ class Session(Editing):
                 return
             self._adopt(frame)
         self.frame = frame
+        if self.failure is not None and frame.revision >= self.failure.revision:
+            self.failure = None
+        edit = self._last_edit()
+        if edit is not None and frame.revision == self._revision:
+            edit.is_solved = True
         self.frame_ready.emit(frame)
 
     def _adopt(self, frame: Frame) -> None:
@@ -223,7 +229,7 @@ class Session(Editing):
         self._saving.wait()
         opening, self._opening = self._opening, None
         self.document, self.path, self.stamp = opening.document, opening.path, opening.stamp
-        self._oldest = opening.revision
+        self._revision = self._oldest = opening.revision
         self.frame = frame
         self.undo_stack.clear()
         if opening.unsaved:
@@ -242,12 +248,18 @@ class Session(Editing):
                 return
         elif failure.revision < self._revision:
             return  # of what was tried before the last decision, which has an answer of its own
+        elif not failure.refuses:
+            self.failure = failure  # nothing that was decided is to blame: all of it stays
         elif failure.revision > self._revision and self._preview is not None:
             # One notice for a drag is enough, however far it goes on.
             told, self._told = self._told, True
             if told:
                 return
-        elif failure.revision == self._revision and self._take_back():
+        elif failure.revision == self._revision:
+            # What is added to a design that cannot be solved is not to blame for it.
+            lost = self.failure is not None and self.failure.refuses
+            if lost or not self._take_back():
+                self.failure = failure
             told, self._told = self._told, False
             if told:
                 return

@@ -7,6 +7,8 @@ from collections.abc import Callable
 
 from PySide6.QtCore import QObject, Signal
 
+from core.errors import as_exception
+
 Done = Callable[[Exception | None], None]
 """What follows, in the window's thread: it hears why nothing was written, or None if all went well."""
 
@@ -33,20 +35,23 @@ class Writing(QObject):
         self.wait()
         self._done = done
         self._thread = threading.Thread(target=self._work, args=(write,), name="busk-writing", daemon=True)
-        self._thread.start()
+        try:
+            self._thread.start()
+        except RuntimeError:  # memory for a thread is missing: the window waits, and nothing is lost
+            self._work(write)
 
     def wait(self) -> None:
         """Wait until nothing is written any more, and do what follows."""
         if self._thread is not None:
-            self._thread.join()
+            _join(self._thread)
             self._end()
 
     def _work(self, write: Callable[[], object]) -> None:
         fault: Exception | None = None
         try:
             write()
-        except Exception as error:
-            fault = error
+        except BaseException as error:  # who waits for the file must not wait for ever
+            fault = as_exception(error)
         self._faults.append(fault)
         self._over.emit()
 
@@ -54,7 +59,12 @@ class Writing(QObject):
         # Who has waited was quicker than the signal.
         if not self._faults or self._thread is None or self._done is None:
             return
-        self._thread.join()
+        _join(self._thread)
         fault, done = self._faults.pop(), self._done
         self._thread = self._done = None
         done(fault)
+
+
+def _join(thread: threading.Thread) -> None:
+    if thread.ident is not None:  # it was started
+        thread.join()

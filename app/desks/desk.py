@@ -17,7 +17,8 @@ from app.keeping.last_folders import remember_folder
 from app.keeping.loss_dialogs import ask_overwrite
 from app.keeping.project_picture import project_picture
 from app.keeping.recent import remember_file
-from app.panels.notice import FILES, REFUSED
+from app.panels.notice import FAULT, FILES, REFUSED
+from app.presenting.faults import fault_words, out_of_date, solver_fault_words
 from app.presenting.frame import facts
 from app.presenting.lines import titled
 from app.presenting.run import PLOT_INTERVAL, exact_answer, tracks
@@ -43,6 +44,7 @@ class Desk(QObject):
         self._frame: Frame | None = None
         self._fell_back_to: Design | None = None
         self._chosen = ""
+        self._faulty = False
         self._plotted: Frame | None = None
         self._plot_due = 0.0
         self._plot_clock = QTimer(self, interval=PLOT_INTERVAL, singleShot=True)
@@ -76,6 +78,9 @@ class Desk(QObject):
             # What was decided since is solved: a refusal from before speaks of no design any more.
             self._fell_back_to = None
             self._window.notices.withdraw(REFUSED)
+        if self._faulty and self._session.failure is None:
+            self._faulty = False
+            self._window.notices.withdraw(FAULT)
         if self._frame is None or frame.stages.landmarks is not self._frame.stages.landmarks:
             self._window.scan_desk.show_found(frame.stages)
         turning = frame.at_work and self._frame is not None and frame.stages.model is self._frame.stages.model
@@ -102,6 +107,9 @@ class Desk(QObject):
         A file that is not written names what it is ``about``: it is told until ``show_written`` of that.
         """
         self._fell_back_to, notices = self._session.design, self._window.notices
+        if self._session.failure is not None:
+            self._plotted = None
+            self.plot_now()
         if isinstance(error, UserError):
             # What was refused before was asked for before: the last refusal is the one that counts.
             about = about or REFUSED
@@ -111,10 +119,16 @@ class Desk(QObject):
             if self._frame is not None:
                 self._window.scan_desk.show_found(self._frame.stages)
             return
+        logging.error("unexpected fault", exc_info=error)
         trace = "".join(traceback.format_exception(error))
-        logging.error("unexpected fault\n%s", trace)
-        said = tr("Something went wrong inside Busk."), tr("Your design is kept. The log tells more.")
-        notices.show_notice("bad", *said, lasting=True, details=trace)
+        failure = self._session.failure
+        self._faulty = failure is not None and failure.error is error
+        if self._faulty:
+            said, about = solver_fault_words(error), FAULT
+        else:
+            said, about = fault_words(error), ""
+        again = [(tr("Try again"), self._session.go_on)] if self._faulty else []
+        notices.show_notice("bad", *said, again, lasting=True, details=trace, about=about)
 
     def show_left(self, words: str) -> None:
         """Say that work which nobody waits for was stopped, and how it comes again."""
@@ -204,7 +218,7 @@ class Desk(QObject):
 
     def save(self) -> bool:
         """Save the project, asking for a place the first time; returns whether it is being saved."""
-        self._take_in()
+        self.take_in()
         path = self._session.path
         if path is None:
             return self.save_as()
@@ -216,7 +230,7 @@ class Desk(QObject):
 
     def save_as(self) -> bool:
         """Ask for a place and save the project there; returns whether it is being saved."""
-        self._take_in()
+        self.take_in()
         kinds = f"{tr('Projects')} (*.busk)"
         name = str(self._session.path or f"{self._session.name}.busk")
         path = ask_save(self._window, tr("Save as"), name, kinds, ".busk")
@@ -224,7 +238,7 @@ class Desk(QObject):
 
     def may_leave(self) -> bool:
         """Ask about unsaved changes; returns whether the document may be left. A save is waited for."""
-        self._take_in()
+        self.take_in()
         if self._session.finish_saving():
             return True
         answer = ask_about_changes(self._window, self._session.name)
@@ -240,7 +254,7 @@ class Desk(QObject):
         scan = design.scan
         return bool(chosen) and not scan.member and Path(scan.path) == Path(chosen).absolute()
 
-    def _take_in(self) -> None:
+    def take_in(self) -> None:
         """Make edits of what was decided a moment ago: of a pin moved by keys, of a name being typed."""
         self._window.landmark_desk.put_down()
         self._window.report_desk.page.tell_name()
@@ -263,7 +277,8 @@ class Desk(QObject):
         self._window.status.set_facts(facts(frame))
         main = frame.stages.design.volume
         strip = self._window.strip
-        strip.set_verdict(strip_verdict(frame))
+        verdict = strip_verdict(frame)
+        strip.set_verdict(verdict if self._session.failure is None else out_of_date(verdict))
         strip.set_run(tracks(frame), main, exact_answer(frame))
         self._window.measures_desk.show_frame(frame)
         self._window.verdict_desk.show_frame(frame)

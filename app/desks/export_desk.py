@@ -60,7 +60,7 @@ class ExportDesk(QObject):
     def export_body(self) -> None:
         """Ask for a place and write the reshaped body, else as it was chosen last."""
         frame = self._ask_and_write("body", tr("Export body"), reshaped=True)
-        doubt = _doubt(frame) if frame is not None else ""
+        doubt = self._doubt(frame) if frame is not None else ""
         if doubt:
             self._window.notices.show_notice("warn", doubt, lasting=True)
 
@@ -96,7 +96,7 @@ class ExportDesk(QObject):
             return
         what = self._choices.export.what
         name, outcome, manner = self._file_name(what), self._outcome_of(frame), self._manner(what)
-        doubt = "" if manner.before and what != "flat" else _doubt(frame)
+        doubt = "" if manner.before and what != "flat" else self._doubt(frame)
         sheet.show_contents(name, tr("Looking what will be in it…"), doubt)
         self._job = window.jobs.run(
             tr("Preparing the export"),
@@ -182,17 +182,18 @@ class ExportDesk(QObject):
     def _stem(self, what: str) -> str:
         return f"{self._window.session.name}-{what}"
 
+    def _doubt(self, frame: Frame) -> str:
+        """Return what to mind of a reshaped body that would be written, or nothing."""
+        if self._window.session.failure is not None:
+            return tr("The design could not be computed: the file holds the last computed shape.")
+        if frame.at_work:
+            return tr("The run is still under way: what is written is how far it is.")
+        if is_result(frame):
+            return ""
+        return tr("{state}: this is no shape to work from.").format(state=state_title(state_of(frame)))
+
     def _file_name(self, what: str) -> str:
         return free_name(last_folder("written"), f"{self._stem(what)}.{self._choices.kind(what)}").name
-
-
-def _doubt(frame: Frame) -> str:
-    """Return what to mind of a reshaped body that would be written, or nothing."""
-    if frame.at_work:
-        return tr("The run is still under way: what is written is how far it is.")
-    if is_result(frame):
-        return ""
-    return tr("{state}: this is no shape to work from.").format(state=state_title(state_of(frame)))
 
 
 def _sentence(ready: Ready) -> str:

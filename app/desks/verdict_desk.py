@@ -23,7 +23,8 @@ class VerdictDesk(QObject):
 
     def show_frame(self, frame: Frame) -> None:
         """Show how a frame stands."""
-        state, rail = state_of(frame), self._window.rail
+        rail, session = self._window.rail, self._window.session
+        state = state_of(frame) if session.failure is None else "stale"
         if state in TROUBLED:
             looks = "bad" if TONES[state][0] == "bad" else "look"  # one colour with the word below the body
             rail.set_state("lines", looks, 1)

@@ -34,6 +34,7 @@ class KeepingDesk(QObject):
     """Keeps the document aside while it is not saved, and the project to itself.
 
     The recovery folder is this window's own as long as it runs; it goes when the window closes in order.
+    Where the window ``leaves`` without a question, it stays if anything is not saved.
     """
 
     def __init__(self, window: MainWindow) -> None:
@@ -43,6 +44,7 @@ class KeepingDesk(QObject):
         self._recovery: Recovery | None = None
         self._kept: Document | None = None
         self._told = False
+        self.leaves = False
         self._lock = ProjectLock()
         self._writing = Writing(self)
         self._clock = QTimer(self, singleShot=True)
@@ -65,7 +67,8 @@ class KeepingDesk(QObject):
             self._clock.start(1000)
             return
         picture = self._picture()
-        whole = document if picture or not view.isVisible() else None
+        pictured = picture or not view.isVisible() or session.failure is not None  # there will be none of it
+        whole = document if pictured else None
         told = document, frame.stages.scan, session.name, session.path, picture, session.stamp
         self._writing.run(partial(self._write, *told), partial(self._note_kept, whole))
 
@@ -107,7 +110,9 @@ class KeepingDesk(QObject):
         """Let nothing stay behind: whoever closes a window in order has saved, or does not want to."""
         self._clock.stop()
         self._writing.wait()
-        if self._recovery is not None:
+        if self._recovery is not None and self.leaves and self._session.unsaved:
+            self._recovery.let_go()
+        elif self._recovery is not None:
             self._recovery.end()
         self._lock.release()
 

@@ -25,8 +25,10 @@ Action = tuple[str, Callable[[], None]]
 TONE_ICONS = {"ok": "check-circle", "info": "info", "warn": "warning", "bad": "warning-octagon"}
 """The tones of a notice with their drawings."""
 
-REFUSED, FILES = "refused", "files"
-"""What notices of failures are about: an edit or a scan that was refused, a file that was not written."""
+REFUSED, FILES, FAULT = "refused", "files", "fault"
+"""What notices of failures are about: an edit or a scan that was refused, a file that was not written, a
+fault of the solver.
+"""
 
 _LEAVES_AFTER_MS = 8000
 _MOST_ROOM = 0.4  # of the width that buttons take beside the words
