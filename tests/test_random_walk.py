@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable
-from dataclasses import astuple, dataclass, replace
+from dataclasses import astuple, dataclass, field, replace
 from functools import reduce
 from pathlib import Path
 
@@ -17,7 +17,7 @@ from app.asking.session import Session
 from core.design import Design
 from core.document import Document
 from core.errors import LineError, UserError
-from core.live import Failure
+from core.live import Failure, Frame
 from core.own_lines import ready_made
 from core.presets import built_in, with_preset
 from core.project import open_project, with_scan
@@ -31,10 +31,13 @@ STEPS, LOOKS = 300, 2
 
 @dataclass
 class Entry:
-    """One step of the history: what it was made to, and the documents that were taken in one by one."""
+    """One step of the history: what it was made to, the documents that were taken in one by one, and which of
+    them were solved.
+    """
 
     what: str
     documents: list[Document]
+    solved: set[int] = field(default_factory=set)
 
 
 class Walk:
@@ -45,6 +48,7 @@ class Walk:
         self.entries, self.present = [Entry("", [session.document])], 0
         self.files: dict[Path, Document] = {}
         self.refused, self.clean = 0, True
+        session.frame_ready.connect(self.note_frame)
 
     @property
     def document(self) -> Document:
@@ -103,18 +107,29 @@ class Walk:
         if self.chance.random() < 0.5 or not self.turn():
             self.session.cancel_preview()
 
+    def note_frame(self, frame: Frame) -> None:
+        """Note that the present document is solved."""
+        if frame.revision == self.session._revision:
+            present = self.entries[self.present]
+            present.solved.add(len(present.documents) - 1)
+
     def refuse(self) -> None:
-        """Turn a wheel, and let the solver refuse its last steps: those go, and what was before stands."""
+        """Turn a wheel and let the solver refuse where it ends: the last length that was solved stands.
+
+        The refused length can be made again.
+        """
         app.asking.edit.PAUSE, name = 1e9, self.chance.choice(LINES)
-        stands = [self.turn(name) for _ in range(4)][-1]
-        for _ in range(self.chance.randrange(4) if stands else 0):
-            self.session._fail(Failure(self.session._revision, LineError("It cannot be held.")))
-            self.refused += 1
-            self.entries[-1].documents.pop()
-            if not self.entries[-1].documents:
-                self.entries.pop()
-                self.present -= 1
-                return
+        if not [self.turn(name) for _ in range(4)][-1] or self.chance.random() < 0.25:
+            return
+        self.session._fail(Failure(self.session._revision, LineError("It cannot be held.")))
+        self.refused += 1
+        entry = self.entries[self.present]
+        last = max((each for each in entry.solved if each < len(entry.documents) - 1), default=None)
+        if last is None:
+            self.present -= 1
+        else:
+            self.entries.append(Entry("", [entry.documents[-1]]))
+            del entry.documents[last + 1 :]
 
     def treat(self) -> None:
         """Lock a line or link it, or let it be free."""

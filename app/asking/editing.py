@@ -163,7 +163,7 @@ class Editing(QObject):
     def _last_edit(self) -> Edit | None:
         """Return the edit that made the present document, if one did."""
         edit = self.undo_stack.command(self.undo_stack.index() - 1) if self.undo_stack.canUndo() else None
-        return edit if isinstance(edit, Edit) and edit.after is self.document else None
+        return edit if isinstance(edit, Edit) and edit.after == self.document else None
 
     def _take_back(self) -> bool:
         """Undo the step that was submitted last, and only that; redo makes it again.
