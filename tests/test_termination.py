@@ -11,8 +11,9 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import QSettings, QTimer
 from PySide6.QtGui import QGuiApplication
-from window_tools import Script, run_main, run_undrawn, settled
+from window_tools import Script, run_undrawn, settled
 
+from app.cli import main
 from app.main_window import MainWindow
 from core.recovery import left_behind, read_kept, recovery_folder
 
@@ -20,21 +21,25 @@ FILE = Path(__file__)
 RATIO = 0.9
 
 
-def work(body: Path) -> None:
-    """Edit once, print that this is done, and stay, with autosave an hour away."""
+def work(body: Path) -> int:
+    """Edit once, print that this is done, and stay, with autosave an hour away; returns the exit code."""
     from app.application import application  # noqa: PLC0415 (in the process that is ended)
 
-    application()
+    app = application()
     QSettings().setValue("autosave", 3600.0)
 
-    def script(window: MainWindow) -> Script:
-        yield settled(window)
-        window.session.commit_line("mid-bust", "Mid-bust line", RATIO)
-        print("edited", flush=True)
-        QTimer.singleShot(0, window.desk.open)  # a question stays open: the signal ends it too
-        yield lambda: False
+    def look() -> None:
+        for window in app.topLevelWidgets():
+            if isinstance(window, MainWindow) and window.is_settled():
+                clock.stop()
+                window.session.commit_line("mid-bust", "Mid-bust line", RATIO)
+                print("edited", flush=True)
+                window.desk.open()  # a question stays open: the signal ends it too
 
-    run_main([str(body)], script)
+    clock = QTimer(interval=20)
+    clock.timeout.connect(look)
+    clock.start()
+    return main([str(body)])
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
@@ -82,4 +87,4 @@ def test_the_end_of_a_desktop_session_keeps_the_document_aside() -> None:
 
 
 if __name__ == "__main__":
-    work(Path(sys.argv[1]))
+    sys.exit(work(Path(sys.argv[1])))
