@@ -266,7 +266,7 @@ class LiveSolver:
             if self._held and not (self._stopping or self._request):
                 time.sleep(_NAP)
                 end = max(end, time.perf_counter() + _NAP)
-            elif self._held or self._pause > 0.0:
+            elif self._held or self._pause > 0.0 or (advanced and self._pace):
                 return advanced
             else:
                 self._turned_at = start

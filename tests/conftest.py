@@ -10,7 +10,7 @@ import subprocess
 import tempfile
 import threading
 from collections.abc import Callable, Iterator
-from functools import cache, lru_cache, wraps
+from functools import cache, lru_cache, partialmethod, wraps
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -19,6 +19,7 @@ import pytest
 from dead_process import pytest_testnodedown  # noqa: F401 (pytest finds it here)
 from PySide6.QtCore import QSettings
 from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
 from small_project import write_project
 from threadpoolctl import threadpool_limits
 
@@ -29,6 +30,7 @@ from core.design_lines import WornLine
 from core.pipeline import Stages, build
 
 SAMPLES = Path(__file__).parent.parent / "resources" / "samples"
+PATIENCE_MS = 300_000
 SPARING_NOTHING = SimpleNamespace(**{**vars(gc), "freeze": lambda: None, "unfreeze": lambda: None})
 
 
@@ -50,6 +52,11 @@ os.environ.setdefault("QT_API", "pyside6")
 os.environ.setdefault("PYQTGRAPH_QT_LIB", "PySide6")
 if not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+
+
+for _wait in ("waitUntil", "waitSignal", "waitSignals", "waitExposed", "waitActive"):
+    # Nothing is waited for in vain: a limit is for what hangs, not for a machine with other work.
+    setattr(QtBot, _wait, partialmethod(getattr(QtBot, _wait), timeout=PATIENCE_MS))
 
 
 @pytest.fixture(scope="session", autouse=True)

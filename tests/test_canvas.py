@@ -73,5 +73,5 @@ def test_only_what_moved_in_3d_is_drawn_anew_without_a_card(
     view.overlay.repaint()
     assert drawn == []
     view.request_draw()
-    qtbot.waitUntil(lambda: drawn == ["drawn"], timeout=3000)
+    qtbot.waitUntil(lambda: drawn == ["drawn"])
     view.close_view()

@@ -142,7 +142,7 @@ def test_what_waits_for_the_first_paint_is_done_once_whether_it_comes_or_not(
     first_paint.when_painted(hidden, lambda: done.append("hidden"))
     shown.show()
     assert done == []
-    qtbot.waitUntil(lambda: len(done) == 2, timeout=5000)
+    qtbot.waitUntil(lambda: len(done) == 2)
     shown.repaint()
     qtbot.wait(80)
     assert sorted(done) == ["hidden", "shown"]

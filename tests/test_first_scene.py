@@ -36,7 +36,7 @@ def begin(window, what):
 
 def look():
     window, = windows
-    if is_over(window) or time.monotonic() > began + 40:
+    if is_over(window) or time.monotonic() > began + 300:
         print(window.view.viewport.shows_body, window.rescuer.sheet, sorted(set(faults)), *seen)
         window.session.undo_stack.setClean()
         window.close()
@@ -56,7 +56,7 @@ def at_the_libraries():
     time.sleep(0.5)
 
 def when_begun(window):
-    assert half.wait(30) and "pyvista.plotting" in sys.modules
+    assert half.wait(300) and "pyvista.plotting" in sys.modules
     window.view.viewport.frame_all()
     window.preferences.choose("theme", "dark")
     seen.append(window.view.picture().width() > 0)
@@ -70,7 +70,7 @@ main([sys.argv[1]])
 LATE = """
 def at_the_libraries():
     # Whoever hears that a document is open may need a scene, before there is a frame.
-    while (not windows or windows[0].session.frame is None) and time.monotonic() < began + 10:
+    while (not windows or windows[0].session.frame is None) and time.monotonic() < began + 60:
         time.sleep(0.01)
     time.sleep(0.5)
 
@@ -112,7 +112,7 @@ main([sys.argv[1]])
 
 def told_by(script: str) -> str:
     command = [sys.executable, "-c", START + script, PROJECT]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False, timeout=120)
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False, timeout=600)
     return done.stdout.strip() or done.stderr
 
 

@@ -30,7 +30,7 @@ def run(folder, files, *options):
     command = [sys.executable, "-m", "pytest", "-n", "2", "--dist", "loadfile", "-p", "no:cacheprovider"]
     own = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
     return subprocess.run(
-        [*command, *options], check=False, cwd=folder, env=own, capture_output=True, text=True, timeout=120
+        [*command, *options], check=False, cwd=folder, env=own, capture_output=True, text=True, timeout=600
     )
 
 

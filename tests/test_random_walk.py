@@ -189,7 +189,7 @@ class Walk:
         assert self.session.finish_saving()
         assert self.session.path == path
         if self.chance.random() < 0.3:
-            with self.qtbot.waitSignal(self.session.opened, timeout=60_000):
+            with self.qtbot.waitSignal(self.session.opened):
                 self.session.open(str(path))
             self.check_files()
             self.entries, self.present = [Entry("", [self.session.document])], 0
@@ -215,7 +215,7 @@ class Walk:
             frame = self.session.frame
             return frame.stages.design is self.session.design and not frame.at_work
 
-        self.qtbot.waitUntil(rests, timeout=60_000)
+        self.qtbot.waitUntil(rests)
         shown = self.session.frame
         alone = settled_frame(self.session.design, shown.stages)
         assert np.allclose(astuple(shown.exact_marks), astuple(alone.exact_marks), atol=1e-3)
@@ -230,7 +230,7 @@ def test_a_random_walk_ends_where_its_model_does(
     faults: list[Exception] = []
     session.failed.connect(faults.append)
     try:
-        with qtbot.waitSignal(session.opened, timeout=60_000):
+        with qtbot.waitSignal(session.opened):
             session.open(str(mannequin))
         walk = Walk(session, qtbot, tmp_path, random.Random(5))
         for step in range(1, STEPS + 1):

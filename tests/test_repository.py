@@ -108,9 +108,25 @@ def test_the_readme_begins_with_the_two_commands() -> None:
     assert "make test" in readme
 
 
+def personal_paths(*folders: Path) -> re.Pattern[str]:
+    """What names a file in one of ``folders``, or in anybody's home; a folder that all share names nobody."""
+    shared = {
+        Path(folder.anchor) / name for folder in folders for name in ("", "home", "Users", "root", "tmp")
+    }
+    own = [re.escape(f"{folder}/") for folder in folders if folder not in shared]
+    return re.compile("|".join([*own, r"/home/\w", r"/Users/\w", r"[A-Z]:\\Users"]))
+
+
 def test_no_file_knows_the_machine_it_was_written_on() -> None:
-    homes = [str(folder) + "/" for folder in (ROOT, Path.home()) if len(folder.parts) > 1]
-    personal = re.compile("|".join([*map(re.escape, homes), r"/home/\w", r"/Users/\w", r"[A-Z]:\\Users"]))
+    personal = personal_paths(ROOT, Path.home())
     assert [
         path.name for path, text in TEXTS.items() if personal.search(text) and path != Path(__file__)
     ] == []
+
+
+def test_a_home_that_is_a_folder_of_homes_makes_no_file_personal() -> None:
+    script = "home=/home/$user; find / -path /home -o -path /root/x"
+    for home in ("/home", "/", "/root"):
+        assert not personal_paths(Path(home)).search(script)
+    assert personal_paths(Path("/srv/anna")).search("see /srv/anna/notes")
+    assert personal_paths(Path("/home")).search("see /home/anna/notes")

@@ -20,7 +20,7 @@ from core.recovery import Recovery, left_behind
 @pytest.fixture
 def session(qtbot: QtBot, mannequin: Path) -> Iterator[Session]:
     session = Session()
-    with qtbot.waitSignal(session.opened, timeout=60_000):
+    with qtbot.waitSignal(session.opened):
         session.open(str(mannequin))
     yield session
     session.close()
@@ -43,7 +43,7 @@ def test_a_file_that_is_written_while_another_opens_is_not_the_others(
     assert session.save(str(tmp_path / "anna.busk"), None)
     wait = session._saving.wait
     monkeypatch.setattr(session._saving, "wait", lambda: (disk.set(), wait()))
-    with qtbot.waitSignal(session.opened, timeout=60_000):
+    with qtbot.waitSignal(session.opened):
         pass
     session.finish_saving()
     assert (tmp_path / "anna.busk").exists()
@@ -64,7 +64,7 @@ def test_who_goes_on_working_while_a_file_opens_loses_nothing(
     else:
         session.undo_stack.undo()
     kept = session.document
-    qtbot.waitUntil(lambda: session.frame.stages.design is kept.design, timeout=60_000)
+    qtbot.waitUntil(lambda: session.frame.stages.design is kept.design)
     assert session.document is kept
     assert session.path is None
     assert session.undo_stack.count() == (2 if way == "edit" else 1)
@@ -91,7 +91,7 @@ def test_a_restored_document_does_not_pass_over_a_project_that_was_saved_since(
     session: Session, other: Path, qtbot: QtBot
 ) -> None:
     def restored(saved_since: bool) -> bool:
-        with qtbot.waitSignal(session.opened, timeout=60_000):
+        with qtbot.waitSignal(session.opened):
             session.open(str(other))
         recovery = Recovery.new()
         scan = session.frame.stages.scan
@@ -100,7 +100,7 @@ def test_a_restored_document_does_not_pass_over_a_project_that_was_saved_since(
         if saved_since:
             save_project(other, session.document, scan, b"another picture")
         (kept, found), *_ = left_behind()[0]
-        with qtbot.waitSignal(session.opened, timeout=60_000):
+        with qtbot.waitSignal(session.opened):
             session.restore(kept)
         found.end()
         assert session.path == other

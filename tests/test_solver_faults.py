@@ -61,9 +61,9 @@ def refuse(session: Session) -> None:
 @pytest.fixture
 def session(qtbot: QtBot, mannequin: Path) -> Iterator[Session]:
     session = Session()
-    with qtbot.waitSignal(session.opened, timeout=60_000):
+    with qtbot.waitSignal(session.opened):
         session.open(str(mannequin))
-    qtbot.waitUntil(lambda: is_solved(session), timeout=60_000)
+    qtbot.waitUntil(lambda: is_solved(session))
     yield session
     session.close()
 
@@ -74,13 +74,13 @@ def test_a_lasting_fault_takes_nothing_back(
 ) -> None:
     reported: list[Exception] = []
     edit(session, 20)
-    qtbot.waitUntil(lambda: is_solved(session), timeout=60_000)
+    qtbot.waitUntil(lambda: is_solved(session))
     stack, good = session.undo_stack, session.design
     session.failed.connect(reported.append)
     faults = Faults(monkeypatch, error)
     session.commit_line("mid-bust", "mid-bust", 0.9)
     document = session.document
-    qtbot.waitUntil(lambda: bool(reported), timeout=60_000)
+    qtbot.waitUntil(lambda: bool(reported))
     qtbot.wait(200)
     assert session.document is document
     assert (stack.count(), stack.index(), session.unsaved) == (21, 21, True)
@@ -98,7 +98,7 @@ def test_a_lasting_fault_takes_nothing_back(
     assert open_project(tmp_path / "anna.busk").design.lines == document.design.lines
     faults.end()
     session.go_on()
-    qtbot.waitUntil(lambda: is_solved(session), timeout=60_000)
+    qtbot.waitUntil(lambda: is_solved(session))
     assert session.failure is None
     assert session.document is document
 
@@ -110,9 +110,9 @@ def test_a_passing_fault_takes_nothing_back_and_the_next_edit_is_solved(
     session.failed.connect(reported.append)
     for step in range(3):
         session.commit_line(LINES[step % 2], "a line", 0.97 - 0.01 * step)
-        qtbot.waitUntil(lambda step=step: len(reported) > step, timeout=60_000)
+        qtbot.waitUntil(lambda step=step: len(reported) > step)
     session.commit_line("full-bust", "a line", 0.93)
-    qtbot.waitUntil(lambda: is_solved(session), timeout=60_000)
+    qtbot.waitUntil(lambda: is_solved(session))
     stack, design = session.undo_stack, session.design
     assert (faults.hits, len(reported)) == (3, 3)
     assert (stack.index(), stack.count()) == (4, 4)
@@ -124,12 +124,12 @@ def test_a_fault_while_another_file_opens_leaves_the_document_alone(
     session: Session, person: Path, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     edit(session, 3)
-    qtbot.waitUntil(lambda: is_solved(session), timeout=60_000)
+    qtbot.waitUntil(lambda: is_solved(session))
     document, reported = session.document, []
     session.failed.connect(reported.append)
     monkeypatch.setattr("core.pipeline.find", lambda *_, **__: (_ for _ in ()).throw(MemoryError()))
     session.open(str(person))
-    qtbot.waitUntil(lambda: bool(reported), timeout=60_000)
+    qtbot.waitUntil(lambda: bool(reported))
     assert isinstance(reported[0], MemoryError)
     assert session.document is document
     assert session.undo_stack.index() == 3
@@ -137,7 +137,7 @@ def test_a_fault_while_another_file_opens_leaves_the_document_alone(
 
 def test_a_refused_step_is_taken_back_once_and_can_be_made_again(session: Session, qtbot: QtBot) -> None:
     edit(session, 2)
-    qtbot.waitUntil(lambda: is_solved(session), timeout=60_000)
+    qtbot.waitUntil(lambda: is_solved(session))
     before, stack = session.document, session.undo_stack
     session.commit_line("mid-bust", "mid-bust", 0.7)
     refused = session.document
@@ -151,7 +151,7 @@ def test_a_refused_step_is_taken_back_once_and_can_be_made_again(session: Sessio
 
 def test_an_undo_that_is_refused_takes_nothing_else_back(session: Session, qtbot: QtBot) -> None:
     edit(session, 3)
-    qtbot.waitUntil(lambda: is_solved(session), timeout=60_000)
+    qtbot.waitUntil(lambda: is_solved(session))
     session.undo_stack.undo()
     refuse(session)
     assert (session.undo_stack.index(), session.undo_stack.count()) == (2, 3)
@@ -159,7 +159,7 @@ def test_an_undo_that_is_refused_takes_nothing_else_back(session: Session, qtbot
     session.commit_line("mid-bust", "mid-bust", 0.93)
     refuse(session)
     assert session.undo_stack.index() == 3, "it stands on what cannot be solved, and is not to blame"
-    qtbot.waitUntil(lambda: is_solved(session), timeout=60_000)
+    qtbot.waitUntil(lambda: is_solved(session))
     assert session.failure is None
 
 
@@ -169,7 +169,7 @@ def test_quick_steps_that_are_refused_go_back_to_the_last_that_was_solved(
     monkeypatch.setattr(app.asking.edit, "PAUSE", 600.0)
     for ratio in (0.98, 0.97):
         session.commit_line("mid-bust", "Mid-bust line", ratio)
-        qtbot.waitUntil(lambda: is_solved(session), timeout=60_000)
+        qtbot.waitUntil(lambda: is_solved(session))
     for ratio in (0.96, 0.95):
         session.commit_line("mid-bust", "Mid-bust line", ratio)
     assert session.save(str(tmp_path / "anna.busk"), None)
@@ -195,7 +195,7 @@ def test_a_thread_that_is_ended_from_within_is_reported(
 
     jobs, reported = Jobs(), []
     jobs.run("Work", end, print, reported.append)
-    qtbot.waitUntil(lambda: bool(reported), timeout=60_000)
+    qtbot.waitUntil(lambda: bool(reported))
     jobs.close()
     monkeypatch.setattr("app.asking.session.save_project", end)
     session.not_saved.connect(reported.append)

@@ -55,7 +55,7 @@ def test_a_signal_ends_the_program_and_the_last_edit_is_kept(
             assert program.stdout is not None
             assert program.stdout.readline() == "edited\n"
             program.send_signal(getattr(signal, name))
-            code = program.wait(120)
+            code = program.wait(300)
         finally:
             program.kill()
     assert code == 128 + getattr(signal, name)

@@ -121,7 +121,7 @@ def test_many_requests_make_one_drawing(view: Viewport) -> None:
 def test_a_still_picture_loses_its_stairs_and_a_moving_one_is_quick(view: Viewport, qtbot: QtBot) -> None:
     view.request_draw()
     assert not smoothed(view)
-    qtbot.waitUntil(lambda: smoothed(view), timeout=3000)
+    qtbot.waitUntil(lambda: smoothed(view))
     drag(view, (10.0, 10.0), (20.0, 10.0))
     assert not smoothed(view)
 
@@ -189,7 +189,7 @@ def test_a_glide_ends_at_the_view_that_was_asked_for(view: Viewport, qtbot: QtBo
     view.motion = True
     view.set_view("left")
     assert view.scene.view.azimuth < 45.0
-    qtbot.waitUntil(lambda: view.scene.view.azimuth == pytest.approx(90.0), timeout=3000)
+    qtbot.waitUntil(lambda: view.scene.view.azimuth == pytest.approx(90.0))
 
 
 # -- lines under the pointer

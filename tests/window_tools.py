@@ -16,7 +16,7 @@ from app.cli import main
 from app.main_window import MainWindow
 from app.showing.viewport import Viewport
 
-PATIENCE = 90.0
+PATIENCE = 300.0
 Script = Generator[Callable[[], bool], None, None]
 
 

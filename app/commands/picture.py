@@ -16,7 +16,10 @@ from core.progress import in_one_go, quiet
 if TYPE_CHECKING:
     from app.main_window import MainWindow
 
-_PATIENCE = 120.0
+_PATIENCE, _LONGEST = 300.0, 1800.0
+"""Seconds of processor time, and of any time, after which an answer is not waited for any longer: of the
+first a machine with other work gives the program little.
+"""
 
 
 def draw_picture(
@@ -118,9 +121,9 @@ def _check_name(out: Path) -> None:
 
 def wait_until(ready: Callable[[], bool], turn: Callable[[], None]) -> None:
     """Let events pass until ``ready``. Raises UserError if that takes too long."""
-    patience = time.monotonic() + _PATIENCE
+    patience, longest = time.process_time() + _PATIENCE, time.monotonic() + _LONGEST
     while not ready():
-        if time.monotonic() > patience:
+        if time.process_time() > patience or time.monotonic() > longest:
             raise UserError("Busk has waited too long for its own answer.", "Try again, or report this.")
         turn()
         time.sleep(0.005)

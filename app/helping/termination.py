@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import logging
 import signal
-import socket
 from contextlib import suppress
 from types import FrameType
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QCoreApplication, QObject, QSocketNotifier
+from PySide6.QtCore import QCoreApplication, QObject, QTimer
 from PySide6.QtGui import QGuiApplication
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
 
 _NAMES = ("SIGTERM", "SIGINT", "SIGHUP", "SIGBREAK")  # a system has some of them
+
+_INTERVAL = 100
+"""Milliseconds between two checks: Python runs handlers between its own instructions only, not while the
+event loop sleeps.
+"""
 
 
 class Termination(QObject):
@@ -29,22 +33,17 @@ class Termination(QObject):
     def __init__(self, window: MainWindow) -> None:
         super().__init__()
         self._window = window
-        self.code = 0
-        # Python runs handlers between its own instructions only, and the event loop may sleep for long: the
-        # system's handler writes to a socket, which wakes the loop.
-        self._inlet, self._outlet = socket.socketpair()
-        self._inlet.setblocking(False)
-        self._outlet.setblocking(False)
-        self._notifier = QSocketNotifier(self._outlet.fileno(), QSocketNotifier.Type.Read, self)
-        self._notifier.activated.connect(self._read)
-        self._fd = signal.set_wakeup_fd(self._inlet.fileno(), warn_on_full_buffer=False)
+        self._number = self.code = 0
         numbers = [getattr(signal, name) for name in _NAMES if hasattr(signal, name)]
-        # What is ignored stays so: a shell ignores SIGHUP for nohup.
+        # What is ignored stays so: nohup has SIGHUP ignored.
         self._former = {
-            number: signal.signal(number, _pass)
+            number: signal.signal(number, self._note)
             for number in numbers
             if signal.getsignal(number) != signal.SIG_IGN
         }
+        self._clock = QTimer(self, interval=_INTERVAL)
+        self._clock.timeout.connect(self._check)
+        self._clock.start()
         app = QGuiApplication.instance()
         if isinstance(app, QGuiApplication):
             app.commitDataRequest.connect(self.keep)
@@ -58,25 +57,20 @@ class Termination(QObject):
 
     def close(self) -> None:
         """Give the signals back."""
-        self._notifier.setEnabled(False)
-        signal.set_wakeup_fd(self._fd)
+        self._clock.stop()
         for number, former in self._former.items():
             signal.signal(number, former)
-        self._inlet.close()
-        self._outlet.close()
         app = QGuiApplication.instance()
         if isinstance(app, QGuiApplication):
             app.commitDataRequest.disconnect(self.keep)
 
-    def _read(self) -> None:
-        with suppress(BlockingIOError):
-            for number in self._outlet.recv(64):
-                if number in self._former and not self.code:
-                    self.code = 128 + number
-                    logging.warning("ended by signal %d", number)
-                    self.keep()
-                    QCoreApplication.exit(self.code)
+    def _note(self, number: int, frame: FrameType | None) -> None:
+        # It comes in the middle of anything: the copy is made between two events.
+        self._number = number
 
-
-def _pass(number: int, frame: FrameType | None) -> None:
-    """Leave a signal to the socket."""
+    def _check(self) -> None:
+        if self._number and not self.code:
+            self.code = 128 + self._number
+            logging.warning("ended by signal %d", self._number)
+            self.keep()
+            QCoreApplication.exit(self.code)
