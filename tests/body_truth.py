@@ -37,13 +37,16 @@ class KnownBody:
         return tuple(side for side in SIDES if f"nipple_{side}" in self.points)
 
 
-def known_again(body: KnownBody) -> KnownBody:
-    """Return the body with nipples on its skin, and apex, fold, lowest and middle points found anew."""
+def known_again(body: KnownBody, clear: int = 10) -> KnownBody:
+    """Return the body with nipples on its skin, and apex, fold, lowest and middle points found anew.
+
+    A fold lies at least ``clear`` [mm of skin] below the nipple.
+    """
     points: dict[str, Points] = {}
     for side in body.sides:
         nipple = body.points[f"nipple_{side}"]
-        curve, start = _profile(body.mesh, nipple)
-        fold_at = _fold(curve, start, body.points[f"fold_{side}"])
+        curve, start = sagittal_profile(body.mesh, nipple)
+        fold_at = _fold(curve, start, body.points[f"fold_{side}"], clear)
         under = curve[start : fold_at + 1]
         points[f"nipple_{side}"] = curve[start]
         points[f"bust_apex_{side}"] = _apex(body.mesh, curve[start], curve[fold_at])
@@ -122,7 +125,7 @@ def _girth(mesh: Mesh, z: float, around: dict[int, float] | None = None) -> dict
     return girth
 
 
-def _profile(mesh: Mesh, nipple: Points) -> tuple[Points, int]:
+def sagittal_profile(mesh: Mesh, nipple: Points) -> tuple[Points, int]:
     """Return the sagittal curve through ``nipple`` every millimetre, downward in front, and its place."""
     curves = [curve for curve, _ in chains(cut(mesh, nipple, (1.0, 0.0, 0.0)))]
     curve = min(curves, key=lambda c: float(np.linalg.norm(c - nipple, axis=1).min()))
@@ -136,13 +139,13 @@ def _profile(mesh: Mesh, nipple: Points) -> tuple[Points, int]:
     return curve, start
 
 
-def _fold(curve: Points, start: int, near: Points) -> int:
+def _fold(curve: Points, start: int, near: Points, clear: int) -> int:
     """Return the place of largest concave curvature below the breast, not far from ``near``."""
     y, z = (gaussian_filter1d(curve[:, k], 4.0, mode="nearest") for k in (1, 2))
     dy, dz = np.gradient(y), np.gradient(z)
     bend = dz * np.gradient(dy) - dy * np.gradient(dz)  # concave: the way down turns from back to forward
     expected = start + int(np.argmin(np.linalg.norm(curve[start:] - near, axis=1)))
-    first, last = max(start + 10, expected - 30), min(len(curve) - 5, expected + 30)
+    first, last = max(start + clear, expected - 30), min(len(curve) - 5, expected + 30)
     return first + int(np.argmax(bend[first:last]))
 
 
