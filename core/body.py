@@ -17,7 +17,7 @@ from core.errors import ScanError
 from core.mesh import Faces, Mesh, Points
 from core.progress import Progress, quiet
 from core.reading.raw_scan import RawScan
-from core.reading.scan_file import read_raw, scan_bytes
+from core.reading.scan_file import no_memory, read_raw, scan_bytes
 from core.reading.surface import FEWEST_POINTS, is_cloud, surface_of
 from core.standing.body_size import MILLIMETRES
 from core.standing.upright import STANDING, Pose, find_pose
@@ -95,6 +95,15 @@ def body_of(
     ``name`` is that of the file and ``data`` what it holds; ``unit`` ("mm", "cm", "m", "inch"), ``up`` and
     ``front`` ("+x" .. "-z", axes of the file) overrule what the shape tells. Raises ScanError, Cancelled.
     """
+    try:
+        return _body_of(name, data, unit, up, front, progress)
+    except MemoryError:
+        raise no_memory(name) from None
+
+
+def _body_of(
+    name: str, data: bytes, unit: str | None, up: str | None, front: str | None, progress: Progress
+) -> Body:
     scan = read_raw(name, data, progress)
     rebuilt = is_cloud(scan)
     said: tuple[str, ...] = ()

@@ -15,6 +15,7 @@ from core.finding.chest import ABOVE, find_anchor, find_poles
 from core.finding.relief import breast_patch
 from core.measuring.rings import skin_ring, tape_ring
 from core.mesh import Mesh
+from core.reading.contour import distinct
 from core.sections import hull_corners, hull_perimeter, hull_slopes
 from core.slicing.arms import necks
 from core.slicing.outline import Pieces, ring
@@ -140,3 +141,12 @@ def test_triangles_without_an_area_are_refused(shape):
     for told in ({}, {"unit": "mm", "up": "+z", "front": "-y"}):
         with pytest.raises(ScanError):
             body_of("flat.obj", (corners + faces).encode(), **told)
+
+
+def test_equal_points_are_one():
+    chance = np.random.default_rng(5)
+    points = chance.integers(0, 6, (500, 3)).astype(float) - 3.0
+    points[::7] *= -1.0  # some zeros with a sign
+    found = distinct(points)
+    assert len(found) == len(np.unique(points, axis=0)) == len(np.unique(found, axis=0))
+    assert distinct(found) is found

@@ -34,7 +34,7 @@ _KINDS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126:
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 _MOST_NODES, _DEEPEST = 10_000, 100
-_MOST_MARKS = 2_000_000
+_MOST_MARKS = 500_000
 _STEP = 1 << 20
 _WHOLE = "Put that file beside it, or export all as one GLB file."
 _OUTSIDE = re.compile(rb'"uri"\s*:\s*"(?!data:)')
@@ -58,7 +58,7 @@ def read_gltf(name: str, data: bytes, progress: Progress) -> RawScan:
         progress("reading", len(parts) / (len(parts) + 1))
         parts.append(reader.part(primitive, matrix))
         points, triangles = points + len(parts[-1].vertices), triangles + len(parts[-1].faces)
-        check_size(name, points, triangles)
+        check_size(name, points, triangles, len(data))
         if len(parts) > _MOST_NODES:
             raise too_much(name)
     return joined(parts)

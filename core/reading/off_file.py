@@ -32,10 +32,10 @@ def read_off(name: str, data: bytes, progress: Progress) -> RawScan:
     points, polygons = (int(count) for count in whole(found.numbers[:2]))
     if min(points, polygons) < 0 or 1 + points + polygons > len(found.counts):
         raise ScanError(f"{name} is cut short: its header promises more than the file holds.", AGAIN)
-    check_size(name, points, polygons)
+    check_size(name, points, polygons, len(data))
     rows = found.rows(1, 1 + points)
     normals = rows.columns(3, 6) if head[3] else None
-    faces = _polygons(name, found.rows(1 + points, 1 + points + polygons))
+    faces = _polygons(name, found.rows(1 + points, 1 + points + polygons), len(data))
     return RawScan(rows.columns(0, 3), faces, normals)
 
 
@@ -129,13 +129,13 @@ def _is_point(line: bytes) -> bool:
     return len(words) >= 3 and all(map(_is_number, words))
 
 
-def _polygons(name: str, rows: Table) -> Faces:
+def _polygons(name: str, rows: Table, size: int) -> Faces:
     if len(rows.counts) == 0:
         return no_faces()
     sizes = whole(rows.columns(0, 1)[:, 0])
     if (sizes < 0).any() or (sizes >= rows.counts).any():
         raise ValueError("a polygon with too few corners")
-    check_size(name, 0, int(sizes.sum()) - 2 * len(sizes))
-    before = np.repeat(np.cumsum(sizes) - sizes, sizes)
-    at = np.repeat(rows.starts + 1, sizes) + np.arange(sizes.sum()) - before
+    check_size(name, 0, int(np.maximum(sizes - 2, 0).sum()), size)
+    at = np.repeat(rows.starts + 1 - np.cumsum(sizes) + sizes, sizes)
+    at += np.arange(len(at))
     return fans(whole(rows.numbers[at]), sizes)

@@ -3,58 +3,37 @@
 from __future__ import annotations
 
 from array import array
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from core.errors import ScanError
-from core.mesh import Floats, Indices
+from core.mesh import Faces, Floats, Indices
 from core.progress import Progress
-from core.reading.raw_scan import AGAIN, RawScan, check_size, fans, no_faces, strips
+from core.reading.ply_header import CORNERS, NEEDED, NORMALS, PLACES, Element, Kind, read_header
+from core.reading.raw_scan import (
+    AGAIN,
+    BLOCK,
+    RawScan,
+    all_faces,
+    check_size,
+    fans,
+    rows_of,
+    strips,
+    too_much,
+)
 from core.reading.text_table import whole, whole_table
 
-_TYPES = {
-    **dict.fromkeys(("char", "int8"), "i1"),
-    **dict.fromkeys(("uchar", "uint8"), "u1"),
-    **dict.fromkeys(("short", "int16"), "i2"),
-    **dict.fromkeys(("ushort", "uint16"), "u2"),
-    **dict.fromkeys(("int", "int32"), "i4"),
-    **dict.fromkeys(("uint", "uint32"), "u4"),
-    **dict.fromkeys(("float", "float32"), "f4"),
-    **dict.fromkeys(("double", "float64"), "f8"),
-    **{"float16": "f2", "int64": "i8", "uint64": "u8"},
-}
-_ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
-_HEAD_BYTES = 1 << 20
-_MOST_PROPERTIES = 1000
+_MOST_LISTS = 20_000_000
+"""Lists that are gone through one by one: two of the largest number of polygons need half as many."""
 
-Kind = np.dtype[np.generic]
 Values = npt.NDArray[np.generic]
 
 
-@dataclass(frozen=True)
-class _Property:
-    name: str
-    item: Kind
-    count: Kind | None  # of a list
-
-
-@dataclass(frozen=True)
-class _Element:
-    name: str
-    rows: int
-    properties: tuple[_Property, ...]
-
-    def least(self, text: bool) -> int:
-        """Return the least that a row takes [bytes]; a polygon has three corners."""
-        size = 0
-        for each in self.properties:
-            items = 1 if each.count is None else 3 * (self.name == "face" and each.name.startswith("vert"))
-            size += 2 * (items + (each.count is not None)) if text else items * each.item.itemsize
-            size += each.count.itemsize if each.count is not None and not text else 0
-        return size
+Spots = range | Indices
+"""Where something stands, row after row: evenly spaced, or anywhere."""
 
 
 class _Content:
@@ -68,17 +47,48 @@ class _Content:
     def size(self, kind: Kind | None) -> int:
         return 0 if kind is None else 1 if self.text else kind.itemsize
 
-    def at(self, places: Indices, items: int, kind: Kind) -> Values:
-        """Return ``items`` values in a row from each place, shape (places, items)."""
-        taken: Values = self.values[places[:, None] + np.arange(items * self.size(kind))]
-        return taken if self.text or items == 0 else taken.view(kind)
+    def column(self, spots: Spots, kind: Kind) -> Values:
+        """Return the value at each spot, shape (spots,)."""
+        if isinstance(spots, range):
+            return self._rows(spots, 1, kind)[:, 0]
+        ends = np.arange(1, len(spots) + 1)
+        return self._picked(spots, ends - 1, ends, kind)
+
+    def lists(self, spots: Spots, counts: Indices, kind: Kind) -> Values:
+        """Return ``counts`` values in a row from each spot, one list after the other."""
+        if isinstance(spots, range) and np.ptp(counts) == 0:
+            return self._rows(spots, int(counts[0]), kind).ravel()
+        ends = np.cumsum(counts)
+        return self._picked(np.asarray(spots), ends - counts, ends, kind)
+
+    def _rows(self, spots: range, items: int, kind: Kind) -> Values:
+        """Return values that are evenly spaced as they stand in memory, shape (spots, items)."""
+        kind = self.values.dtype if self.text else kind
+        unit = kind.itemsize if self.text else 1
+        strides = (spots.step * unit, kind.itemsize)
+        return np.ndarray((len(spots), items), kind, self._raw, spots.start * unit, strides)
+
+    def _picked(self, spots: Indices, begins: Indices, ends: Indices, kind: Kind) -> Values:
+        """Return items ``begins`` to ``ends`` of a long list, each run of them from a spot on."""
+        size, total = self.size(kind), int(ends[-1]) if len(ends) else 0
+        picked = np.empty(total, self.values.dtype if self.text else kind)
+        for start in range(0, total, BLOCK):
+            stop = min(start + BLOCK, total)
+            row = rows_of(ends, start, stop)
+            places = spots[row] + size * (np.arange(start, stop) - begins[row])
+            taken = self.values[places[:, None] + np.arange(size)]
+            picked[start:stop] = (taken if self.text else taken.view(kind))[:, 0]
+        return picked
 
     def count_at(self, place: int, kind: Kind) -> int:
         """Return how many items the list has whose count stands there."""
-        if place >= len(self.values):
+        if place + self.size(kind) > len(self.values):
             raise ValueError("a row beyond the end")
         if self.text:
             count = int(self._raw[place])
+        elif kind.itemsize == 1:
+            count = self._raw[place]
+            count -= 256 * (count > 127 and kind.kind == "i")
         else:
             count = int.from_bytes(
                 self._raw[place : place + kind.itemsize], self._order, signed=kind.kind == "i"
@@ -94,7 +104,7 @@ def read_ply(name: str, data: bytes, progress: Progress) -> RawScan:
     Polygons of any number of corners and strips of triangles become triangles; colours and all else that is
     no position, corner or normal is passed over. Source: Turk 1994, the PLY polygon file format.
     """
-    order, elements, start = _header(name, data)
+    order, elements, start = read_header(name, data)
     least = sum(each.rows * each.least(not order) for each in elements)
     if least > len(data) - start + (not order):  # the last number of a text needs no blank behind it
         raise ScanError(f"{name} is cut short: its header promises more than the file holds.", AGAIN)
@@ -106,74 +116,47 @@ def read_ply(name: str, data: bytes, progress: Progress) -> RawScan:
     content = _Content(values, order)
     found: dict[str, _Table] = {}
     place = 0
+    while elements and elements[-1].name not in NEEDED:
+        elements.pop()  # what stands behind all that is needed
     for element in elements:
-        places, place = _places(element, content, place, progress)
-        found.setdefault(element.name, _Table(element, content, places))
+        spots, place = _spots(name, element, content, place, progress)
+        if element.name in NEEDED:
+            found.setdefault(element.name, _Table(name, len(data), element, content, spots))
     if place > len(values):
         raise ValueError("a row beyond the end")
-    return _scan(found)
+    return _scan(name, found, len(data))
 
 
-def _header(name: str, data: bytes) -> tuple[str, list[_Element], int]:
-    """Return the order of the bytes, "" for text, what the file holds, and where that begins."""
-    newline = b"\r\n" if data[:5] == b"ply\r\n" else data[3:4]
-    end = data.find(newline + b"end_header", 0, _HEAD_BYTES)
-    if data[:3] != b"ply" or newline not in (b"\n", b"\r", b"\r\n") or end < 0:
-        raise ScanError(f"{name} is not a PLY file, or its header is cut short.", AGAIN)
-    start = data.find(newline, end + 1)
-    try:
-        order, elements = _elements(data[:end].decode("latin-1").replace("\r", "\n").split("\n"))
-    except (IndexError, KeyError, ValueError) as problem:
-        raise ScanError(f"{name} has a header that makes no sense.", AGAIN) from problem
-    return order, elements, start + len(newline) if start >= 0 else len(data)
+def _spots(
+    name: str, element: Element, content: _Content, place: int, progress: Progress
+) -> tuple[list[Spots], int]:
+    """Return where the values of each property (of a list: its count) begin, and where the rows end.
 
-
-def _elements(lines: list[str]) -> tuple[str, list[_Element]]:
-    order, elements = None, list[_Element]()
-    for line in lines:
-        words = line.split()
-        if words[:1] == ["format"]:
-            order = _ORDERS[words[1]]
-        elif words[:1] == ["element"]:
-            elements.append(_Element(words[1], int(words[2]), ()))
-        elif words[:1] == ["property"]:
-            kinds = [np.dtype((order or "<") + _TYPES[word]) for word in words[1:-1] if word != "list"]
-            is_list = words[1] == "list"
-            if len(kinds) != 1 + is_list or (is_list and kinds[0].kind == "f"):
-                raise ValueError("a property of no kind")
-            known = elements[-1].properties
-            new = _Property(words[-1], kinds[-1], kinds[0] if is_list else None)
-            elements[-1] = replace(elements[-1], properties=(*known, new))
-    if order is None or any(e.rows < 0 or len(e.properties) > _MOST_PROPERTIES for e in elements):
-        raise ValueError("no format, or a count below zero")
-    return order, elements
-
-
-def _places(
-    element: _Element, content: _Content, place: int, progress: Progress
-) -> tuple[list[Indices], int]:
-    """Return where the values of each property (of a list: its count) begin, and where the rows end."""
+    Properties that are not needed may have none.
+    """
     if element.rows == 0 or not element.properties:
-        return [np.empty(0, dtype=np.int64) for _ in element.properties], place
+        return [range(0) for _ in element.properties], place
     offsets, size = list[int](), 0
     for each in element.properties:
-        offsets.append(size)
+        offsets.append(place + size)
         items = 1 if each.count is None else content.count_at(place + size, each.count)
         size += content.size(each.count) + items * content.size(each.item)
     end = place + size * element.rows
     if end <= len(content.values):
-        first = place + size * np.arange(element.rows)
-        places = [first + offset for offset in offsets]
-        lists = [(at, each.count) for at, each in zip(places, element.properties, strict=True) if each.count]
-        if all(np.ptp(content.at(at, 1, count)) == 0 for at, count in lists):
-            return places, end
-    if all(each.count is None for each in element.properties):
+        spots = [range(offset, offset + size * element.rows, size) for offset in offsets]
+        lists = [(at, each.count) for at, each in zip(spots, element.properties, strict=True) if each.count]
+        if all(np.ptp(content.column(at, count)) == 0 for at, count in lists):
+            return list(spots), end
+    count = sum(each.count is not None for each in element.properties)
+    if count == 0:
         raise ValueError("rows beyond the end")
+    if count * element.rows > _MOST_LISTS:
+        raise too_much(name)
     return _walk(element, content, place, progress)
 
 
-def _walk(element: _Element, content: _Content, place: int, progress: Progress) -> tuple[list[Indices], int]:
-    """Go through rows of different lengths one by one; see ``_places``."""
+def _walk(element: Element, content: _Content, place: int, progress: Progress) -> tuple[list[Spots], int]:
+    """Go through rows of different lengths one by one; see ``_spots``."""
     gap, lists = 0, list[tuple[int, Kind, int]]()
     spots = list[tuple[int, int]]()  # of each property: after which list, and how far
     for each in element.properties:
@@ -183,63 +166,79 @@ def _walk(element: _Element, content: _Content, place: int, progress: Progress) 
         else:
             lists.append((gap, each.count, content.size(each.item)))
             gap = 0
-    begins = [array("q") for _ in range(len(lists) + 1)]
+    needed = [each.is_needed(element.name) for each in element.properties]
+    kept = {after for (after, _), is_needed in zip(spots, needed, strict=True) if is_needed}
+    begins = {after: array("q") for after in kept}
+    steps = [
+        (begins[k].append if k in kept else _forget, before, kind, content.size(kind), item)
+        for k, (before, kind, item) in enumerate(lists)
+    ]
+    last, count_at = begins[len(lists)].append if len(lists) in kept else _forget, content.count_at
     for row in range(element.rows):
-        for begin, (before, kind, item) in zip(begins, lists, strict=False):
-            begin.append(place)
+        for begin, before, kind, width, item in steps:
+            begin(place)
             place += before
-            place += content.size(kind) + item * content.count_at(place, kind)
-        begins[-1].append(place)
+            place += width + item * count_at(place, kind)
+        last(place)
         place += gap
         if row % 50_000 == 0:
-            progress("reading", place / len(content.values))
-    begin_of = [np.frombuffer(begin, dtype=np.int64) for begin in begins]
-    return [begin_of[segment] + offset for segment, offset in spots], place
+            progress("reading", min(place / len(content.values), 1.0))
+    begin_of = {after: np.frombuffer(begin, dtype=np.int64) for after, begin in begins.items()}
+    return [begin_of[after] + offset if after in kept else range(0) for after, offset in spots], place
+
+
+def _forget(place: int) -> None:
+    """Do without the places of rows that nobody reads."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Table:
-    """The rows of one element, and where in them the values of each property begin."""
+    """The rows of one element, and where in them the values of each property begin.
 
-    element: _Element
+    ``name`` and ``size`` [bytes] are those of the file.
+    """
+
+    name: str
+    size: int
+    element: Element
     content: _Content
-    places: list[Indices]
+    spots: list[Spots]
 
-    def columns(self, *names: str) -> Floats | None:
+    def columns(self, names: tuple[str, ...]) -> Floats | None:
         """Return some properties that are no lists, shape (rows, names); None if one of them is not there."""
-        properties = zip(self.element.properties, self.places, strict=True)
-        known = {each.name: (at, 1, each.item) for each, at in properties if each.count is None}
+        properties = zip(self.element.properties, self.spots, strict=True)
+        known = {each.name: (at, each.item) for each, at in properties if each.count is None}
         if not known.keys() >= set(names):
             return None
-        return np.stack([self.content.at(*known[name])[:, 0].astype(np.float64) for name in names], axis=1)
+        columns = np.empty((self.element.rows, len(names)))
+        for k, name in enumerate(names):
+            columns[:, k] = self.content.column(*known[name]) if self.element.rows else 0.0
+        return columns
 
     def corners(self) -> tuple[Indices, Indices]:
         """Return the list of vertices, row after row, and how many each row has."""
-        for each, at in zip(self.element.properties, self.places, strict=True):
-            if each.count is not None and each.name.startswith("vert"):
-                counts = _whole(self.content.at(at, 1, each.count)[:, 0])
-                return self._items(at + self.content.size(each.count), counts, each.item), counts
+        for each, at in zip(self.element.properties, self.spots, strict=True):
+            if each.count is not None and each.name.startswith(CORNERS) and self.element.rows:
+                counts = _whole(self.content.column(at, each.count))
+                check_size(self.name, 0, int(counts.sum()) - 2 * len(counts), self.size)
+                skip = self.content.size(each.count)
+                first = (
+                    range(at.start + skip, at.stop + skip, at.step) if isinstance(at, range) else at + skip
+                )
+                return _whole(self.content.lists(first, counts, each.item)), counts
         return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
-
-    def _items(self, starts: Indices, counts: Indices, kind: Kind) -> Indices:
-        ends = np.cumsum(counts)
-        items = np.empty(int(counts.sum()), dtype=np.int64)
-        for count in np.unique(counts).tolist():
-            same = counts == count
-            into = (ends[same] - count)[:, None] + np.arange(count)
-            items[into] = _whole(self.content.at(starts[same], count, kind))
-        return items
 
 
 def _whole(values: Values) -> Indices:
     return values.astype(np.int64) if values.dtype.kind in "iu" else whole(values.astype(np.float64))
 
 
-def _scan(found: dict[str, _Table]) -> RawScan:
-    vertices = found["vertex"].columns("x", "y", "z")
+def _scan(name: str, found: dict[str, _Table], size: int) -> RawScan:
+    check_size(name, found["vertex"].element.rows, 0, size)
+    vertices = found["vertex"].columns(PLACES)
     if vertices is None:
         raise ValueError("vertices without positions")
-    faces = [no_faces()]
+    faces = list[Faces]()
     if "face" in found:
         faces.append(fans(*found["face"].corners()))
     if "tristrips" in found:  # a corner below zero begins a new strip
@@ -247,4 +246,4 @@ def _scan(found: dict[str, _Table]) -> RawScan:
         strip = np.cumsum(corners < 0) + np.repeat(np.arange(len(counts)), counts)
         real = corners >= 0
         faces.append(strips(corners[real], np.bincount(strip[real])))
-    return RawScan(vertices, np.concatenate(faces), found["vertex"].columns("nx", "ny", "nz"))
+    return RawScan(vertices, all_faces(faces), found["vertex"].columns(NORMALS))

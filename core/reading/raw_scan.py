@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,15 @@ from core.mesh import Faces, Indices, Points
 
 MOST_POINTS, MOST_TRIANGLES = 10_000_000, 5_000_000
 """What a scan may hold: with more of it the memory would not last."""
+
+FREE, TIMES = 32 << 20, 8
+"""Points and triangles may take so much memory [bytes], and so many times as much as the file."""
+
+PACKED_FREE, PACKED_TIMES = 16 << 20, 50
+"""A packed file may unpack to so much [bytes], and so many times its size: scans have a ratio of 3 to 15."""
+
+BLOCK = 1 << 18
+"""Triangles and items of lists that are made at a time, so that what is worked out for them stays small."""
 
 AGAIN = "Export the scan again, or copy the file again."
 
@@ -28,15 +38,27 @@ class RawScan:
     normals: Points | None = None
 
 
-def check_size(name: str, points: int, triangles: int = 0) -> None:
+def check_size(name: str, points: int, triangles: int = 0, size: int | None = None) -> None:
     """Refuse a scan that holds more than what can be worked on. Raises ScanError.
 
     Points that are no more than the corners of single triangles are no reason: most of them become one.
+    A file of ``size`` bytes must not describe much more than it holds, the same over and over again.
     """
     if points > max(MOST_POINTS, 3 * triangles) or triangles > MOST_TRIANGLES:
         raise ScanError(
             f"{name} is too fine: it holds {points:,} points and {triangles:,} triangles.",
             f"Thin the scan to at most {MOST_POINTS:,} points and {MOST_TRIANGLES:,} triangles.",
+        )
+    if size is not None and 24 * (points + triangles) > FREE + TIMES * size:
+        raise too_much(name)
+
+
+def check_packed(name: str, unpacked: int, packed: int) -> None:
+    """Refuse ``packed`` bytes that unpack to far more than those of a scan do. Raises ScanError."""
+    if unpacked > PACKED_FREE + PACKED_TIMES * packed:
+        raise ScanError(
+            f"{name} unpacks to more than {PACKED_TIMES} times its size, which no scan does.",
+            "Save the scan again without compression.",
         )
 
 
@@ -47,6 +69,8 @@ def too_much(name: str) -> ScanError:
 
 def joined(parts: list[RawScan]) -> RawScan:
     """Return several parts of a file as one scan; it has normals if all parts have."""
+    if len(parts) == 1:
+        return parts[0]
     starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
     normals = [part.normals for part in parts if part.normals is not None]
     return RawScan(
@@ -56,6 +80,12 @@ def joined(parts: list[RawScan]) -> RawScan:
         ),
         np.concatenate(normals) if normals and len(normals) == len(parts) else None,
     )
+
+
+def all_faces(parts: list[Faces]) -> Faces:
+    """Return the triangles of several parts, shape (m, 3); those of a single one are not copied."""
+    parts = [part for part in parts if len(part)]
+    return parts[0] if len(parts) == 1 else np.concatenate([no_faces(), *parts])
 
 
 def no_faces() -> Faces:
@@ -69,19 +99,39 @@ def fans(corners: Indices, counts: Indices) -> Faces:
     ``corners``, shape (sum of counts,), holds one polygon after the other, of ``counts`` corners each.
     Raises ValueError if they are fewer.
     """
-    pieces = _pieces(corners, counts)
-    first = np.repeat(np.cumsum(counts) - counts, pieces)
-    step = np.arange(len(first)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
-    return np.stack([corners[first], corners[first + step + 1], corners[first + step + 2]], axis=1)
+    return _triangles(corners, counts, lambda first, step: (first, first + step + 1, first + step + 2))
 
 
 def strips(corners: Indices, counts: Indices) -> Faces:
     """Cut strips of triangles into single ones, all running the same way round, as ``fans`` does, (m, 3)."""
+
+    def places(first: Indices, step: Indices) -> tuple[Indices, ...]:
+        at, odd = first + step, step % 2
+        return at, at + 1 + odd, at + 2 - odd
+
+    return _triangles(corners, counts, places)
+
+
+def _triangles(
+    corners: Indices, counts: Indices, places: Callable[[Indices, Indices], tuple[Indices, ...]]
+) -> Faces:
+    """Return the corners at the ``places`` of each triangle, told by its polygon's first and its number."""
     pieces = _pieces(corners, counts)
-    step = np.arange(pieces.sum()) - np.repeat(np.cumsum(pieces) - pieces, pieces)
-    at = np.repeat(np.cumsum(counts) - counts, pieces) + step
-    odd = step % 2
-    return np.stack([corners[at], corners[at + 1 + odd], corners[at + 2 - odd]], axis=1)
+    first, ends = np.cumsum(counts) - counts, np.cumsum(pieces)
+    faces = np.empty((int(pieces.sum()), 3), dtype=np.int64)
+    for start in range(0, len(faces), BLOCK):
+        stop = min(start + BLOCK, len(faces))
+        row = rows_of(ends, start, stop)
+        step = np.arange(start, stop) - (ends - pieces)[row]
+        faces[start:stop] = np.stack([corners[at] for at in places(first[row], step)], axis=1)
+    return faces
+
+
+def rows_of(ends: Indices, start: int, stop: int) -> Indices:
+    """Return the row of each of the items ``start`` to ``stop``, where rows end before the items ``ends``."""
+    first, last = np.searchsorted(ends, [start, stop - 1], side="right")
+    rows = np.arange(first, last + 1)
+    return np.repeat(rows, np.diff(np.minimum(ends[rows], stop), prepend=start))
 
 
 def _pieces(corners: Indices, counts: Indices) -> Indices:

@@ -18,7 +18,7 @@ from core.reading.gltf_file import read_gltf, with_buffers
 from core.reading.obj_file import read_obj
 from core.reading.off_file import begins_with_points, read_off, read_points
 from core.reading.ply_file import read_ply
-from core.reading.raw_scan import AGAIN, RawScan, check_size
+from core.reading.raw_scan import AGAIN, RawScan, check_packed, check_size
 from core.reading.stl_file import is_binary_stl, read_stl
 from core.reading.vtp_file import read_vtp
 
@@ -101,10 +101,19 @@ def read_raw(name: str, data: bytes, progress: Progress = quiet) -> RawScan:
             raise ScanError(f"{name} has triangles with corners that do not exist.", AGAIN)
     except (ScanError, Cancelled):
         raise
+    except MemoryError:
+        raise no_memory(name) from None
     except Exception as problem:  # a malformed file makes a reader fail in any way
         raise ScanError(f"{name} cannot be read: it is damaged or cut short.", AGAIN) from problem
     progress("reading", 1.0)
     return scan
+
+
+def no_memory(name: str) -> ScanError:
+    """Return the refusal of a scan that needs more memory than there is."""
+    return ScanError(
+        f"There is not enough memory for {name}.", "Close other programs, or thin the scan before opening it."
+    )
 
 
 def _reader(name: str, data: bytes) -> Reader:
@@ -137,6 +146,7 @@ def _unpacked(name: str, data: bytes, progress: Progress) -> bytes:
             parts.append(unpacker.decompress(waiting, 16 * _STEP))
             waiting = unpacker.unconsumed_tail
             held += len(parts[-1])
+            check_packed(name, held, len(data))
             if held > LARGEST_FILE:
                 raise ScanError(f"{name} is too large when unpacked.", _THINNER)
         waiting = unpacker.unused_data or data[at : at + _STEP]

@@ -8,7 +8,7 @@ from core.errors import ScanError
 from core.mesh import Points
 from core.progress import Progress
 from core.reading.raw_scan import AGAIN, RawScan, check_size
-from core.reading.text_table import blocks, lines_of, table
+from core.reading.text_table import Growing, blocks, lines_of, table
 
 _ROW = np.dtype([("normal", "<f4", 3), ("corners", "<f4", 9), ("colour", "<u2")])
 _HEAD = 84
@@ -39,10 +39,9 @@ def is_binary_stl(data: bytes) -> bool:
 def _text_corners(name: str, data: bytes, progress: Progress) -> Points:
     if b"endsolid" not in data[-1000:].lower():
         raise ScanError(f"{name} is cut short, or it is not an STL file.", AGAIN)
-    found, points = [np.empty((0, 3))], 0
+    found = Growing("d")
     for block in blocks(name, data, progress):
         lines = lines_of(block)
-        found.append(table(lines.picked(lines.marked(b"vertex"), 6)).columns(0, 3))
-        points += len(found[-1])
-        check_size(name, points, -(-points // 3))
-    return np.concatenate(found)
+        found.add(table(lines.picked(lines.marked(b"vertex"), 6)).columns(0, 3))
+        check_size(name, len(found) // 3, -(-len(found) // 9))
+    return found.array().reshape(-1, 3)

@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 
 from core.mesh import FARTHEST, Faces, Flags, Floats, Indices, Points, quadric_terms, unit
 from core.progress import Progress, quiet
-from core.reading.contour import BLOCK, contour, nearest, once, spacing_of
+from core.reading.contour import BLOCK, contour, distinct, nearest, once, spacing_of
 from core.reading.raw_scan import RawScan
 
 FEWEST_POINTS = 2000
@@ -86,7 +86,7 @@ def is_cloud(scan: RawScan) -> bool:
     if len(corners) == 0:
         return True
     low, high = np.percentile(some, (1, 99), axis=0)
-    reach, _ = cKDTree(corners).query(some)
+    reach, _ = cKDTree(distinct(corners)).query(some)
     return bool(np.mean(reach < 0.05 * np.linalg.norm(high - low)) < SMALL_PART)
 
 

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import re
+from array import array
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
+from core.errors import ScanError
 from core.mesh import Flags, Floats, Indices
 from core.progress import Progress
-from core.reading.raw_scan import check_size, too_much
+from core.reading.raw_scan import AGAIN, check_size, too_much
 
-BLOCK = 1 << 23
-"""How much text is read at a time [bytes]; a line must not be longer."""
+BLOCK = 1 << 20
+"""How much text is read at a time [bytes], so that what is made of it stays small; a line is not longer."""
 
 MOST_LINES = 40_000_000
 """The finest scan as text has fewer lines; a small packed file may hold many more."""
@@ -24,11 +27,13 @@ NUMBERS_A_POINT = 8
 
 Text = npt.NDArray[np.uint8]
 
+_BLANKS = bytes.maketrans(b"\t\n\v\f\r", b"     ")
+
 
 def blocks(name: str, data: bytes, progress: Progress) -> Iterator[bytes]:
     """Cut text at line ends into blocks that fit into memory.
 
-    Raises ScanError on too many lines, ValueError on an endless one.
+    Raises ScanError on too many lines or an endless one.
     """
     if max(data.count(b"\n"), data.count(b"\r")) > MOST_LINES:
         raise too_much(name)
@@ -39,7 +44,10 @@ def blocks(name: str, data: bytes, progress: Progress) -> Iterator[bytes]:
         if end - start > BLOCK:
             end = 1 + max(data.rfind(mark, start, start + BLOCK) for mark in (b"\n", b"\r"))
         if end <= start:
-            raise ValueError("a line without an end")
+            raise ScanError(
+                f"{name} holds a line of more than {BLOCK // 1_000_000} MB: it is no scan, or it is damaged.",
+                AGAIN,
+            )
         yield data[start:end]
         start = end
 
@@ -109,14 +117,33 @@ class Table:
         """Return some numbers of each line, shape (lines, last - first). ValueError if one is short."""
         if len(self.counts) and self.counts.min() < last:
             raise ValueError("a line too short")
+        if len(self.counts) and np.ptp(self.counts) == 0:
+            return self.numbers.reshape(len(self.counts), -1)[:, first:last].copy()
         return np.asarray(self.numbers[self.starts[:, None] + np.arange(first, last)])
+
+
+class Growing:
+    """An array that grows at its end, without a copy of all of it when it is whole."""
+
+    def __init__(self, kind: Literal["d", "q"]) -> None:
+        self._held = array(kind)
+
+    def __len__(self) -> int:
+        return len(self._held)
+
+    def add(self, values: npt.NDArray[np.generic]) -> None:
+        """Append values, converted to the kind of the array."""
+        self._held.frombytes(np.ascontiguousarray(values, self._held.typecode).tobytes())
+
+    def array(self) -> npt.NDArray[Any]:
+        """Return all values, shape (n,)."""
+        return np.frombuffer(self._held, self._held.typecode)
 
 
 def table(text: bytes) -> Table:
     """Read lines that hold nothing but numbers. Raises ValueError."""
     letters = np.frombuffer(text, dtype=np.uint8)
-    filled = letters > 32
-    words = np.flatnonzero(filled & ~np.concatenate([[False], filled[:-1]]))
+    words = _words(letters)
     ends = np.flatnonzero(letters == 10) + 1
     counts = np.diff(np.searchsorted(words, np.concatenate([[0], ends])))
     return Table(numbers(text, len(words)), counts)
@@ -124,16 +151,34 @@ def table(text: bytes) -> Table:
 
 def whole_table(name: str, data: bytes, progress: Progress) -> Table:
     """Read a text that holds nothing but numbers; empty lines are left out. Raises ScanError, ValueError."""
-    parts = [Table(np.empty(0), np.empty(0, dtype=np.int64))]
-    held = 0
+    held, counts = Growing("d"), Growing("q")
     for block in blocks(name, data, progress):
         lines = lines_of(block)
-        parts.append(table(lines.picked(np.ones(len(lines.first), dtype=bool))))
-        held += len(parts[-1].numbers)
-        check_size(name, held // NUMBERS_A_POINT)
-    return Table(
-        np.concatenate([part.numbers for part in parts]), np.concatenate([part.counts for part in parts])
-    )
+        part = table(lines.picked(np.ones(len(lines.first), dtype=bool)))
+        held.add(part.numbers)
+        counts.add(part.counts)
+        check_size(name, len(held) // NUMBERS_A_POINT)
+    return Table(held.array(), counts.array())
+
+
+def all_numbers(text: bytes, progress: Progress) -> Floats:
+    """Read numbers that blanks or line ends keep apart, whatever the lines. Raises ValueError, Cancelled."""
+    text, held, start = text.translate(_BLANKS), Growing("d"), 0
+    while start < len(text):
+        progress("reading", start / len(text))
+        end = len(text) if len(text) - start <= BLOCK else 1 + text.rfind(b" ", start, start + BLOCK)
+        if end <= start:
+            raise ValueError("a number without an end")
+        block = text[start:end]
+        held.add(numbers(block, len(_words(np.frombuffer(block, dtype=np.uint8)))))
+        start = end
+    return held.array()
+
+
+def _words(letters: Text) -> Indices:
+    """Return where the words of a text begin."""
+    filled = letters > 32
+    return np.flatnonzero(filled & ~np.concatenate([[False], filled[:-1]]))
 
 
 def numbers(text: bytes, count: int) -> Floats:
@@ -153,6 +198,9 @@ def numbers(text: bytes, count: int) -> Floats:
 
 def whole(values: Floats) -> Indices:
     """Return numbers that must be whole ones as such. Raises ValueError."""
-    if not (np.abs(values) < 2.0**53).all() or (values != np.floor(values)).any():
+    if len(values) and not (values.min() > -(2.0**53) and values.max() < 2.0**53):  # or not a number
+        raise ValueError("a number beyond all counts")
+    result = values.astype(np.int64)
+    if (result != values).any():
         raise ValueError("a number that is not whole")
-    return values.astype(np.int64)
+    return result

@@ -11,10 +11,19 @@ import numpy as np
 import numpy.typing as npt
 
 from core.errors import ScanError
-from core.mesh import Indices
-from core.progress import Progress
-from core.reading.raw_scan import RawScan, check_size, fans, joined, no_faces, strips, vectors
-from core.reading.text_table import table, whole
+from core.mesh import Faces, Indices
+from core.progress import Progress, quiet
+from core.reading.raw_scan import (
+    RawScan,
+    all_faces,
+    check_packed,
+    check_size,
+    fans,
+    joined,
+    strips,
+    vectors,
+)
+from core.reading.text_table import all_numbers, whole
 
 Values = npt.NDArray[np.generic]
 
@@ -26,7 +35,8 @@ _TYPES = {
 _STEP = 1 << 20
 _DEEPEST = 20
 _MOST_PARTS = 1000
-_LARGEST_ARRAY = 400_000_000
+_MOST_ARRAYS, _MOST_BLOCKS = 10_000, 100_000
+_LONGEST_TAG = 1 << 24
 _PLAIN = "Save it from its program without compression, or as PLY."
 
 
@@ -53,6 +63,7 @@ class _Outline:
         self.pieces: list[_Piece] = []
         self._open: list[str] = []
         self._array: _Array | None = None
+        self._arrays = 0
 
     def start(self, tag: str, settings: dict[str, str]) -> None:
         self._open.append(tag)
@@ -68,6 +79,9 @@ class _Outline:
         elif tag == "DataArray" and self.pieces:
             section = self._open[-2]
             name = settings.get("Name", "") if section != "Points" else ""
+            self._arrays += 1
+            if self._arrays > _MOST_ARRAYS:
+                raise ValueError("too many arrays")
             self._array = self.pieces[-1].arrays.setdefault((section, name), _Array(settings))
 
     def end(self, tag: str) -> None:
@@ -95,30 +109,39 @@ def read_vtp(name: str, data: bytes, progress: Progress) -> RawScan:
     parser.StartElementHandler, parser.EndElementHandler = outline.start, outline.end
     parser.CharacterDataHandler = outline.letters
     parser.StartDoctypeDeclHandler = parser.EntityDeclHandler = outline.refuse
-    for start in range(0, at if at >= 0 else end, _STEP):
+    stop = at if at >= 0 else end
+    for start in range(0, stop, _STEP):
         progress("reading", 0.5 * start / len(data))
-        parser.Parse(
-            data[start : min(start + _STEP, at if at >= 0 else end)], at < 0 and start + _STEP >= end
-        )
+        parser.Parse(data[start : min(start + _STEP, stop)], at < 0 and start + _STEP >= end)
+        if start - parser.CurrentByteIndex > _LONGEST_TAG:  # each step would look at all of it again
+            raise ValueError("a tag without an end")
     if outline.head.get("type") != "PolyData" or not outline.pieces:
         raise ScanError(f"{name} is no VTP file with a surface.", "Export the surface as VTP or PLY.")
     values = _Values(name, outline.head, data, data.find(b"_", end) + 1, b'"raw"' in data[at:end])
-    return joined([_scan(name, piece, values) for piece in outline.pieces])
+    parts, points, triangles = list[RawScan](), 0, 0
+    for piece in outline.pieces:
+        parts.append(_scan(name, piece, values, len(data)))
+        points, triangles = points + len(parts[-1].vertices), triangles + len(parts[-1].faces)
+        check_size(name, points, triangles, len(data))
+    return joined(parts)
 
 
-def _scan(name: str, piece: _Piece, values: _Values) -> RawScan:
+def _scan(name: str, piece: _Piece, values: _Values, size: int) -> RawScan:
     count, *polygons = (
         int(piece.settings.get(f"NumberOf{what}", "0")) for what in ("Points", "Polys", "Strips")
     )
-    check_size(name, count, sum(polygons))
-    vertices = vectors(values.of(piece.arrays["Points", ""])) if count else np.empty((0, 3))
-    faces = [no_faces()]
+    check_size(name, count, sum(polygons), size)
+    vertices = vectors(values.of(piece.arrays["Points", ""], 3 * count)) if count else np.empty((0, 3))
+    faces = list[Faces]()
     for section, cut, wanted in zip(("Polys", "Strips"), (fans, strips), polygons, strict=True):
         if wanted:
-            ends = values.whole(piece.arrays[section, "offsets"])
-            faces.append(cut(values.whole(piece.arrays[section, "connectivity"]), np.diff(ends, prepend=0)))
+            ends = values.whole(piece.arrays[section, "offsets"], wanted)
+            check_size(name, 0, int(ends[-1]) - 2 * wanted, size)
+            corners = values.whole(piece.arrays[section, "connectivity"], int(ends[-1]))
+            faces.append(cut(corners, np.diff(ends, prepend=0)))
     given = piece.arrays.get(("PointData", piece.normals))
-    return RawScan(vertices, np.concatenate(faces), vectors(values.of(given)) if given else None)
+    normals = vectors(values.of(given, 3 * count)) if given else None
+    return RawScan(vertices, all_faces(faces), normals)
 
 
 class _Values:
@@ -128,25 +151,31 @@ class _Values:
         self._order = ">" if head.get("byte_order") == "BigEndian" else "<"
         self._size = np.dtype(self._order + _TYPES[head.get("header_type", "UInt32")])
         self._compressed = "compressor" in head
-        self._data, self._start, self._raw = data, start, raw
+        self._name, self._data, self._start, self._raw = name, data, start, raw
         if head.get("compressor", "vtkZLibDataCompressor") != "vtkZLibDataCompressor":
             raise ScanError(f"{name} is compressed in a way that Busk does not read.", _PLAIN)
 
-    def of(self, array: _Array) -> Values:
-        """Return all numbers of an array, shape (n,)."""
+    def of(self, array: _Array, count: int) -> Values:
+        """Return the ``count`` numbers of an array, shape (count,)."""
+        values = self._read(array)
+        if len(values) != count:
+            raise ValueError("an array of another size")
+        return values
+
+    def _read(self, array: _Array) -> Values:
         form = array.settings.get("format", "ascii")
         kind = np.dtype(self._order + _TYPES[array.settings["type"]])
         if form == "ascii":
-            return table("".join(array.text).encode() + b"\n").numbers
+            return all_numbers("".join(array.text).encode(), quiet)
         if form == "binary":
             source = _Source("".join("".join(array.text).split()).encode(), 0, False)
         else:
             source = _Source(self._data, self._start + int(array.settings["offset"]), self._raw)
         return np.frombuffer(self._unpacked(source) if self._compressed else self._plain(source), kind)
 
-    def whole(self, array: _Array) -> Indices:
-        """Return the numbers of an array of whole numbers."""
-        values = self.of(array)
+    def whole(self, array: _Array, count: int) -> Indices:
+        """Return the ``count`` numbers of an array of whole numbers."""
+        values = self.of(array, count)
         return values.astype(np.int64) if values.dtype.kind in "iu" else whole(values.astype(np.float64))
 
     def _plain(self, source: _Source) -> bytes:
@@ -157,14 +186,15 @@ class _Values:
     def _unpacked(self, source: _Source) -> bytes:
         width = self._size.itemsize
         count = int(np.frombuffer(source.peek(width), self._size)[0])
-        head = [int(size) for size in np.frombuffer(source.take((3 + count) * width), self._size)]
-        sizes = [head[1]] * count
-        if count and head[2]:
-            sizes[-1] = head[2]
-        if sum(sizes) > _LARGEST_ARRAY:
-            raise ValueError("an array too large")
-        packed, parts, at = source.take(sum(head[3:])), [], 0
-        for size, length in zip(sizes, head[3:], strict=True):
+        if count > _MOST_BLOCKS:
+            raise ValueError("too many blocks")
+        _, size, last, *lengths = np.frombuffer(source.take((3 + count) * width), self._size).tolist()
+        sizes = [size] * count
+        if count and last:
+            sizes[-1] = last
+        check_packed(self._name, sum(sizes), sum(lengths))
+        packed, parts, at = source.take(sum(lengths)), [], 0
+        for size, length in zip(sizes, lengths, strict=True):
             parts.append(zlib.decompressobj().decompress(packed[at : at + length], size + 1))
             at += length
         if [len(part) for part in parts] != sizes:
