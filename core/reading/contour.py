@@ -145,12 +145,10 @@ def distinct(points: Points) -> Points:
 
     Those that are told apart by no bit are equal.
     """
-    x, y, z = (points + 0.0).view(np.uint64).T  # zero has one sign
-    key = (
-        x * np.uint64(0x9E3779B97F4A7C15)
-        ^ y * np.uint64(0xC2B2AE3D27D4EB4F)
-        ^ z * np.uint64(0x165667B19E3779F9)
-    )
+    key = np.zeros(len(points), dtype=np.uint64)
+    for column in (points + 0.0).view(np.uint64).T:  # zero has one sign
+        key = (key ^ column ^ (column >> np.uint64(32))) * np.uint64(0x9E3779B97F4A7C15)
+        key ^= key >> np.uint64(29)
     order = np.argsort(key, kind="stable")
     again = np.diff(key[order]) == 0
     if not again.any():
