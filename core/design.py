@@ -13,14 +13,24 @@ from core.design_elastics import TISSUE_LIMITS, TISSUE_STIFFNESS, Elastic, check
 from core.design_limits import check_flags, check_numbers, check_words
 from core.design_lines import LineTraits, OwnLine, WornLine, partner_of
 from core.design_measures import WORN_TIGHT, OwnMeasure, check_customer, put_measure
+from core.document_limits import (
+    MOST_ELASTICS,
+    MOST_LINES,
+    MOST_MEASURES,
+    MOST_POINTS,
+    MOST_ROWS,
+    check_counts,
+)
 from core.errors import LandmarkError, LineError, UserError
 from core.lines import RATIO_LIMITS
 from core.mechanics import CHOICES, DEFAULT_LINE_STIFFNESS, RANGES, Mechanics
 from core.placing import PlacedMark
+from core.printable_name import repeated
 from core.volume import CONTROLS
 
 WEIGHTS = ("smooth", "paper")
 TEMPLATES = ("168", "120")
+_LONGEST_WORD = 100  # letters of a unit or an axis
 
 
 @dataclass(frozen=True)
@@ -28,7 +38,7 @@ class ScanSource:
     """Where the scan lies: the file ``path``, or ``member`` of the project ``path``.
 
     ``unit``, ``up`` and ``front`` are None unless they were set by hand; ``up`` and ``front`` are axes of the
-    file like "+z", or directions in it like "0.2,0,1".
+    file like "+z", or directions in it like "0.2,0,1". Raises UserError for what is far too long.
     """
 
     path: str
@@ -36,6 +46,10 @@ class ScanSource:
     unit: str | None = None
     up: str | None = None
     front: str | None = None
+
+    def __post_init__(self) -> None:
+        if any(len(word or "") > _LONGEST_WORD for word in (self.unit, self.up, self.front)):
+            raise UserError("The unit, up or front of the scan cannot be used.", "Choose it again.")
 
     @property
     def name(self) -> str:
@@ -90,6 +104,7 @@ class Design:
     unknown: Mapping[str, Any] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
+        self._check_counts()
         self._check_settings()
         check_customer(self.customer)
         for line in self.lines:
@@ -98,15 +113,26 @@ class Design:
                     f"{line.name} cannot be set to {100 * line.ratio:.1f} % of its rest length.",
                     f"Stay between {100 * RATIO_LIMITS[0]:.0f} and {100 * RATIO_LIMITS[1]:.0f} %.",
                 )
-        if twice := _twice([line.name for line in self.own_lines]):
+        if twice := repeated(line.name for line in self.own_lines):
             raise LineError(f"There are two lines '{twice}'.", "Give each line a name of its own.")
-        if twice := _twice([line.name for line in self.traits]):
+        if twice := repeated(line.name for line in self.traits):
             raise LineError(f"The line {twice} is treated in two ways.", "Say once how.")
-        if twice := _twice([mark.name for mark in self.placed]):
+        if twice := repeated(mark.name for mark in self.placed):
             raise LandmarkError(f"The landmark {twice} is placed twice.", "Place it once.")
-        if twice := _twice([measure.name for measure in self.own_measures]):
+        if twice := repeated(measure.name for measure in self.own_measures):
             raise UserError(f"There are two measures '{twice}'.", "Give each measure a name of its own.")
         check_elastics(self.elastics, {each.name: each.elastic for each in self.traits if each.elastic})
+
+    def _check_counts(self) -> None:
+        check_counts(
+            (
+                *((len(lines), MOST_LINES, "lines") for lines in (self.lines, self.own_lines, self.traits)),
+                (sum(len(line.points) for line in self.own_lines), MOST_POINTS, "points of own lines"),
+                (len(self.own_measures), MOST_MEASURES, "own measures"),
+                (len(self.elastics), MOST_ELASTICS, "elastics"),
+                (sum(len(each.curve) for each in self.elastics), MOST_ROWS, "rows in tables of elastics"),
+            )
+        )
 
     def _check_settings(self) -> None:
         check_words(
@@ -269,7 +295,3 @@ class Design:
     def _check_unlocked(self, name: str) -> None:
         if self.traits_of(name).locked:
             raise LineError(f"The line {name} is locked.", "Unlock it first.")
-
-
-def _twice(names: list[str]) -> str:
-    return next((name for name in names if names.count(name) > 1), "")

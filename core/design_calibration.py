@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
-from core.design_lines import is_printable
 from core.errors import UserError
+from core.printable_name import is_printable
 
 LONGEST_NAME = 200
 """Letters of the name of the worn scan's file, and of that of a number."""
@@ -61,16 +59,3 @@ class Calibration:
         words = all(name.strip() and is_printable(name, LONGEST_NAME) for name in names)
         if not words or len(names) > MOST_NUMBERS + 1 or not all(map(math.isfinite, figures)):
             raise UserError("What is kept of a calibration cannot be read.", "Calibrate again.")
-
-
-def calibration_of(values: Mapping[str, Any]) -> Calibration:
-    """Return the calibration that JSON ``values`` describe. Raises KeyError, TypeError, ValueError."""
-    numbers = []
-    for each in values.get("numbers", ()):
-        kept = each.get("kept", False)
-        if not isinstance(kept, bool):
-            raise TypeError("kept is true or false")
-        before, after, plus_minus = (float(each[key]) for key in ("before", "after", "plus_minus"))
-        numbers.append(FoundNumber(str(each["name"]), before, after, plus_minus, kept))
-    rms = float(values["rms_before"]), float(values["rms_after"])
-    return Calibration(str(values["worn"]), *rms, tuple(numbers), float(values.get("thickness", 0.0)))

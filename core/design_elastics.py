@@ -6,10 +6,9 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
 
-from core.design_lines import is_printable
 from core.errors import LineError
+from core.printable_name import is_blank, is_printable, repeated
 
 Point = tuple[float, float]
 Curve = tuple[Point, ...]
@@ -24,11 +23,17 @@ TISSUE_LIMITS = (50.0, 2000.0)
 LONGEST_NAME = 80
 """Letters of the name of an elastic."""
 
+LONGEST_SOURCE = 500
+"""Letters of where the curve of an elastic comes from."""
+
 LIMITS = {"width_mm": (1.0, 200.0), "allowance_mm": (0.0, 200.0)}
 """The least and the largest width and allowance [mm]."""
 
 MOST_POINTS, FURTHEST, STRONGEST = 2000, 5.0, 10_000.0
 """Points of a curve, its longest elongation [1] and its largest force [N]."""
+
+
+_WHITE = str.maketrans("\t\r\n", "   ")
 
 
 @dataclass(frozen=True)
@@ -48,8 +53,13 @@ class Elastic:
     estimate: bool = True
 
     def __post_init__(self) -> None:
-        if not self.name.strip() or not is_printable(self.name, LONGEST_NAME):
+        if is_blank(self.name) or not is_printable(self.name, LONGEST_NAME):
             raise LineError("An elastic needs a name.", f"Use up to {LONGEST_NAME} letters.")
+        if not is_printable(self.source.translate(_WHITE), LONGEST_SOURCE):
+            raise LineError(
+                f"The source of the elastic {self.name} is too long or cannot be printed.",
+                f"Use up to {LONGEST_SOURCE} letters.",
+            )
         for key, (low, high) in LIMITS.items():
             number, what = getattr(self, key), key.removesuffix("_mm")
             if not low <= number <= high:
@@ -131,22 +141,12 @@ class Elastic:
         )
 
 
-def elastic_of(values: Mapping[str, Any]) -> Elastic:
-    """Return the elastic that JSON ``values`` describe. Raises KeyError, TypeError, ValueError, LineError."""
-    curve = tuple((float(elongation), float(force)) for elongation, force in values["curve"])
-    estimate = values.get("estimate", True)
-    if not isinstance(estimate, bool):
-        raise TypeError("estimate is true or false")
-    width, allowance = float(values["width_mm"]), float(values.get("allowance_mm", 20.0))
-    return Elastic(str(values["name"]), width, curve, allowance, str(values.get("source", "")), estimate)
-
-
 def check_elastics(elastics: Sequence[Elastic], made: Mapping[str, str]) -> None:
     """Raise LineError if two elastics share a name, or a line is ``made`` of one that is not there."""
     names = [elastic.name for elastic in elastics]
-    for name in names:
-        if names.count(name) > 1:
-            raise LineError(f"There are two elastics '{name}'.", "Give each elastic a name of its own.")
+    if twice := repeated(names):
+        raise LineError(f"There are two elastics '{twice}'.", "Give each elastic a name of its own.")
+    known = set(names)
     for line, name in made.items():
-        if name not in names:
+        if name not in known:
             raise LineError(f"The elastic {name} of the line {line} is missing.", "Choose it again.")

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from unicodedata import category
 
 from core.errors import LineError
 from core.mechanics import RANGES
+from core.printable_name import check_line_name, is_blank, is_printable
 
 LONGEST_TITLE = 60
 """Letters of a line's title."""
@@ -17,19 +17,18 @@ WIDTHS = (2.0, 100.0)
 """The narrowest and the widest band [mm]."""
 
 
-def is_printable(name: str, longest: int) -> bool:
-    """Tell whether a name of so many letters at most can be written: it may have wide spaces, no marks of
-    control and no halves of letters.
-    """
-    return len(name) <= longest and all(letter.isprintable() or category(letter) == "Zs" for letter in name)
-
-
 @dataclass(frozen=True)
 class WornLine:
-    """A line that is worn, and its natural length as ratio of its length at rest [1] (paper section 3)."""
+    """A line that is worn, and its natural length as ratio of its length at rest [1] (paper section 3).
+
+    Raises LineError for a name that no line has.
+    """
 
     name: str
     ratio: float
+
+    def __post_init__(self) -> None:
+        check_line_name(self.name)
 
 
 @dataclass(frozen=True)
@@ -44,8 +43,9 @@ class OwnLine:
     closed: bool = False
 
     def __post_init__(self) -> None:
-        if not self.name.strip():
+        if is_blank(self.name):
             raise LineError("A line has no name.", "Give each line a name of its own.")
+        check_line_name(self.name)
         if len(self.points) < (3 if self.closed else 2) or any(a == b for a, b in pairwise(self.path)):
             raise LineError(
                 f"The line {self.name} does not go from point to point.",
@@ -79,6 +79,7 @@ class LineTraits:
     elastic: str = ""
 
     def __post_init__(self) -> None:
+        check_line_name(self.name)
         if not is_printable(self.title, LONGEST_TITLE):
             raise LineError(
                 f"The title of the line {self.name} is too long or cannot be printed.",

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from core.design_lines import is_printable
 from core.errors import UserError
 from core.landmark import NAMES
+from core.printable_name import is_blank, is_printable
 
 LONGEST_CUSTOMER = 120
 """Letters of what a customer is called."""
@@ -42,7 +42,7 @@ class OwnMeasure:
     level: float = 0.0
 
     def __post_init__(self) -> None:
-        if not self.name.strip() or not is_printable(self.name, LONGEST_NAME):
+        if is_blank(self.name) or not is_printable(self.name, LONGEST_NAME):
             raise UserError("A measure needs a name of its own.", f"Use up to {LONGEST_NAME} letters.")
         if self.kind not in KINDS:
             raise UserError(f"There is no kind of measure '{self.kind}'.", "Choose straight, skin or girth.")

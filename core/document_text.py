@@ -5,9 +5,11 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 
-from core.design_text import WITH_VARIANTS, from_json, to_json
+from core.design_text import WITH_VARIANTS, from_json, from_values, to_json, to_values
 from core.document import Document
+from core.document_limits import check_values
 from core.errors import ProjectError, UserError
+from core.json_values import parsed
 
 DESIGN, VARIANTS = "design.json", "variants.json"
 """The name of the text of the design that is shown, and of that of its variants, if there are any."""
@@ -15,7 +17,7 @@ DESIGN, VARIANTS = "design.json", "variants.json"
 
 def to_texts(document: Document) -> dict[str, str]:
     """Return what is written of a document, by name."""
-    others = {name: json.loads(to_json(each)) for name, each in document.designs if name != document.shown}
+    others = {name: to_values(each) for name, each in document.designs if name != document.shown}
     if document == Document.of(document.design):
         return {DESIGN: to_json(document.design)}
     # An older program would drop the variants at its next save: it must not read this.
@@ -31,9 +33,13 @@ def from_texts(texts: Mapping[str, str]) -> Document:
     if VARIANTS not in texts:
         return Document.of(design)
     try:
-        told = json.loads(texts[VARIANTS])
-        others = {str(name): from_json(json.dumps(each)) for name, each in told["others"].items()}
-        designs = others | {str(told["shown"]): design}
-        return Document(tuple(sorted(designs.items())), str(told["shown"])).with_design(design)
-    except (UserError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as broken:
+        check_values(texts[VARIANTS])
+        told = parsed(texts[VARIANTS])
+        shown, others = told["shown"], {name: from_values(each) for name, each in told["others"].items()}
+        if shown in others:
+            raise ValueError("two designs are the shown one")
+        return Document(tuple(sorted({**others, shown: design}.items())), shown).with_design(design)
+    except ProjectError:
+        raise
+    except (UserError, ValueError, KeyError, TypeError, AttributeError) as broken:
         raise ProjectError("The project's variants cannot be read.", "Open a backup.") from broken

@@ -13,8 +13,10 @@ import platformdirs
 
 from core.design_elastics import Elastic
 from core.errors import LineError, UserError
-from core.project import safe_name, whole_file
+from core.project import safe_name
+from core.regular_file import read_regular
 from core.sewing.elastic_csv import ALLOWANCE, LARGEST, TEMPLATE, csv_of, elastic_from_csv, tells_allowance
+from core.whole_file import private_folder, whole_file
 
 __all__ = [
     "ALLOWANCE",
@@ -116,9 +118,7 @@ def told_allowance(path: Path) -> bool:
 
 def _text_of(path: Path) -> str:
     try:
-        if path.stat().st_size > LARGEST:
-            raise LineError(f"The table {path.name} is far too large.", "Keep one row for each point.")
-        data = path.read_bytes()
+        data = read_regular(path, LARGEST)
     except OSError as problem:
         raise LineError(
             f"The table {path.name} cannot be read: {problem.strerror}.", "Check its name and place."
@@ -163,7 +163,7 @@ def save_elastic(elastic: Elastic) -> Path:
     """
     folder = own_folder()
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        private_folder(folder)
     except OSError as problem:
         raise UserError(f"The folder {folder} cannot be made.", "Make room, or make it by hand.") from problem
     held = [path for path in _own_tables() if _holds(path, elastic.name)]

@@ -12,8 +12,8 @@ from core.errors import UserError
 from core.mesh import Mesh, Points
 from core.profile import Curve, Plane
 from core.progress import Progress, quiet
-from core.project import whole_file
 from core.space import Space, space_of
+from core.whole_file import whole_file
 
 FORMATS = ("ply", "obj", "stl", "glb")
 

@@ -13,16 +13,20 @@ from typing import Any
 import platformdirs
 
 from core.design import Design, ScanSource
-from core.design_lines import LineTraits, OwnLine
+from core.design_lines import LONGEST_TITLE, LineTraits, OwnLine
 from core.errors import LineError, UserError
 from core.own_lines import own_line, place_of, ready_made
-from core.project import safe_name, whole_file
+from core.printable_name import is_blank, is_printable
+from core.project import safe_name
+from core.regular_file import read_text
 from core.template import Template, read_template
+from core.whole_file import private_folder, whole_file
 
 FORMAT = 1
 """The newest format of a preset that is read."""
 
 _LARGEST = 1_000_000  # bytes of a preset's file
+_LONGEST = 1000  # letters of what it leaves out
 
 
 @dataclass(frozen=True)
@@ -73,11 +77,10 @@ class Preset:
 def read_preset(path: Path) -> Preset:
     """Read a preset's file. Raises LineError, which says what is wrong in it."""
     try:
-        if path.stat().st_size > _LARGEST:
-            raise ValueError("it is far too large")
-        return preset_of(path.read_text(encoding="utf-8"))
+        return preset_of(read_text(path, _LARGEST))
     except (OSError, ValueError, UserError) as problem:
-        why = problem.message if isinstance(problem, UserError) else str(problem)
+        why = problem.message if isinstance(problem, UserError) else getattr(problem, "strerror", None)
+        why = why or str(problem)
         raise LineError(
             f"The preset {path.name} cannot be read: {why}.", "Correct the file or remove it."
         ) from problem
@@ -93,8 +96,10 @@ def preset_of(text: str) -> Preset:
         preset = Preset(str(values.pop("title")), lines, **{key: str(text) for key, text in values.items()})
     except (KeyError, TypeError, AttributeError, RecursionError) as problem:
         raise ValueError(f"{type(problem).__name__} {problem}") from problem
-    if not preset.title.strip() or not preset.lines:
+    if is_blank(preset.title) or not preset.lines:
         raise ValueError("it needs a title and lines")
+    if not is_printable(preset.title, LONGEST_TITLE) or not is_printable(preset.leaves_out, _LONGEST):
+        raise ValueError("its title is too long or cannot be printed")
     # Laid once on a template, so that a fault is told now and not when it is wanted.
     design = Design(ScanSource(""), template=preset.template or "168")
     with_preset(design, preset)
@@ -143,8 +148,8 @@ def own_presets() -> tuple[list[Preset], list[LineError]]:
 def save_preset(preset: Preset) -> Path:
     """Write a preset into the designer's own folder, over one of the same name. Raises ProjectError."""
     path = own_file(preset.title)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with whole_file(path) as partial:
+    private_folder(path.parent)
+    with whole_file(path, private=True) as partial:
         text = json.dumps({"format": FORMAT, **asdict(preset)}, indent=1, ensure_ascii=False)
         partial.write_text(text, encoding="utf-8")
     return path

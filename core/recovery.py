@@ -10,19 +10,21 @@ import json
 import shutil
 import tempfile
 import time
-from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import platformdirs
 
 from core.document import Document
+from core.document_limits import LARGEST_PICTURE, LARGEST_TEXT
 from core.document_text import from_texts, to_texts
 from core.errors import ProjectError, UserError
 from core.holding import Hold
-from core.project import ScanFile, Stamp, safe_name, whole_file, with_scan
+from core.json_values import parsed, value_of
+from core.project import ScanFile, Stamp, safe_name, with_scan
+from core.regular_file import read_regular, read_text
+from core.whole_file import private_folder, whole_file
 
 _DOCUMENT, _PICTURE, _ASIDE = "document.json", "picture.png", ".broken"
 
@@ -46,6 +48,18 @@ class Kept:
     stamp: Stamp | None = None
 
 
+@dataclass(frozen=True)
+class _Told:
+    """What a folder tells of a document beside its texts."""
+
+    name: str
+    time: float
+    scan: str
+    size: int
+    project: str | None = None
+    stamp: Stamp | None = None
+
+
 class Recovery:
     """The recovery folder of one window, held by it. Raises OSError if another one holds it."""
 
@@ -60,7 +74,7 @@ class Recovery:
         """Return a folder of its own for a window. Raises ProjectError if there can be none."""
         base = recovery_folder()
         try:
-            base.mkdir(parents=True, exist_ok=True)
+            private_folder(base)
             return cls(Path(tempfile.mkdtemp(prefix=time.strftime("%Y%m%d-%H%M%S-"), dir=base)))
         except OSError as problem:
             raise _unkept(base, problem) from problem
@@ -78,7 +92,7 @@ class Recovery:
         try:
             place = self._keep_scan(document, scan)
             if picture:
-                with whole_file(self.folder / _PICTURE) as partial:
+                with whole_file(self.folder / _PICTURE, private=True) as partial:
                     partial.write_bytes(picture)
             told = {
                 "name": name,
@@ -89,7 +103,7 @@ class Recovery:
                 "size": place.stat().st_size,
                 "texts": to_texts(with_scan(document, "", "")),
             }
-            with whole_file(self.folder / _DOCUMENT) as partial:
+            with whole_file(self.folder / _DOCUMENT, private=True) as partial:
                 partial.write_text(json.dumps(told), encoding="utf-8")
         except (OSError, ProjectError) as problem:
             raise _unkept(self.folder, problem) from problem
@@ -118,8 +132,8 @@ class Recovery:
         if self._place is None or scan is not self._scan:
             free = next(n for n in range(1, 10**6) if not (self.folder / f"scan{n}").exists())
             place = self.folder / f"scan{free}" / safe_name(scan.name)
-            place.parent.mkdir()
-            with whole_file(place) as partial:
+            private_folder(place.parent)
+            with whole_file(place, private=True) as partial:
                 partial.write_bytes(scan.data)
             self._scan, self._place = scan, place
         return self._place
@@ -157,29 +171,30 @@ def left_behind() -> tuple[list[tuple[Kept, Recovery]], list[Path]]:
 def read_kept(folder: Path) -> Kept:
     """Read what a folder keeps. Raises FileNotFoundError if that is nothing, ProjectError if it is broken."""
     try:
-        text = (folder / _DOCUMENT).read_text("utf-8")
+        text = read_text(folder / _DOCUMENT, 5 * LARGEST_TEXT)  # two texts, spelled as one
     except FileNotFoundError:
         raise
     except (OSError, ValueError) as problem:
         raise _unreadable(folder) from problem
     try:
-        return _kept(folder, json.loads(text))
-    except (ValueError, KeyError, TypeError, AttributeError, OSError) as problem:
+        values = parsed(text)
+        texts = dict(values.pop("texts"))
+        return _kept(folder, value_of(_Told, values, "document"), from_texts(texts))
+    except (ValueError, KeyError, TypeError, AttributeError, OSError, UserError) as problem:
         raise _unreadable(folder) from problem
 
 
-def _kept(folder: Path, told: Mapping[str, Any]) -> Kept:
-    texts = {str(name): str(text) for name, text in told["texts"].items()}
-    scan, picture, stamp = folder / str(told["scan"]), folder / _PICTURE, told.get("stamp")
-    if scan.stat().st_size != told["size"]:
+def _kept(folder: Path, told: _Told, document: Document) -> Kept:
+    scan, picture = folder / told.scan, folder / _PICTURE
+    if scan.stat().st_size != told.size:
         raise ValueError("the scan is not whole")
     return Kept(
-        with_scan(from_texts(texts), str(scan), ""),
-        str(told["name"]),
-        Path(told["project"]) if told["project"] else None,
-        float(told["time"]),
-        picture.read_bytes() if picture.exists() else None,
-        (int(stamp[0]), int(stamp[1]), int(stamp[2])) if stamp else None,
+        with_scan(document, str(scan), ""),
+        told.name,
+        Path(told.project) if told.project else None,
+        told.time,
+        read_regular(picture, LARGEST_PICTURE) if picture.exists() else None,
+        told.stamp,
     )
 
 

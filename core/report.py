@@ -20,11 +20,11 @@ from core.export import write_control_points, write_mesh
 from core.lines import Line
 from core.mesh import Points
 from core.pipeline import Stages
-from core.project import whole_file
 from core.solution import Solution
 from core.solver import Marks, Record
 from core.solving.condition import Condition
 from core.verdict import Verdict
+from core.whole_file import whole_file
 
 _LIBRARIES = ("numpy", "scipy", "trimesh")
 _SETTINGS = ("template", "line_height", "weights", "scaled_normals", "dense_volume", "tissue_stiffness")

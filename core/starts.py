@@ -10,6 +10,7 @@ from pathlib import Path
 import platformdirs
 
 from core.holding import Hold
+from core.whole_file import private_folder
 
 _BEGUN = "begun"
 
@@ -24,7 +25,7 @@ class Start:
 
     def __init__(self) -> None:
         base = starts_folder()
-        base.mkdir(parents=True, exist_ok=True)
+        private_folder(base)
         self._folder = Path(tempfile.mkdtemp(dir=base))
         self._hold = Hold(self._folder)
         (self._folder / _BEGUN).touch()  # from here on it counts, and it is held already

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ import numpy as np
 from core.errors import UserError
 from core.landmark import NAMES, SIDES
 from core.mesh import Floats, Points
+from core.regular_file import read_text
 from core.standing.upright import MILLIMETRES
 
 FILE = "truth.json"
@@ -115,14 +117,14 @@ def read_truths(folder: Path) -> tuple[list[Truth], list[str]]:
 def _read_json(folder: Path) -> Table:
     path = folder / FILE
     try:
-        if path.stat().st_size > MOST_BYTES:
-            raise TruthError(f"{path} is too large to be a list of landmarks.", FORM)
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = json.loads(read_text(path, MOST_BYTES))
     except FileNotFoundError:
         raise TruthError(
             f"There is no {FILE} in {folder}, which tells where the landmarks are.", FORM
         ) from None
     except OSError as problem:
+        if problem.errno == errno.EFBIG:
+            raise TruthError(f"{path} is too large to be a list of landmarks.", FORM) from problem
         raise TruthError(f"{path} cannot be read: {problem.strerror}.", "Choose another folder.") from problem
     except (ValueError, RecursionError) as problem:
         where = f"line {problem.lineno}" if isinstance(problem, json.JSONDecodeError) else "its first line"

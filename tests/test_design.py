@@ -7,63 +7,17 @@ from dataclasses import FrozenInstanceError, replace
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from made_designs import KNOWN, PLAIN, anything, designs
 
 from core.answer import NoBalanceError
-from core.design import TEMPLATES, WEIGHTS, Design, ScanSource
-from core.design_lines import LineTraits, OwnLine, WornLine
+from core.design import Design, ScanSource
+from core.design_lines import LineTraits, OwnLine
 from core.design_text import FORMAT, from_json, to_json
 from core.errors import LineError, ProjectError, UserError
-from core.lines import RATIO_LIMITS
-from core.mechanics import CHOICES, RANGES
-from core.volume import CONTROLS
-
-PLAIN = Design(ScanSource("/scans/body.ply"))
-KNOWN = set(json.loads(to_json(PLAIN)))
-
-words = st.text(max_size=12)
-anything = st.recursive(
-    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | words,
-    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(words, inner, max_size=3),
-    max_leaves=6,
-)
-sources = st.builds(
-    ScanSource,
-    path=words,
-    member=words,
-    unit=st.none() | st.sampled_from(["mm", "cm", "m", "inch"]),
-    up=st.none() | words,
-    front=st.none() | words,
-)
-own_lines = st.lists(
-    st.builds(
-        OwnLine,
-        words.filter(str.strip),
-        st.lists(st.integers(0, 103), min_size=3, max_size=6, unique=True).map(tuple),
-        st.booleans(),
-    ),
-    max_size=3,
-    unique_by=lambda line: line.name,
-).map(tuple)
-designs = st.builds(
-    Design,
-    scan=sources,
-    template=st.sampled_from(TEMPLATES),
-    line_height=st.floats(0.25, 0.75),
-    lines=st.lists(st.builds(WornLine, words, st.floats(*RATIO_LIMITS)), max_size=4).map(tuple),
-    volume=st.sampled_from(CONTROLS),
-    gain=st.none() | st.floats(0.0, 10.0),
-    weights=st.sampled_from(WEIGHTS),
-    scaled_normals=st.booleans(),
-    dense_volume=st.booleans(),
-    own_lines=own_lines,
-    **{key: st.sampled_from(choices) for key, choices in CHOICES.items()},
-    **{key: st.floats(*limits) for key, limits in RANGES.items()},
-    unknown=st.dictionaries(words.filter(lambda word: word not in KNOWN), anything, max_size=3),
-)
 
 
 @settings(deadline=None, max_examples=50)
-@given(designs)
+@given(designs())
 def test_text_brings_back_the_same_design(design):
     text = to_json(design)
     assert from_json(text) == design

@@ -282,7 +282,7 @@ def test_variants_may_be_made_of_different_elastics_on_the_same_tissue():
 def test_a_broken_elastic_in_a_project_is_refused(broken):
     values = json.loads(to_json(WORN.with_elastic("mid-bust", ROLL)))
     values["elastics"][0].update(broken)
-    with pytest.raises(UserError, match=r"design cannot be read|needs a name"):
+    with pytest.raises(UserError, match=r"elastics\[0\]|needs a name"):
         from_json(json.dumps(values))
 
 

@@ -10,10 +10,9 @@ from small_project import DESIGN, PICTURE, SCAN, write_project
 
 import core.backups
 import core.recovery
-from core.backups import back_up, backups
 from core.document import Document
 from core.errors import ProjectError
-from core.project import ScanFile, open_project, read_scan_file, save_project, with_scan
+from core.project import ScanFile, read_scan_file, save_project, with_scan
 from core.recovery import Recovery, left_behind, read_kept
 
 SHORT = Document.of(DESIGN).showing("B").with_design(DESIGN.with_line("mid-bust", 0.8))
@@ -113,30 +112,6 @@ def test_a_full_disk_is_told_and_the_last_state_stays(monkeypatch: pytest.Monkey
     with pytest.raises(ProjectError, match=r"cannot keep your changes in .*: No space"):
         recovery.keep(Document.of(DESIGN), SCAN, "anna", None)
     assert read_kept(recovery.folder).document.shown == "B"
-
-
-def test_former_versions_are_kept_and_the_oldest_go(tmp_path: Path) -> None:
-    assert back_up(tmp_path / "anna.busk") is None
-    path = write_project(tmp_path)
-    for ratio in (0.9, 0.8, 0.7, 0.6):
-        back_up(path, most=3)
-        save_project(path, Document.of(DESIGN.with_line("mid-bust", ratio)), SCAN, PICTURE)
-    found = backups()
-    assert {each.project for each in found} == {path}
-    kept = sorted(open_project(each.path).design.ratio("mid-bust") for each in found)
-    assert kept == [0.7, 0.8, 0.9]
-    assert open_project(path).design.ratio("mid-bust") == 0.6
-
-
-def test_a_backup_is_copied_where_files_cannot_share_their_bytes(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    path = write_project(tmp_path)
-    monkeypatch.setattr(os, "link", lambda *_: (_ for _ in ()).throw(OSError()))
-    backup = back_up(path)
-    assert backup is not None
-    assert backup.read_bytes() == path.read_bytes()
-    assert backup.stat().st_ino != path.stat().st_ino
 
 
 def test_what_a_killed_program_left_beside_a_project_goes_with_the_next_save(tmp_path: Path) -> None:

@@ -6,6 +6,8 @@ from pathlib import Path
 
 from PySide6.QtCore import QFileInfo, QLockFile
 
+from core.whole_file import safe_ending
+
 
 class ProjectLock:
     """Locks one project at a time; a lock whose program is gone is taken over."""
@@ -24,7 +26,7 @@ class ProjectLock:
         self.path = path
         if path is None:
             return None
-        name = str(path.with_name(f".{path.name}.lock"))
+        name = str(path.with_name(safe_ending(path.name, "lock")))
         lock = QLockFile(name)
         # A designer may have a project open all day: only the end of the program makes a lock stale.
         lock.setStaleLockTime(0)

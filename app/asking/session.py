@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -14,7 +13,7 @@ from app.asking.editing import Editing
 from app.asking.solving import Solving
 from app.asking.writing import Writing
 from app.wording.words import tr
-from core.backups import back_up
+from core.backups import backed_up
 from core.design import Design, ScanSource
 from core.document import Document
 from core.errors import UserError
@@ -267,9 +266,5 @@ class Session(Editing):
 
 
 def _write(path: Path, document: Document, scan: ScanFile, picture: bytes | None) -> None:
-    try:
-        back_up(path)
-    except (OSError, UserError):
-        # Without a backup is better than not at all.
-        logging.exception("the former version could not be kept")
-    save_project(path, document, scan, picture)
+    with backed_up(path):
+        save_project(path, document, scan, picture)

@@ -14,8 +14,8 @@ import numpy as np
 
 from app.printing.accuracy import save_sheets, verdict
 from core.accuracy import OFF, TRUSTED, Case, Mark, Spread, judged, spreads
-from core.project import whole_file
 from core.truth import read_truths
+from core.whole_file import whole_file
 
 ALL_RIGHT, NOT_ALL_RIGHT = 0, 3
 SIGNED = ("height", "level", "girth")

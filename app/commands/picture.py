@@ -12,6 +12,7 @@ from app.wording.display import off_screen
 from core.design import Design
 from core.errors import UserError
 from core.progress import in_one_go, quiet
+from core.whole_file import whole_file
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -103,13 +104,15 @@ def save_window(window: MainWindow, out: Path) -> None:
     """Write a PNG of a window as it stands. Raises UserError."""
     from PySide6.QtWidgets import QApplication
 
+    from app.keeping.project_picture import png_of
+
     window.desk.plot_now()
     wait_until(lambda: not window.jobs.at_work(), QApplication.processEvents)
     # The view smooths its outlines once it has been still for a while.
     still = time.monotonic() + 0.6
     wait_until(lambda: time.monotonic() > still, QApplication.processEvents)
-    if not window.grab().save(str(out)):
-        raise UserError(f"{out} cannot be written.", "Choose another folder.")
+    with whole_file(out) as partial:
+        partial.write_bytes(png_of(window.grab().toImage()))
 
 
 def _check_name(out: Path) -> None:

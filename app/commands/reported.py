@@ -13,18 +13,21 @@ from typing import TYPE_CHECKING
 from app.commands.worn import run_worn
 from app.wording.display import off_screen
 from core.design import Design
-from core.errors import UserError
+from core.errors import ProjectError, UserError
 from core.progress import in_one_go
-from core.project import is_project, open_project, whole_file
+from core.project import is_project, open_project
 from core.sheet import Heading, Sheet, sheet_of, with_spread
 from core.sizes import sizes
 from core.solution import Solution
 from core.spread import spread_of
+from core.whole_file import whole_file
 from core.writing_out.cells import ENCODING
 from core.writing_out.sheet_file import sheet_csv, sheet_json
 
 if TYPE_CHECKING:
     from PySide6.QtGui import QImage
+
+_NO_PICTURES = "The pictures of the body could not be drawn: the sheet shows its curves alone."
 
 
 @dataclass(frozen=True)
@@ -122,13 +125,20 @@ def _write(solution: Solution, sheet: Sheet, wishes: SheetWishes) -> list[str]:
     names = [line.name for line in solution.stages.model.lines]
     handout = Handout(sheet, {}, line_colours(names, solution.stages.design))
     title = " ".join(filter(None, (sheet.heading.customer, sheet.heading.project)))
-    # Graphics that do not work may end the program: the sheet without pictures is there by then.
-    write_pdf(wishes.out, pages_of(handout, wishes.language), title)
+    fresh = not Path(wishes.out).exists()
+    if fresh:
+        # Graphics that do not work may end the program: the sheet without pictures is there by then. A sheet
+        # that was there before stays until the new one is whole.
+        write_pdf(wishes.out, pages_of(handout, wishes.language), title)
     pictures = _pictures(solution)
-    if not pictures:
-        return ["The pictures of the body could not be drawn: the sheet shows its curves alone."]
-    write_pdf(wishes.out, pages_of(replace(handout, pictures=pictures), wishes.language), title)
-    return []
+    try:
+        if pictures or not fresh:
+            write_pdf(wishes.out, pages_of(replace(handout, pictures=pictures), wishes.language), title)
+    except ProjectError as problem:
+        if not fresh:
+            raise
+        return [f"The sheet shows its curves alone, without pictures of the body: {problem.message}"]
+    return [] if pictures else [_NO_PICTURES]
 
 
 def _pictures(solution: Solution) -> Mapping[str, QImage]:

@@ -8,13 +8,39 @@ import os
 import shutil
 import sys
 import tempfile
+from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
+from typing import Any, TextIO
 
 import platformdirs
 
 from app.wording.display import has_display
 from core.errors import UserError
+from core.printable_name import shown
+
+
+class PlainStream:
+    """A text stream that spells control characters: names of files and messages may hold some that a
+    terminal would obey.
+    """
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+
+    def write(self, text: str) -> int:
+        """Write a text, and return how many of its letters were given."""
+        self._stream.write(shown(text))
+        return len(text)
+
+    def writelines(self, texts: Iterable[str]) -> None:
+        """Write texts one after the other."""
+        for text in texts:
+            self.write(text)
+
+    def __getattr__(self, name: str) -> Any:
+        """Return what else the stream has."""
+        return getattr(self._stream, name)
 
 
 def settle_in() -> None:
@@ -23,9 +49,11 @@ def settle_in() -> None:
         stream = getattr(sys, name)
         if stream is None:  # a Windows program without a console
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115 - as long as we run
-        elif isinstance(stream, io.TextIOWrapper) and stream.errors == "strict":
-            # A console of another code page lacks some of our letters: better one is lost than all.
-            stream.reconfigure(errors="replace")
+        elif isinstance(stream, io.TextIOWrapper):
+            if stream.errors == "strict":
+                # A console of another code page lacks some of our letters: better one is lost than all.
+                stream.reconfigure(errors="replace")
+            setattr(sys, name, PlainStream(stream))
     if getattr(sys, "frozen", False):
         # The packager lets one look for all type of the system at each start anew; the other would keep
         # what it compiles where the program lies.

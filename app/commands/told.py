@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from core.errors import UserError
-from core.project import whole_file
+from core.whole_file import whole_file
 from core.writing_out import cells
 
 T = TypeVar("T")

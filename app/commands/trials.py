@@ -15,9 +15,9 @@ from app.wording.samples import SAMPLES, sample_design
 from core import __version__
 from core.mechanics import LAWS, Mechanics
 from core.pipeline import GAIN_SHARE, build
-from core.project import whole_file
 from core.studies.sphere import sphere_control
 from core.studies.trial import CONTROLS, LONGEST, RIPPLE_TURNS, TURNS, Subject, Trial, trials
+from core.whole_file import whole_file
 
 LENGTHS = (1.10, 1.03, 0.97, 0.9, 0.8, 0.7, 0.6, 0.5)
 STIFFNESSES = (4.0, 16.0, 64.0)

@@ -25,7 +25,7 @@ from app.wording.export_choices import exports, format_title
 from app.wording.words import joined, say, tr
 from core.errors import UserError
 from core.live import Frame
-from core.project import still_written
+from core.whole_file import still_written
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow

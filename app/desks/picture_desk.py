@@ -10,8 +10,10 @@ from PySide6.QtGui import QGuiApplication, QImage, QPageLayout, QPainter
 from PySide6.QtPrintSupport import QPrintDialog, QPrinter
 
 from app.keeping.dialogs import ask_save
+from app.keeping.project_picture import png_of
 from app.wording.words import tr
-from core.errors import ProjectError
+from core.errors import ProjectError, UserError
+from core.whole_file import whole_file
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -40,11 +42,13 @@ class PictureDesk(QObject):
         path = ask_save(window, tr("Save a picture"), name, "PNG (*.png)", ".png")
         if not path:
             return
-        if self._picture().save(path):
-            window.desk.show_written("picture", tr("{name} written.").format(name=Path(path).name), path)
+        try:
+            with whole_file(Path(path).absolute()) as partial:
+                partial.write_bytes(png_of(self._picture()))
+        except UserError as problem:
+            window.desk.show_failure(problem, "picture")
         else:
-            said = tr("The picture cannot be written there."), tr("Choose another folder.")
-            window.desk.show_failure(ProjectError(*said), "picture")
+            window.desk.show_written("picture", tr("{name} written.").format(name=Path(path).name), path)
 
     def copy(self) -> None:
         """Put what the view shows on the clipboard."""

@@ -17,7 +17,7 @@ from app.wording.words import tr
 from core.design import Design
 from core.errors import UserError
 from core.live import Frame
-from core.project import whole_file
+from core.whole_file import whole_file
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow

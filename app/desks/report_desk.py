@@ -29,9 +29,9 @@ from core.errors import ProjectError, UserError
 from core.live import Frame
 from core.mesh import Floats
 from core.progress import Progress
-from core.project import whole_file
 from core.settled import settled_frame
 from core.sheet import Heading, Sheet, sheet_of
+from core.whole_file import whole_file
 from core.writing_out.cells import ENCODING
 from core.writing_out.sheet_file import sheet_csv, sheet_json
 

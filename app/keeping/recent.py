@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import json
 import time
-import zipfile
-import zlib
 from collections.abc import Callable
-from contextlib import suppress
 from pathlib import Path
 
-from PySide6.QtCore import QDateTime, QLocale, QSettings
-from PySide6.QtGui import QImage
+from PySide6.QtCore import QBuffer, QDateTime, QIODevice, QLocale, QSettings
+from PySide6.QtGui import QImage, QImageReader
 from PySide6.QtWidgets import QMenu
 
 from app.dress.tip import set_tip
@@ -20,12 +17,12 @@ from app.keeping.project_picture import STATE
 from app.panels.project_card import ProjectView
 from app.showing.verdict_chip import TONES, state_title
 from app.wording.words import tr
-from core.project import is_project
+from core.project import is_project, picture_bytes
 
 _KEY, _TIMES = "recent", "recent_times"
 _TOURED = "toured"
 _MOST = 12
-_LARGEST_PICTURE = 8_000_000
+_LARGEST_SIDE = 4000  # of a picture [px]: a small file could stand for a huge one
 
 
 def recent_files() -> list[str]:
@@ -108,14 +105,14 @@ def _view_of(path: Path) -> ProjectView:
 
 def picture_of(path: Path) -> QImage | None:
     """Return the picture in a project, or None; a file that is no whole project says so when it is opened."""
-    with (
-        suppress(OSError, KeyError, ValueError, EOFError, RuntimeError, zlib.error, zipfile.BadZipFile),
-        zipfile.ZipFile(path) as file,
-    ):
-        if file.getinfo("preview.png").file_size <= _LARGEST_PICTURE:
-            image = QImage.fromData(file.read("preview.png"))
-            return None if image.isNull() else image
-    return None
+    data = QBuffer()
+    data.setData(picture_bytes(path) or b"")
+    data.open(QIODevice.OpenModeFlag.ReadOnly)
+    reader = QImageReader(data)
+    if max(reader.size().toTuple()) > _LARGEST_SIDE:
+        return None
+    image = reader.read()
+    return None if image.isNull() else image
 
 
 def day_of(then: float, now: float) -> str:

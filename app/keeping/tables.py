@@ -12,7 +12,7 @@ from PySide6.QtGui import QGuiApplication
 from app.keeping.dialogs import ask_save
 from app.wording.words import tr
 from core.errors import UserError
-from core.project import whole_file
+from core.whole_file import whole_file
 from core.writing_out.cells import ENCODING, cell
 
 if TYPE_CHECKING:

@@ -18,8 +18,8 @@ from app.wording.tokens import LIGHT
 from core.accuracy import DOUBTED, TRUSTED, Case
 from core.errors import UserError
 from core.mesh import Faces, Floats, Points
-from core.project import whole_file
 from core.reading.scan_file import read_triangles, scan_bytes
+from core.whole_file import whole_file
 
 COLUMNS, ROWS = 5, 4
 CELL = (3.9, 4.3)

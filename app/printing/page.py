@@ -13,10 +13,10 @@ from app.printing.style import Figure, write_table
 from core import __version__
 from core.mechanics import DEFAULT_LINE_STIFFNESS
 from core.pipeline import GAIN_SHARE, Stages
-from core.project import whole_file
 from core.studies.search import RATIOS, Finding, search
 from core.tffd import GAUSS_WIDTH, HAT_RANGE
 from core.volume import ADAPTIVE_DAMPING, ADAPTIVE_STEP
+from core.whole_file import whole_file
 
 NAME = "REPRODUCTION.md"
 

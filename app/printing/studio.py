@@ -28,7 +28,7 @@ from core.errors import UserError
 from core.mesh import Floats, Points
 from core.pipeline import Stages
 from core.progress import Pieces, Progress, quiet
-from core.project import whole_file
+from core.whole_file import whole_file
 
 Picture = npt.NDArray[np.uint8]
 """Red, green, blue and how solid, shape (h, w, 4)."""

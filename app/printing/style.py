@@ -19,7 +19,7 @@ from matplotlib.figure import Figure as Sheet
 from matplotlib.font_manager import fontManager
 
 from app.wording.tokens import LIGHT, LINE_COLORS
-from core.project import whole_file
+from core.whole_file import whole_file
 
 COLOURS = {
     "conventional": LIGHT.warn_mark,

@@ -16,7 +16,7 @@ from PIL import Image, ImageDraw, ImageFont
 from app.printing.studio import Picture, Studio, on_ground
 from core.errors import UserError
 from core.progress import Pieces, Progress, part_of, quiet
-from core.project import whole_file
+from core.whole_file import whole_file
 
 FORMATS = ("gif", "webp", "png")
 """Kinds of turntables by their endings; "png" is a series of pictures, numbered from 1."""

@@ -10,7 +10,7 @@ from PySide6.QtGui import QPageLayout, QPageSize, QPainter, QPdfWriter
 from app.reporting.pages import Pages
 from app.reporting.paper import UNITS
 from core.errors import ProjectError
-from core.project import whole_file
+from core.whole_file import whole_file
 
 _DOTS = 1200  # of the writer to an inch
 

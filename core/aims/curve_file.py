@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import errno
 from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
@@ -14,6 +15,7 @@ from core.aims.outline import profile_name, skin_of
 from core.errors import UserError
 from core.mesh import Floats
 from core.pipeline import Stages
+from core.regular_file import read_text
 
 _MOST = 60
 """Heights of a profile that are asked for; of more every so manieth is."""
@@ -31,14 +33,18 @@ def read_profile(path: str) -> Floats:
     outline, after reshaping if that is in it. Raises UserError.
     """
     try:
-        if Path(path).stat().st_size > _BYTES:
-            raise UserError(f"{path} is too large for a profile.", "A few dozen rows are enough.")
-        text = Path(path).read_text(encoding="utf-8-sig")
+        text = read_text(Path(path), _BYTES, "utf-8-sig")
     except (OSError, UnicodeDecodeError) as why:
+        if isinstance(why, OSError) and why.errno == errno.EFBIG:
+            raise UserError(f"{path} is too large for a profile.", "A few dozen rows are enough.") from why
         raise UserError(f"{path} cannot be read as a table.", "Give a CSV file in UTF-8.") from why
     first = text.partition("\n")[0]
     sign = next((each for each in (";", "\t") if each in first), ",")
-    rows = [[cell.strip() for cell in row] for row in csv.reader(text.splitlines(), delimiter=sign) if row]
+    try:
+        table = list(csv.reader(text.splitlines(), delimiter=sign))
+    except csv.Error as why:  # a cell without an end
+        raise UserError(f"{path} cannot be read as a table.", "Give a CSV file in UTF-8.") from why
+    rows = [[cell.strip() for cell in row] for row in table if row]
     head = [cell.lower() for cell in rows[0]] if rows else []
     if {"y_mm", "z_mm"} <= set(head):
         return _outline(path, head, rows[1:])

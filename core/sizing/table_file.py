@@ -9,12 +9,15 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from core.errors import SizeError
+from core.printable_name import is_printable
+from core.regular_file import read_text
 from core.sizing.table import BAND, UNDERBUST, UNIT_MM, Example, Scale, SizeTable, Source, Step, Words
 
 FORMAT = 1
 """The newest format of a table of sizes that is read."""
 
 _LARGEST = 1_000_000  # bytes
+_LONGEST = 10_000  # letters of a text in it
 _KEYS: tuple[str, ...] = ("format", "system", "names", "unit", "label", "cup_from", "borders")
 _KEYS += ("bands", "cups", "sources", "doubts", "examples")
 _MAY = ("caution",)
@@ -29,12 +32,11 @@ T = TypeVar("T")
 def read_table(path: Path) -> SizeTable:
     """Read a table's file, whose name without the ending is the key. Raises SizeError, which says why not."""
     try:
-        if path.stat().st_size > _LARGEST:
-            raise ValueError("it is far too large")
-        return table_of(path.stem, path.read_text(encoding="utf-8"))
+        return table_of(path.stem, read_text(path, _LARGEST))
     except (OSError, ValueError) as problem:
+        why = getattr(problem, "strerror", None) or problem
         raise SizeError(
-            f"The table of sizes {path.name} cannot be read: {problem}.", "Correct the file or remove it."
+            f"The table of sizes {path.name} cannot be read: {why}.", "Correct the file or remove it."
         ) from problem
 
 
@@ -94,6 +96,8 @@ def _same_keys(what: str, values: Any, keys: tuple[str, ...], may: tuple[str, ..
 def _text(what: str, value: Any) -> str:
     if not isinstance(value, str) or not value.strip():
         raise ValueError(f"{what} must be a text")
+    if not is_printable(value, _LONGEST):
+        raise ValueError(f"{what} is too long or cannot be printed")
     return value
 
 

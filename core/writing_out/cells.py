@@ -7,10 +7,12 @@ import io
 import re
 from collections.abc import Iterable, Sequence
 
+from core.printable_name import printable
+
 ENCODING = "utf-8-sig"
 """With the mark that tells spreadsheets that letters beyond English follow."""
 
-_FORMULA = re.compile(r"[=@\t\r]|[+-](?![\d.,\s]*\d\s?%?$)")
+_FORMULA = re.compile(r"[\t\r\n]|\s*[=@＝＠]|\s*[+\-＋－](?![\d.,\s]*\d\s?%?$)")
 
 
 def cell(value: object) -> object:
@@ -27,7 +29,9 @@ def cell(value: object) -> object:
         return " ".join(str(cell(each)) for each in value)
     if isinstance(value, float):
         return f"{value:.6g}"
-    return f"'{value}" if isinstance(value, str) and _FORMULA.match(value) else value
+    if isinstance(value, str):
+        return f"'{printable(value)}" if _FORMULA.match(value) else printable(value)
+    return value
 
 
 def csv_text(columns: Sequence[str], rows: Iterable[Iterable[object]]) -> str:

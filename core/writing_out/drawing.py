@@ -12,8 +12,9 @@ from xml.etree import ElementTree as Xml
 
 from core.errors import UserError
 from core.mesh import Points
-from core.project import whole_file
+from core.printable_name import printable
 from core.space import Space
+from core.whole_file import whole_file
 from core.writing_out.dxf import new_dxf
 from core.writing_out.worn import Strip, WornCurve
 
@@ -58,7 +59,7 @@ def write_strips(
     ``say`` puts what stands beside them into another language. Raises UserError for another ending, or a
     place that cannot be written to.
     """
-    target, kind = Path(path), drawing_kind(path, STRIP_FORMATS)
+    target, kind, heading = Path(path), drawing_kind(path, STRIP_FORMATS), printable(heading)
     with whole_file(target) as partial:
         if kind == "svg":
             drawing = Xml.ElementTree(_svg(strips, heading, say))

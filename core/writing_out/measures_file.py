@@ -8,15 +8,16 @@ import json
 import os
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib import resources
 from pathlib import Path
 from xml.etree import ElementTree as Xml
 
 from core.errors import UserError
-from core.project import whole_file
+from core.printable_name import printable
 from core.space import UNITS
+from core.whole_file import whole_file
 from core.writing_out.cells import cell
 
 Values = Mapping[str, tuple[float, str]]
@@ -56,7 +57,7 @@ def write_measures(path: str | os.PathLike[str], sheet: MeasuresSheet) -> None:
 
     Raises UserError for another ending, a unit that the file cannot have, or a place that cannot be written.
     """
-    target = Path(path)
+    target, sheet = Path(path), replace(sheet, note=printable(sheet.note))
     text = MEASURE_FORMATS[measures_kind(path, sheet.unit)](sheet)
     with whole_file(target) as partial:
         partial.write_text(text, encoding="utf-8", newline="")

@@ -1,0 +1,82 @@
+"""Limits of what a document may hold: the same for what is made, saved and opened, so all of it fits."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sized
+from typing import Any
+
+from core.errors import ProjectError, UserError
+
+LARGEST_SCAN = 1_000_000_000
+"""Bytes of the scan in a project: more than any file that is read as one."""
+
+LARGEST_TEXT = 20_000_000
+"""Bytes of each text in a project."""
+
+LARGEST_PICTURE = 8_000_000
+"""Bytes of the picture in a project."""
+
+MOST_VALUES = 1_000_000
+"""Values in each text of a project, roughly: a small file could stand for a large amount of memory."""
+
+MOST_NESTED = 32
+"""Levels of what a later version may have written into a design."""
+
+LARGEST_UNKNOWN = 500_000
+"""Bytes of what a later version may have written into a design."""
+
+MOST_LINES, MOST_POINTS = 500, 20_000
+"""Lines of a design, worn, treated or own ones, and control points of all own lines together."""
+
+MOST_MEASURES = 200
+"""Own measures of a design."""
+
+MOST_ELASTICS, MOST_ROWS = 200, 40_000
+"""Elastics of a design, and points of all their curves together."""
+
+
+def check_counts(counted: Iterable[tuple[int, int, str]]) -> None:
+    """Raise UserError for the first count beyond its limit; each with what is counted."""
+    for count, most, what in counted:
+        if count > most:
+            raise UserError(f"This design has too many {what}: {count}.", f"Use up to {most}.")
+
+
+def check_size(name: str, data: Sized, most: int) -> None:
+    """Raise ProjectError if a part of a project is larger than what is read of it [bytes]."""
+    if len(data) > most:
+        raise too_large(name, most)
+
+
+def too_large(name: str, most: int) -> ProjectError:
+    """Return what to say of a part of a project that is too large."""
+    return ProjectError(
+        f"{name} of this project is larger than {most / 1e6:.0f} MB.",
+        "Use fewer lines, shorter tables of elastics, or a thinner scan.",
+    )
+
+
+def check_values(text: str) -> None:
+    """Raise ValueError if a JSON text holds more values than a document can."""
+    if sum(map(text.count, ",[{:")) > MOST_VALUES:
+        raise ValueError("too many values")
+
+
+def check_nesting(value: Any, most: int = MOST_NESTED) -> None:
+    """Raise ProjectError if values of JSON lie more than ``most`` levels deep in each other.
+
+    Raises ValueError for a number that other programs would not read, such as NaN.
+    """
+    level = [value]
+    for _ in range(most + 1):
+        level = [inner for each in level for inner in _held(each)]
+        if not all(math.isfinite(each) for each in level if isinstance(each, float)):
+            raise ValueError("not a number")
+        if not level:
+            return
+    raise ProjectError("The project's design is nested too deeply.", "Open a backup or start from the scan.")
+
+
+def _held(value: Any) -> Iterable[Any]:
+    return value.values() if isinstance(value, dict) else value if isinstance(value, list | tuple) else ()
