@@ -47,7 +47,7 @@ def warm() -> bool:
     if not _forms.loops:
         try:
             _forms = _Forms("compiled", _compiled())
-        except Exception as error:  # a faulty numba must not take the program with it
+        except BaseException as error:  # a faulty numba must not take the program with it
             _forms = _Forms(f"numpy: {type(error).__name__}, {error}")
     return bool(_forms.loops)
 

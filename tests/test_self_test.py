@@ -10,6 +10,7 @@ import tempfile
 import threading
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import platformdirs
@@ -25,6 +26,7 @@ from app.checking.apart import PASSING, apart
 from app.checking.bench import Bench
 from app.checking.hearing import hearing
 from app.checking.parts import Part, PartError, try_parts
+from app.commands import picture
 from app.commands.self_test import LINES, PARTS
 from app.dress.theme import load_fonts
 from core.errors import UserError
@@ -199,6 +201,24 @@ def test_files_that_are_not_what_they_should_be_are_found_out(
         monkeypatch.setattr(app.reporting.pdf, "write_pdf", spoilt)
         with pytest.raises(PartError, match=said):
             papers.report(bench)
+
+
+def test_a_busy_machine_is_waited_for_and_what_never_comes_is_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With other work around, the processor gives the program a tenth of the time."""
+    spent, given = [0.0], [0.1]
+
+    def turn() -> None:
+        spent[0] += 1.0
+
+    clock = SimpleNamespace(
+        monotonic=lambda: spent[0], process_time=lambda: given[0] * spent[0], sleep=lambda _: None
+    )
+    monkeypatch.setattr(picture, "time", clock)
+    picture.wait_until(lambda: spent[0] > 1000.0, turn)
+    for share in (1.0, 0.0):
+        given[0] = share
+        with pytest.raises(UserError, match="waited too long"):
+            picture.wait_until(lambda: False, turn)
 
 
 def test_a_solver_that_is_off_is_found_out(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -16,7 +16,7 @@ from app.helping.machine import machine_facts
 from app.panels.about import as_text
 from app.panels.fault import FaultSheet
 from app.wording.words import tr
-from core.errors import UserError
+from core.errors import UserError, as_exception
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -66,7 +66,8 @@ class Rescue(QObject):
             self._fell.emit(fault, "".join(traceback.format_exception(kind, fault, trace)))
 
     def _note_in_thread(self, args: threading.ExceptHookArgs, /) -> None:
-        self._note(args.exc_type, args.exc_value or RuntimeError(), args.exc_traceback)
+        fault = as_exception(args.exc_value or RuntimeError())  # SystemExit would pass in silence
+        self._note(type(fault), fault, args.exc_traceback)
 
     def _tell(self, fault: Exception, trace: str) -> None:
         """Keep the design aside, then say what happened; a second fault joins the first."""
