@@ -45,6 +45,8 @@ def test_a_solver_that_fails_for_long_loses_nothing(
         assert type(error).__name__ in bar.notice().details
         assert window.strip._state == "stale"
         assert window.rail.items["result"].state() == "available", "no tick on what is not computed"
+        assert window.lines.rows["mid-bust"].slider.ratio() == pytest.approx(0.9), "as it is set"
+        assert "Settled" not in window.status._facts.text()
         drag(window, "full-bust", -20)
         yield lambda: faults.hits > 2
         session.undo_stack.undo()

@@ -274,7 +274,7 @@ class Desk(QObject):
         self._window.model.set_gain(frame.stages.gain, frame.stages.gain_limit)
         self._window.lines_desk.show_frame(frame)
         self._window.status.set_volume(*kept_volume(frame))
-        self._window.status.set_facts(facts(frame))
+        self._window.status.set_facts(facts(frame, self._session.failure is None))
         main = frame.stages.design.volume
         strip = self._window.strip
         verdict = strip_verdict(frame)

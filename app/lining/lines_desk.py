@@ -59,8 +59,10 @@ class LinesDesk(QObject):
         """Show the rows anew: something was hidden, or more is known of limits or pressures."""
         frame = self._frame
         if frame is not None:
-            hidden = self._window.view.hidden_lines
-            views = line_views(frame.stages.design, frame, hidden, self.leeways(frame))
+            hidden, design = self._window.view.hidden_lines, frame.stages.design
+            if self._session.failure is not None:
+                design = self._session.design or design  # what is set, though it could not be computed
+            views = line_views(design, frame, hidden, self.leeways(frame))
             pressed = self._window.pressure_desk.of_elastics(frame)
             tried, design = self._window.ask_desk.around.is_tried_on, frame.stages.design
             views = [replace(view, tried=tried(view.names, design)) for view in views]

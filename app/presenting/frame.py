@@ -82,10 +82,10 @@ def band_label(design: Design, frame: Frame, name: str) -> tuple[str, str]:
     return f"{title} {number(100.0 * ratio)} %", f"{number(change, 1, signed=True)} mm"
 
 
-def facts(frame: Frame) -> list[str]:
-    """Return the plain facts of the status bar."""
+def facts(frame: Frame, current: bool = True) -> list[str]:
+    """Return the plain facts of the status bar; a frame that is not ``current`` is of a former design."""
     return [
         "mm",
         tr("{count} triangles").format(count=number(len(frame.stages.body.mesh.faces), 0)),
-        state_title(state_of(frame)),
+        state_title(state_of(frame) if current else "stale"),
     ]
