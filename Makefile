@@ -1,7 +1,7 @@
 # Two commands do it all: `make run` opens the program, `make test` checks it. Both set up first what they need.
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help run test setup setup-test lint types bench lock docs docs-pictures package package-numbers setup-package package-test check-windows clean
+.PHONY: help run test setup setup-test lint types bench fuzz lock docs docs-pictures package package-numbers setup-package package-test check-windows clean
 export PYTHON
 
 python := .venv/bin/python
@@ -37,6 +37,10 @@ types: setup  ## types: mypy, strict in core
 
 bench: setup  ## measure the speed of the turn and of the deformation
 	@for file in benchmarks/bench_*.py; do echo "$$file"; $(python) "$$file" || exit 1; done
+
+SECONDS := 300
+fuzz: setup-test  ## damage scans, projects, names and bodies for a while: make fuzz SECONDS=900; failures go to fuzz.jsonl
+	@$(python) benchmarks/fuzz.py --seconds $(SECONDS) --keep fuzz.jsonl
 
 lock:  ## pin every dependency again (needs uv, which nothing else needs)
 	@[ -n "$(uv)" ] || { echo "make lock needs uv: python3 -m pip install uv"; exit 1; }

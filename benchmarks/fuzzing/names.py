@@ -1,0 +1,168 @@
+"""Names that designers give: into lines, elastics and measures, and out again in files of all kinds."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import random
+import tempfile
+import xml.etree.ElementTree as Xml
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import ezdxf
+
+from app.commands.cut import Cut, cut_text
+from app.exporting.outcome import Manner, Outcome
+from app.exporting.ready import make_ready
+from core.cutting import cut_list
+from core.design import Design, ScanSource
+from core.design_elastics import Elastic
+from core.design_lines import LineTraits, OwnLine
+from core.design_measures import OwnMeasure
+from core.document import Document
+from core.pipeline import Stages, build
+from core.progress import in_one_go, quiet
+from core.project import open_project, read_scan_file, save_project
+
+BODY = Path(__file__).parents[2] / "resources" / "samples" / "person.ply"
+
+PARTS = [
+    *(
+        "strap",
+        "left",
+        " ",
+        ".",
+        "/",
+        "\\",
+        ":",
+        "..",
+        "|",
+        "%",
+        "$AC",
+        "{",
+        "}",
+        "&amp;",
+        "<b>",
+        "</svg>",
+        "]]>",
+    ),
+    *(
+        "=1+1",
+        "+1",
+        "-1",
+        "@sum",
+        "\uff1d1",
+        "\uff0b1",
+        "\t=1",
+        "\n=1",
+        '"',
+        "'",
+        ",",
+        ";",
+        "#",
+        "\\P",
+        "\\U+0041",
+    ),
+    *("\x00", "\x07", "\x1b[31m", "\x7f", "\x85", "\u2028", "\u202e", "\u200f", "\ufeff", "\ufffe", "\uffff"),
+    *("\ud800", "\udfff", "é", "e\u0301", "線", "😀", "👩‍👧", "x" * 70, "é" * 250, "con", "nul", "mid-bust"),
+]
+"""What names are put together of: markup, formulas, controls, halves of letters, long ones, other scripts."""
+
+FORMULA = tuple("=+-@\t\r\uff1d\uff0b\uff0d\uff20")
+FILES = ("lines.dxf", "lines.obj", "flat.svg", "flat.dxf", "measures.csv", "measures.json")
+
+
+def make(chance: random.Random) -> Any:
+    """Return names for a line, its title, an elastic, a measure and a customer."""
+    keys = ("line", "title", "elastic", "measure", "customer", "source")
+    odd = set(chance.sample(keys, chance.randrange(1, len(keys) + 1)))
+    return {key: _name(chance) if key in odd else f"my {key}" for key in keys}
+
+
+def _name(chance: random.Random) -> str:
+    return "".join(chance.choice(PARTS) for _ in range(chance.randrange(1, 5)))
+
+
+def run(recipe: Any) -> str:
+    """Make a project with the names, open it, and write all files that they come into."""
+    design = _design(recipe)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "names.busk"
+        save_project(path, Document.of(design), read_scan_file(design.scan), None)
+        opened = open_project(path).design
+        assert opened.own_lines == design.own_lines
+        assert opened.elastics == design.elastics
+        stages = build(design, _stages())
+        points = stages.control.mesh.vertices
+        outcome = Outcome(stages, points, (), named=("names", design.customer))
+        for name in FILES:
+            ready = make_ready(name.partition(".")[0], str(Path(folder) / name), outcome, Manner())
+            drawn = in_one_go(ready.draw()) if ready.draw else None
+            ready.write(Path(folder) / name, drawn, quiet)
+            _check(Path(folder) / name)
+        cut = Cut(cut_list(stages, points), True, [])
+        for form in ("", "csv", "json"):
+            _check_text(cut_text(cut, form, None), form)
+    return "written"
+
+
+def _design(recipe: Any) -> Design:
+    line = OwnLine(recipe["line"], (28, 45, 34))
+    curve = ((0.0, 0.0), (0.3, 4.0), (0.8, 11.0))
+    elastic = Elastic(recipe["elastic"], 12.0, curve, source=recipe["source"])
+    measure = OwnMeasure(recipe["measure"], "straight", ("bust_point_left", "bust_point_right"))
+    design = Design(ScanSource(str(BODY)), customer=recipe["customer"]).with_own_line(line)
+    design = design.with_line(line.name, 0.95).with_own_measure(measure)
+    return design.with_traits(LineTraits(line.name, recipe["title"])).with_elastic(line.name, elastic)
+
+
+@cache
+def _stages() -> Stages:
+    return build(Design(ScanSource(str(BODY))))
+
+
+def _check(path: Path) -> None:
+    """Fail where a file is not what its kind asks for."""
+    kind, text = path.suffix[1:], path.read_text(encoding="utf-8")
+    if kind == "dxf":
+        assert not ezdxf.readfile(path).audit().has_errors, f"{path.name} has errors"
+    elif kind == "obj":
+        heads = {line.split(" ")[0] for line in text.splitlines() if line}
+        assert heads <= {"v", "l", "o", "g", "#"}, heads
+    else:
+        _check_text(text, kind)
+
+
+def _check_text(text: str, kind: str) -> None:
+    text.encode("utf-8")
+    if kind == "svg":
+        Xml.fromstring(text)
+    elif kind == "json":
+        json.loads(text)
+    elif kind == "csv":
+        rows = list(csv.reader(io.StringIO(text)))
+        assert len({len(row) for row in rows if row}) <= 2, "rows of different lengths"
+        for cell in (cell for row in rows for cell in row):
+            assert not cell.strip().startswith(FORMULA) or _is_number(cell), f"a formula: {cell!r}"
+    controls = {letter for letter in text if ord(letter) < 32 or ord(letter) == 127} - set("\n\r\t")
+    assert not controls, f"controls in {kind or 'plain'} text: {controls}"
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return cell.strip() == "-"
+    return True
+
+
+def simpler(recipe: Any) -> Iterator[Any]:
+    """Give plainer names."""
+    for key, name in recipe.items():
+        if name != f"my {key}":
+            yield recipe | {key: f"my {key}"}
+            yield from (recipe | {key: name[:k] + name[k + 1 :]} for k in range(len(name)) if len(name) > 1)
