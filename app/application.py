@@ -27,6 +27,7 @@ from app.helping.log import LimitedLog, trim
 from app.wording.words import use_language
 from core import __version__
 from core.errors import UserError
+from core.whole_file import private_folder
 
 # Read by the libraries at their import.
 os.environ.setdefault("QT_API", "pyside6")
@@ -138,7 +139,7 @@ def log_kept() -> Iterator[Path]:
     """
     folder = log_folder()
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        private_folder(folder)
         trim(folder / "crash.log")
         crashes = open(folder / "crash.log", "a", encoding="utf-8")  # noqa: SIM115 - closed below
     except OSError:

@@ -16,7 +16,7 @@ from core.errors import LineError, UserError
 from core.project import safe_name
 from core.regular_file import read_regular
 from core.sewing.elastic_csv import ALLOWANCE, LARGEST, TEMPLATE, csv_of, elastic_from_csv, tells_allowance
-from core.whole_file import private_folder, whole_file
+from core.whole_file import private_folder, write_text
 
 __all__ = [
     "ALLOWANCE",
@@ -133,14 +133,12 @@ def _text_of(path: Path) -> str:
 
 def write_elastic(path: Path, elastic: Elastic) -> None:
     """Write an elastic as a table, whole or not at all. Raises ProjectError."""
-    with whole_file(path) as partial:
-        partial.write_text(csv_of(elastic), encoding="utf-8-sig")
+    write_text(path, csv_of(elastic), "utf-8-sig")
 
 
 def write_template(path: Path) -> None:
     """Write a table to be filled in with what is measured, whole or not at all. Raises ProjectError."""
-    with whole_file(path) as partial:
-        partial.write_text(TEMPLATE, encoding="utf-8-sig")
+    write_text(path, TEMPLATE, "utf-8-sig")
 
 
 def remove_elastic(name: str) -> None:

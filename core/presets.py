@@ -20,7 +20,7 @@ from core.printable_name import is_blank, is_printable
 from core.project import safe_name
 from core.regular_file import read_text
 from core.template import Template, read_template
-from core.whole_file import private_folder, whole_file
+from core.whole_file import private_folder, write_text
 
 FORMAT = 1
 """The newest format of a preset that is read."""
@@ -52,12 +52,20 @@ class Preset:
     """A set of lines by its ``title``; ``leaves_out`` says what it cannot hold.
 
     ``template`` is that of the places, empty if it names none: then it goes with every template.
+    Raises LineError for a title that cannot be shown.
     """
 
     title: str
     lines: tuple[PresetLine, ...]
     leaves_out: str = ""
     template: str = ""
+
+    def __post_init__(self) -> None:
+        if not is_printable(self.title, LONGEST_TITLE) or not is_printable(self.leaves_out, _LONGEST):
+            raise LineError(
+                "The title of the preset is too long or cannot be printed.",
+                f"Use up to {LONGEST_TITLE} letters.",
+            )
 
     def laid(self, template: Template) -> Iterator[tuple[PresetLine, tuple[OwnLine, ...]]]:
         """Yield each line with the own lines that it is, none for one of the template. Raises LineError."""
@@ -98,8 +106,6 @@ def preset_of(text: str) -> Preset:
         raise ValueError(f"{type(problem).__name__} {problem}") from problem
     if is_blank(preset.title) or not preset.lines:
         raise ValueError("it needs a title and lines")
-    if not is_printable(preset.title, LONGEST_TITLE) or not is_printable(preset.leaves_out, _LONGEST):
-        raise ValueError("its title is too long or cannot be printed")
     # Laid once on a template, so that a fault is told now and not when it is wanted.
     design = Design(ScanSource(""), template=preset.template or "168")
     with_preset(design, preset)
@@ -149,9 +155,8 @@ def save_preset(preset: Preset) -> Path:
     """Write a preset into the designer's own folder, over one of the same name. Raises ProjectError."""
     path = own_file(preset.title)
     private_folder(path.parent)
-    with whole_file(path, private=True) as partial:
-        text = json.dumps({"format": FORMAT, **asdict(preset)}, indent=1, ensure_ascii=False)
-        partial.write_text(text, encoding="utf-8")
+    text = json.dumps({"format": FORMAT, **asdict(preset)}, indent=1, ensure_ascii=False)
+    write_text(path, text, private=True)
     return path
 
 

@@ -24,7 +24,7 @@ from core.holding import Hold
 from core.json_values import parsed, value_of
 from core.project import ScanFile, Stamp, safe_name, with_scan
 from core.regular_file import read_regular, read_text
-from core.whole_file import private_folder, whole_file
+from core.whole_file import private_folder, whole_file, write_text
 
 _DOCUMENT, _PICTURE, _ASIDE = "document.json", "picture.png", ".broken"
 
@@ -103,8 +103,7 @@ class Recovery:
                 "size": place.stat().st_size,
                 "texts": to_texts(with_scan(document, "", "")),
             }
-            with whole_file(self.folder / _DOCUMENT, private=True) as partial:
-                partial.write_text(json.dumps(told), encoding="utf-8")
+            write_text(self.folder / _DOCUMENT, json.dumps(told), private=True)
         except (OSError, ProjectError) as problem:
             raise _unkept(self.folder, problem) from problem
         self._sweep(place.parent)

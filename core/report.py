@@ -24,7 +24,7 @@ from core.solution import Solution
 from core.solver import Marks, Record
 from core.solving.condition import Condition
 from core.verdict import Verdict
-from core.whole_file import whole_file
+from core.whole_file import whole_file, write_text
 
 _LIBRARIES = ("numpy", "scipy", "trimesh")
 _SETTINGS = ("template", "line_height", "weights", "scaled_normals", "dense_volume", "tissue_stiffness")
@@ -73,8 +73,7 @@ def write_solution(solution: Solution, folder: Path) -> dict[str, Any]:
     write_control_points(folder / "control.csv", stages.control)
     write_turns(folder / "turns.csv", solution.records, stages)
     figures = report(solution)
-    with whole_file(folder / "report.json") as partial:
-        partial.write_text(json.dumps(figures, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    write_text(folder / "report.json", json.dumps(figures, indent=1, ensure_ascii=False) + "\n")
     return figures
 
 

@@ -31,6 +31,7 @@ _HINTS = {
     errno.ENOSPC: "Choose another folder or make room.",
     errno.EDQUOT: "Choose another folder or make room.",
     errno.ENAMETOOLONG: "Choose a shorter name.",
+    errno.EINVAL: "Choose another name.",
 }
 
 _LOCK = threading.Lock()
@@ -56,6 +57,14 @@ def whole_file(target: Path, private: bool = False) -> Iterator[Path]:
     finally:
         with _LOCK:
             _AT_WORK.discard(place)
+
+
+def write_text(target: Path, text: str, encoding: str = "utf-8", private: bool = False) -> None:
+    """Write a text as a whole file; of the name of some file it may hold letters that no text has, which are
+    replaced. Raises ProjectError, see ``whole_file``.
+    """
+    with whole_file(target, private) as partial:
+        partial.write_bytes(text.encode(encoding, errors="replace"))
 
 
 def still_written(target: Path) -> ProjectError:

@@ -21,7 +21,7 @@ from core.design_lines import LineTraits, OwnLine, WornLine
 from core.design_measures import OwnMeasure
 from core.design_text import from_json, to_json
 from core.errors import UserError
-from core.presets import preset_of
+from core.presets import Preset, PresetLine, preset_of
 from core.printable_name import is_printable, printable, repeated, shown
 from core.sewing.elastic_csv import elastic_from_csv
 from core.writing_out.cells import cell, csv_text
@@ -53,7 +53,8 @@ MAKERS: dict[str, Callable[[str], object]] = {
     "measure": lambda name: OwnMeasure(name, "girth"),
     "customer": lambda name: replace(DESIGN, customer=name),
     "calibration": lambda name: Calibration(name, 1.0, 1.0),
-    "preset": lambda name: preset_of(
+    "preset": lambda name: Preset(name, (PresetLine("mid-bust", length=0.9),)),
+    "preset's file": lambda name: preset_of(
         json.dumps({"format": 1, "title": name, "lines": [{"line": "mid-bust", "length": 0.9}]})
     ),
 }
@@ -64,7 +65,7 @@ def test_everything_that_has_a_name_has_one_that_can_be_shown(what: str) -> None
     for name in BAD:
         with pytest.raises((UserError, ValueError)) as refused:
             MAKERS[what](name)
-        assert shown(str(refused.value)) == str(refused.value) or what == "preset"
+        assert shown(str(refused.value)) == str(refused.value)
     for name in GOOD:
         MAKERS[what](name)
 
@@ -83,7 +84,7 @@ def test_names_in_projects_and_tables_are_refused_as_typed_ones_are(name: str) -
 
 @pytest.mark.parametrize("name", ["", "  ", "\u3000", "\u200b", "\u200d\u2060"])
 def test_a_name_that_nobody_can_see_is_none(name: str) -> None:
-    for what in ("own line", "elastic", "measure", "preset"):
+    for what in ("own line", "elastic", "measure", "preset's file"):
         with pytest.raises((UserError, ValueError)):
             MAKERS[what](name)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import errno
 import json
 import os
 import subprocess
@@ -102,3 +103,26 @@ def test_the_sheet_comes_without_pictures_where_they_cannot_be_drawn(
     assert main(["report", str(mannequin), "--out", str(out)]) == SETTLED
     assert "could not be drawn" in capsys.readouterr().err
     assert "The pictures of the body could not be drawn here" in Pdf(out).text()
+
+
+def test_a_disk_that_gets_full_leaves_the_old_sheet_or_one_without_pictures(
+    mannequin: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    written, fsync = [], os.fsync
+
+    def full(handle: int) -> None:
+        written.append(handle)
+        if len(written) > room:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        fsync(handle)
+
+    monkeypatch.setattr(os, "fsync", full)
+    out, room = tmp_path / "sheet.pdf", 1
+    assert main(["report", str(mannequin), "--out", str(out)]) == SETTLED
+    assert "No space left on device" in capsys.readouterr().err
+    assert "The pictures of the body could not be drawn here" in Pdf(out).text()
+    before, room = out.read_bytes(), 0
+    assert main(["report", str(mannequin), "--out", str(out)]) == BAD_INPUT
+    assert "cannot be written: No space left on device" in capsys.readouterr().err
+    assert out.read_bytes() == before
+    assert list(tmp_path.iterdir()) == [out]

@@ -10,7 +10,7 @@ import pytest
 
 import core.whole_file
 from core.errors import ProjectError
-from core.whole_file import private_folder, safe_ending, whole_file
+from core.whole_file import private_folder, safe_ending, whole_file, write_text
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="links, pipes and access rights of POSIX")
 
@@ -172,3 +172,8 @@ def test_what_fails_is_told_and_nothing_is_left(tmp_path: Path, monkeypatch: pyt
         write(target)
     assert target.read_text() == "old"
     assert left_over(tmp_path) == ["table.csv"]
+
+
+def test_a_text_with_half_a_letter_from_the_name_of_a_file_is_written(tmp_path: Path) -> None:
+    write_text(tmp_path / "report.json", "K\udcf6rper 胸\n")
+    assert (tmp_path / "report.json").read_bytes().decode() == "K?rper 胸\n"

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import stat
+import sys
 import zipfile
 from pathlib import Path
 
@@ -16,6 +18,7 @@ import app.desks.desk
 import app.desks.export_desk
 from app.main_window import MainWindow
 from app.wording.samples import sample_design
+from core.backups import backups
 from core.document import Document
 from core.project import ScanFile, open_project, save_project
 
@@ -50,6 +53,35 @@ def test_a_project_is_saved_and_reopened(tmp_path: Path, monkeypatch: pytest.Mon
         assert json.loads(archive.read("design.json"))["format"] == 1
         assert QImage.fromData(archive.read("preview.png")).width() == 480
     run_undrawn([str(path)], again)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="links and access rights of POSIX")
+def test_a_project_behind_a_link_is_saved_where_it_lies(tmp_path: Path) -> None:
+    path, link = tmp_path / "bodies" / "anna.busk", tmp_path / "anna.busk"
+    path.parent.mkdir()
+    design = sample_design()
+    scan = ScanFile("mannequin.ply", Path(design.scan.path).read_bytes())
+    save_project(path, Document.of(design), scan, None)
+    path.chmod(0o640)
+    link.symlink_to("bodies/anna.busk")
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        drag(window, "mid-bust", -20)
+        yield settled(window)
+        window.actions_.save.trigger()
+        assert window.session.finish_saving()
+        assert not window.session.changed_elsewhere
+        drag(window, "mid-bust", -10)
+        yield settled(window)
+        window.actions_.save.trigger()
+        assert window.session.finish_saving()
+
+    run_undrawn([str(link)], script)
+    assert link.is_symlink()
+    assert stat.S_IMODE(path.stat().st_mode) == 0o640
+    lengths = [open_project(each).design.ratio("mid-bust") for each in (path, *(b.path for b in backups()))]
+    assert len(set(lengths)) == 3, "as it is, as it was saved before, and as it was opened"
 
 
 def test_the_shown_body_is_exported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 from app.printing.accuracy import save_sheets, verdict
 from core.accuracy import OFF, TRUSTED, Case, Mark, Spread, judged, spreads
 from core.truth import read_truths
-from core.whole_file import whole_file
+from core.whole_file import write_text
 
 ALL_RIGHT, NOT_ALL_RIGHT = 0, 3
 SIGNED = ("height", "level", "girth")
@@ -42,8 +42,7 @@ def run_accuracy(folder: Path, out: Path | None, json: bool) -> int:
         out = Path(out)
         out.mkdir(parents=True, exist_ok=True)
         for name, content in (("accuracy.md", text), ("accuracy.json", values + "\n")):
-            with whole_file(out / name) as partial:
-                partial.write_text(content, encoding="utf-8")
+            write_text(out / name, content)
         save_sheets(cases, folder, out)
         print(f"tables and pictures written to {out}", file=sys.stderr)
     return ALL_RIGHT if all(_as_wished(case) for case in cases) else NOT_ALL_RIGHT

@@ -20,7 +20,7 @@ from core.sheet import Heading, Sheet, sheet_of, with_spread
 from core.sizes import sizes
 from core.solution import Solution
 from core.spread import spread_of
-from core.whole_file import whole_file
+from core.whole_file import write_text
 from core.writing_out.cells import ENCODING
 from core.writing_out.sheet_file import sheet_csv, sheet_json
 
@@ -74,8 +74,7 @@ def run_report(
         sheet = with_spread(sheet, solution.stages, solution.control_points, spread_of(solution.stages))
     for name, text, code in ((wishes.json, sheet_json, "utf-8"), (wishes.csv, sheet_csv, ENCODING)):
         if name:
-            with whole_file(Path(name)) as partial:
-                partial.write_text(text(sheet), encoding=code, errors="replace")  # of a file's name
+            write_text(Path(name), text(sheet), code)
     said = _write(solution, sheet, wishes)
     files = [name for name in (wishes.out, wishes.json, wishes.csv) if name]
     return Reported(

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from core.errors import UserError
-from core.whole_file import whole_file
+from core.whole_file import write_text
 from core.writing_out import cells
 
 T = TypeVar("T")
@@ -24,8 +24,7 @@ def told(forms: Mapping[str, Callable[[T], str]], found: T, kind: str, out: str 
     if not out.strip():
         raise UserError("The place to write to has no name.", "Name a file: --out table.csv.")
     form = forms[kind or {".json": "json", ".csv": "csv"}.get(Path(out).suffix.lower(), "")]
-    with whole_file(Path(out)) as partial:
-        partial.write_text(form(found) + "\n", encoding="utf-8")
+    write_text(Path(out), form(found) + "\n")
     return f"written to {out}"
 
 

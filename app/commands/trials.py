@@ -17,7 +17,7 @@ from core.mechanics import LAWS, Mechanics
 from core.pipeline import GAIN_SHARE, build
 from core.studies.sphere import sphere_control
 from core.studies.trial import CONTROLS, LONGEST, RIPPLE_TURNS, TURNS, Subject, Trial, trials
-from core.whole_file import whole_file
+from core.whole_file import whole_file, write_text
 
 LENGTHS = (1.10, 1.03, 0.97, 0.9, 0.8, 0.7, 0.6, 0.5)
 STIFFNESSES = (4.0, 16.0, 64.0)
@@ -66,8 +66,7 @@ def run_trials(out: Path, quick: bool = False) -> list[Trial]:
     print(file=sys.stderr)
     with whole_file(out / "sweep.csv") as partial:
         _write_rows(partial, made)
-    with whole_file(out / "sweep.md") as partial:
-        partial.write_text("\n".join(page(made, quick)) + "\n", encoding="utf-8")
+    write_text(out / "sweep.md", "\n".join(page(made, quick)) + "\n")
     return made
 
 

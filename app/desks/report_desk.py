@@ -31,7 +31,7 @@ from core.mesh import Floats
 from core.progress import Progress
 from core.settled import settled_frame
 from core.sheet import Heading, Sheet, sheet_of
-from core.whole_file import whole_file
+from core.whole_file import write_text
 from core.writing_out.cells import ENCODING
 from core.writing_out.sheet_file import sheet_csv, sheet_json
 
@@ -246,12 +246,7 @@ class ReportDesk(QObject):
             return
         form, code = (sheet_csv, ENCODING) if ending == ".csv" else (sheet_json, "utf-8")
         text = form(self.handout.sheet)
-
-        def write() -> None:
-            with whole_file(Path(path).absolute()) as partial:
-                partial.write_text(text, encoding=code, errors="replace")  # of a file's name
-
-        self._write(path, write)
+        self._write(path, lambda: write_text(Path(path).absolute(), text, code))
 
     def _asked_for(self, title: str, ending: str, kinds: str) -> str:
         name = f"{self._window.session.name}-{tr('sheet')}{ending}"

@@ -16,7 +16,7 @@ from core.pipeline import GAIN_SHARE, Stages
 from core.studies.search import RATIOS, Finding, search
 from core.tffd import GAUSS_WIDTH, HAT_RANGE
 from core.volume import ADAPTIVE_DAMPING, ADAPTIVE_STEP
-from core.whole_file import whole_file
+from core.whole_file import write_text
 
 NAME = "REPRODUCTION.md"
 
@@ -43,8 +43,7 @@ def write_page(
     def page(pictures: str = "", tables: bool = True) -> str:
         return page_of(drawn, stated, found, study, pictures=pictures, tables=tables)
 
-    with whole_file(out / NAME) as partial:
-        partial.write_text(page(), encoding="utf-8")
+    write_text(out / NAME, page())
     tell(f"  {out / NAME}: the page")
     return page
 

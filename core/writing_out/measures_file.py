@@ -17,7 +17,7 @@ from xml.etree import ElementTree as Xml
 from core.errors import UserError
 from core.printable_name import printable
 from core.space import UNITS
-from core.whole_file import whole_file
+from core.whole_file import write_text
 from core.writing_out.cells import cell
 
 Values = Mapping[str, tuple[float, str]]
@@ -59,8 +59,7 @@ def write_measures(path: str | os.PathLike[str], sheet: MeasuresSheet) -> None:
     """
     target, sheet = Path(path), replace(sheet, note=printable(sheet.note))
     text = MEASURE_FORMATS[measures_kind(path, sheet.unit)](sheet)
-    with whole_file(target) as partial:
-        partial.write_text(text, encoding="utf-8", newline="")
+    write_text(target, text)
 
 
 def measures_kind(path: str | os.PathLike[str], unit: str) -> str:
