@@ -12,6 +12,7 @@ from app.dress.focus import FocusRing, next_stop, stops
 from app.dress.parts import OverCard
 from app.dress.place import put_as_last
 from app.dress.spoken import announce
+from app.notice_place import NoticePlace
 from app.wording.words import tr
 
 if TYPE_CHECKING:
@@ -47,9 +48,10 @@ class Layout(QObject):
         self._middle, self._right = QVBoxLayout(), QVBoxLayout()
         self._ring = FocusRing(window)
         self._build()
+        self._notices = NoticePlace(window, self.pages, self._across, self._right)
+        self._notices.carry()
         self._across.splitterMoved.connect(self._note_width)
         self._down.splitterMoved.connect(self._note_height)
-        self.pages.currentChanged.connect(self._carry_notices)
         window.strip.folded.connect(self._fit_strip)
         window.view.viewport.addAction(window.actions_.alone)
         window.installEventFilter(self)
@@ -71,7 +73,6 @@ class Layout(QObject):
             for stretch, part in zip((1, 0), parts, strict=True):
                 splitter.addWidget(part)
                 splitter.setStretchFactor(splitter.count() - 1, stretch)
-        self._middle.addWidget(window.notices)
         self._middle.addWidget(self._down, 1)
         self.pages.addWidget(self._across)
         self._right.addWidget(self.pages, 1)
@@ -198,7 +199,8 @@ class Layout(QObject):
         """Return what is read one after the other in a pane: on the view one floating panel at a time."""
         if pane is not self._window.view:
             return [pane]
-        parts = [each for each in pane.children() if isinstance(each, QWidget) and each.isVisible()]
+        apart = self._window.notices  # a pane of its own
+        parts = [e for e in pane.children() if isinstance(e, QWidget) and e.isVisible() and e is not apart]
         return sorted(parts, key=lambda each: (each.y(), each.x()))
 
     def _panes(self) -> list[QWidget]:
@@ -243,11 +245,6 @@ class Layout(QObject):
                 self._window.strip.set_folded(True)
             self.fit()
         return False
-
-    def _carry_notices(self) -> None:
-        """Keep the notices over what is shown: over the view alone, so that no slider moves under a hand."""
-        at_work = self.pages.currentWidget() is self._across
-        (self._middle if at_work else self._right).insertWidget(0, self._window.notices)
 
     # -- between sessions
 

@@ -78,6 +78,7 @@ def _connect_session(window: MainWindow) -> None:
     session.asked.connect(scan_desk.show_stuck)
     session.saved.connect(desk.show_saved)
     session.undo_stack.cleanChanged.connect(desk.show_title)
+    session.undo_stack.indexChanged.connect(desk.note_step)
     session.opened.connect(window.garment_desk.forget)
     session.frame_ready.connect(window.garment_desk.follow)
 

@@ -76,7 +76,7 @@ def test_a_wide_button_stands_under_the_words_and_a_short_one_beside_them(qtbot:
     for words, width, below in (
         ("Lower the gain, " * 3, 700, True),
         ("Undo", 700, False),
-        ("Undo", 300, False),
+        ("Undo", 300, True),
     ):
         bar.show_notice("warn", "It swings.", actions=[(words, print)], details="Figures")
         bar.resize(width, 90)

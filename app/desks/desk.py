@@ -17,7 +17,7 @@ from app.keeping.last_folders import remember_folder
 from app.keeping.loss_dialogs import ask_overwrite
 from app.keeping.project_picture import project_picture
 from app.keeping.recent import remember_file
-from app.panels.notice import FAULT, FILES, REFUSED
+from app.panels.notice import FAULT, FILES, REFUSED, SCAN
 from app.presenting.faults import fault_words, out_of_date, solver_fault_words
 from app.presenting.frame import facts
 from app.presenting.lines import titled
@@ -43,7 +43,7 @@ class Desk(QObject):
         self._session = window.session
         self._frame: Frame | None = None
         self._fell_back_to: Design | None = None
-        self._chosen = ""
+        self._chosen, self._index = "", 0
         self._faulty = False
         self._plotted: Frame | None = None
         self._plot_due = 0.0
@@ -69,20 +69,20 @@ class Desk(QObject):
         window.scan_desk.show_opened(frame.stages)
         window.status.set_saved("")  # what was said is of the document before
         for sentence in warnings(frame.stages):
-            window.notices.show_notice("warn", sentence, lasting=True)
+            window.notices.show_notice("warn", sentence, lasting=True, about=SCAN)
 
     def show_frame(self, frame: Frame) -> None:
         """Show how far the solver has come."""
         design = frame.stages.design
-        if not frame.at_work and self._fell_back_to not in (None, design) and design is self._session.design:
-            # What was decided since is solved: a refusal from before speaks of no design any more.
-            self._fell_back_to = None
-            self._window.notices.withdraw(REFUSED)
+        if self._fell_back_to not in (None, design) and design is self._session.design:
+            self.forget_failures()
         if self._faulty and self._session.failure is None:
             self._faulty = False
             self._window.notices.withdraw(FAULT)
         if self._frame is None or frame.stages.landmarks is not self._frame.stages.landmarks:
             self._window.scan_desk.show_found(frame.stages)
+        if self._frame is not None and frame.stages.control is not self._frame.stages.control:
+            self._window.notices.keep_only(SCAN, warnings(frame.stages))
         turning = frame.at_work and self._frame is not None and frame.stages.model is self._frame.stages.model
         self._frame = frame
         self._window.view.show_frame(frame)
@@ -90,6 +90,17 @@ class Desk(QObject):
             self.plot_now()
         elif not self._plot_clock.isActive():
             self._plot_clock.start()
+
+    def note_step(self, index: int) -> None:
+        """Withdraw failures of what is undone; those of another edit go with its first frame."""
+        former, self._index = self._index, index
+        if index < former:
+            self.forget_failures()
+
+    def forget_failures(self) -> None:
+        """Withdraw failures of a design that is no longer the one in hand."""
+        self._fell_back_to = None
+        self._window.notices.withdraw(REFUSED)
 
     def show_design(self, design: Design) -> None:
         """Show what was decided."""
@@ -126,7 +137,7 @@ class Desk(QObject):
         if self._faulty:
             said, about = solver_fault_words(error), FAULT
         else:
-            said, about = fault_words(error), ""
+            said, about = fault_words(error), about or REFUSED
         again = [(tr("Try again"), self._session.go_on)] if self._faulty else []
         notices.show_notice("bad", *said, again, lasting=True, details=trace, about=about)
 

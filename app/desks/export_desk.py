@@ -30,6 +30,8 @@ from core.whole_file import still_written
 if TYPE_CHECKING:
     from app.main_window import MainWindow
 
+_DOUBT = "export"  # what a notice of an export of an unfinished run is about
+
 
 class ExportDesk(QObject):
     """Opens the sheet of what can be exported, tells what will be in a file, and writes it.
@@ -61,8 +63,10 @@ class ExportDesk(QObject):
         """Ask for a place and write the reshaped body, else as it was chosen last."""
         frame = self._ask_and_write("body", tr("Export body"), reshaped=True)
         doubt = self._doubt(frame) if frame is not None else ""
+        if frame is not None:
+            self._window.notices.withdraw(_DOUBT)
         if doubt:
-            self._window.notices.show_notice("warn", doubt, lasting=True)
+            self._window.notices.show_notice("warn", doubt, lasting=True, about=_DOUBT)
 
     def show_frame(self, frame: Frame) -> None:
         """Tell of the body as it is now, if somebody looks and it rests."""

@@ -59,6 +59,7 @@ class JobDesk(QObject):
         shown: float | None = share
         if job is not None:
             words, shown = job.words, job.share
+        window.notices.set_aside(carried)
         window.status.set_job(words, shown)
         window.view.busy.show_work(words if waited else "", shown, steps)
         window.actions_.cancel.setEnabled(waited or carried)

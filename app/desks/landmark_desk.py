@@ -38,6 +38,8 @@ ARROWS = {
 }
 """Which way each arrow key moves a pin over the picture, right and up."""
 
+_DOUBT = "landmarks"  # what a notice of uncertain landmarks is about
+
 PAUSE = 800
 """Milliseconds without a key after which a pin that was moved by keys is put down."""
 
@@ -81,6 +83,8 @@ class LandmarkDesk(QObject):
         window.landmarks.set_landmarks(views, said)
         weak = sum(view.weak for view in views)
         window.rail.set_state("landmarks", "look" if weak or said else "done", weak)
+        if not (weak or said):
+            window.notices.withdraw(_DOUBT)
 
     def show_unclear(self, stages: Stages) -> None:
         """Say which of the landmarks that the control mesh hangs on could hardly be seen."""
@@ -92,7 +96,9 @@ class LandmarkDesk(QObject):
             said, *more = landmark_doubts(stages.landmarks)
             spoken_of = first_doubt(stages.landmarks)
             look = (tr("Look at it"), lambda: self._look_at(spoken_of))
-            self._window.notices.show_notice("warn", said, joined(map(say, more)), [look], lasting=True)
+            self._window.notices.show_notice(
+                "warn", said, joined(map(say, more)), [look], lasting=True, about=_DOUBT
+            )
 
     def show_stuck(self, stuck: StuckError) -> None:
         """Show what was found on a scan that cannot go on."""

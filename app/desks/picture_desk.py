@@ -70,6 +70,7 @@ class PictureDesk(QObject):
             return
         painter.drawImage(fitted(picture.size(), page.size()), picture)
         painter.end()
+        self._window.notices.withdraw("print")
 
     def _picture(self) -> QImage:
         picture = self._window.view.picture(FINER)

@@ -253,13 +253,12 @@ class ReportDesk(QObject):
         return ask_save(self._window, title, name, kinds, ending)
 
     def _write(self, path: str, write: Callable[[], None]) -> None:
-        name = Path(path).name
         try:
             write()
         except UserError as problem:
             self._window.desk.show_failure(problem, "sheet")
         else:
-            self._window.desk.show_written("sheet", tr("{name} written.").format(name=name), path)
+            self._window.desk.show_written("sheet", tr("{name} written.").format(name=Path(path).name), path)
 
     def _print(self) -> None:
         pages = self.pages
@@ -286,6 +285,7 @@ class ReportDesk(QObject):
             painter.scale(scale, scale)
             pages.paint(painter, page)
         painter.end()
+        self._window.notices.withdraw("print")
 
 
 def _alike(one: Frame, other: Frame) -> bool:

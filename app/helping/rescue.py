@@ -15,6 +15,7 @@ from PySide6.QtCore import QObject, Qt, Signal
 from app.helping.machine import machine_facts
 from app.panels.about import as_text
 from app.panels.fault import FaultSheet
+from app.panels.notice import REFUSED
 from app.wording.words import tr
 from core.errors import UserError, as_exception
 
@@ -73,7 +74,7 @@ class Rescue(QObject):
         """Keep the design aside, then say what happened; a second fault joins the first."""
         if isinstance(fault, UserError):
             notices = self._window.notices
-            notices.show_notice("bad", fault.message, fault.hint, lasting=True, details=trace)
+            notices.show_notice("bad", fault.message, fault.hint, lasting=True, details=trace, about=REFUSED)
             return
         if self.sheet is not None:
             self.sheet.add_details(trace)

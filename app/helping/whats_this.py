@@ -46,7 +46,7 @@ def _around(window: MainWindow) -> dict[QWidget, str]:
             "yet: look at the verdict before you trust a shape. The dashed line is the exact answer."
         ),
         window.notices: tr(
-            "What needs your attention, one at a time, with what you can do. Nothing here covers your work."
+            "What needs your attention, one at a time, with what you can do. Close it with the cross."
         ),
     }
 

@@ -30,6 +30,10 @@ if TYPE_CHECKING:
     from app.main_window import MainWindow
 
 
+_ASIDE, _HELD = "kept aside", "held"
+"""Causes of notices: the recovery copy cannot be written; another window has the project open."""
+
+
 class KeepingDesk(QObject):
     """Keeps the document aside while it is not saved, and the project to itself.
 
@@ -140,12 +144,13 @@ class KeepingDesk(QObject):
         self._kept = document if fault is None else None
         if fault is None:
             self._told = False
+            self._window.notices.withdraw(_ASIDE)
             self.note()
             return
         logging.error("the document could not be kept aside", exc_info=fault)
         if not self._told:
             said = (fault.message, fault.hint) if isinstance(fault, UserError) else (str(fault), "")
-            self._window.notices.show_notice("warn", *said, lasting=True)
+            self._window.notices.show_notice("warn", *said, lasting=True, about=_ASIDE)
         self._told = True
         self._clock.start(60_000)
 
@@ -159,6 +164,7 @@ class KeepingDesk(QObject):
         return project_picture(view.viewport.picture(labels=False), state_of(frame))
 
     def _hold_project(self) -> None:
+        self._window.notices.withdraw(_HELD)
         since = self._lock.take(self._session.path)
         if since is None:
             return
@@ -169,6 +175,7 @@ class KeepingDesk(QObject):
             tr("Who saves last replaces what the other has saved."),
             ((tr("Open as a copy"), self._detach), (tr("Open anyway"), _do_nothing)),
             lasting=True,
+            about=_HELD,
         )
 
     def _detach(self) -> None:

@@ -1,21 +1,21 @@
-"""The bar above the view that says what happened and what to do."""
+"""The card of notices: what happened, and what to do about it."""
 
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from html import escape
 
-from PySide6.QtCore import Qt, QTimer, Signal
+from PySide6.QtCore import QRectF, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
-from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout
 
-from app.dress.parts import IconLabel, ToolButton, button
+from app.dress.parts import FloatingPanel, IconLabel, ToolButton, button
 from app.dress.sheet import reading
-from app.dress.theme import label, tokens_of
+from app.dress.theme import faded, label, tokens_of
 from app.dress.tip import set_tip
 from app.wording.words import held_together, say, tr
 
@@ -25,14 +25,15 @@ Action = tuple[str, Callable[[], None]]
 TONE_ICONS = {"ok": "check-circle", "info": "info", "warn": "warning", "bad": "warning-octagon"}
 """The tones of a notice with their drawings."""
 
-REFUSED, FILES, FAULT = "refused", "files", "fault"
-"""What notices of failures are about: an edit or a scan that was refused, a file that was not written, a
-fault of the solver.
-"""
+REFUSED, FILES, FAULT, SCAN = "refused", "files", "fault", "scan"
+"""Causes of notices: a refused edit or scan, a file not written, a fault of the solver, a bad scan."""
 
 _LEAVES_AFTER_MS = 8000
-_MOST_ROOM = 0.4  # of the width that buttons take beside the words
-_MOST_LINES = 10  # of details that are seen at once: below them lies the body
+_LEAST_WORDS = 400  # of the width for words, with icon and cross, where buttons stand beside them [px]
+_MOST_LINES = 16  # of details that are seen at once; the others are scrolled to
+_WIDEST, _NARROWEST = 680, 420  # of what is seen of the card on the view [px]
+_MOST_HIGH = 0.6  # of the view, for card and details together
+_NO_LIMIT = 16_777_215  # of a width, in the words of Qt
 _BUTTON_KINDS = ("primary", "secondary", "quiet")
 
 
@@ -49,8 +50,8 @@ class Notice:
     about: str = ""
 
 
-class NoticeBar(QWidget):
-    """One notice at a time, the others wait; it takes no room while there is none.
+class NoticeBar(FloatingPanel):
+    """A card with one notice at a time, the others wait; it takes no room while there is none.
 
     What goes wrong now, or goes away by itself, is said at once: what stands there waits, if it lasts.
     """
@@ -61,6 +62,7 @@ class NoticeBar(QWidget):
         super().__init__()
         self._shown: Notice | None = None
         self._waiting: deque[Notice] = deque()
+        self._lines, self._aside = _MOST_LINES, False
         self._timer = QTimer(self)
         self._timer.setSingleShot(True)
         self._timer.timeout.connect(self.close_notice)
@@ -122,18 +124,54 @@ class NoticeBar(QWidget):
             self.close_notice()
         self._show_waiting()
 
+    def keep_only(self, about: str, sentences: Collection[str]) -> None:
+        """Take away the notices about something whose sentence holds no longer."""
+        self._waiting = deque(e for e in self._waiting if e.about != about or e.sentence in sentences)
+        shown = self._shown
+        if shown is not None and shown.about == about and shown.sentence not in sentences:
+            self.close_notice()
+        self._show_waiting()
+
+    def set_room(self, width: int | None, height: int) -> None:
+        """Take at most this width and a part of this height of the view [px]; None: the width of a page."""
+        left, top, right, bottom = self.MARGINS
+        if width is None:
+            self.setMinimumWidth(0)
+            self.setMaximumWidth(_NO_LIMIT)
+        else:
+            self.setFixedWidth(max(min(width, _WIDEST), _NARROWEST) + left + right)
+        rest = self._words.fontMetrics().lineSpacing() * 3 + top + bottom
+        line = max(self.details.fontMetrics().lineSpacing(), 1)
+        self._lines = max(3, min(_MOST_LINES, int(_MOST_HIGH * height - rest) // line))
+        self._fit_details()
+
+    def set_aside(self, aside: bool) -> None:
+        """Hide the card while a hand carries something over the view, which it may cover; then show it."""
+        self._aside = aside
+        self.setVisible(self._shown is not None and not aside)
+
+    def sizeHint(self) -> QSize:
+        hint, layout = super().sizeHint(), self.layout()
+        width = self.minimumWidth() if self.minimumWidth() == self.maximumWidth() else hint.width()
+        return QSize(width, layout.totalHeightForWidth(width) if layout is not None else hint.height())
+
     def paintEvent(self, event: QPaintEvent) -> None:
+        super().paintEvent(event)
         if self._shown is None:
             return
-        tokens = tokens_of(self)
-        painter = QPainter(self)
-        painter.fillRect(self.rect(), QColor(getattr(tokens, f"{self._shown.tone}_fill")))
-        painter.fillRect(0, self.height() - 1, self.width(), 1, QColor(tokens.line))
+        tokens, painter = tokens_of(self), QPainter(self)
+        left, top, right, bottom = self.MARGINS
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(faded(getattr(tokens, self._shown.tone), tokens.panel, 0.35))
+        painter.setBrush(QColor(getattr(tokens, f"{self._shown.tone}_fill")))
+        card = QRectF(self.rect()).adjusted(left + 0.5, top + 0.5, -right - 0.5, -bottom - 0.5)
+        painter.drawRoundedRect(card, self.RADIUS, self.RADIUS)
 
     def _build(self) -> None:
-        self.setMinimumHeight(44)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(16, 5, 10, 6)
+        left, top, right, bottom = self.MARGINS
+        self.row.setContentsMargins(left + 14, top + 6, right + 8, bottom + 6)
+        column = QVBoxLayout()
+        self.row.addLayout(column)
         column.setSpacing(4)
         row = QHBoxLayout()
         column.addLayout(row)
@@ -181,19 +219,22 @@ class NoticeBar(QWidget):
         self._show_waiting()
         if not notice.lasting:
             self._timer.start(_LEAVES_AFTER_MS)
-        self.show()
+        self.set_aside(self._aside)
         self.update()
 
     def _fit_details(self) -> None:
         """Give the details room for all their lines, or for the first of them, and cut none in half."""
         document, high, lines = self.details.document(), 0.0, 0
         block = document.begin()
-        while block.isValid() and lines + block.lineCount() <= _MOST_LINES:
+        while block.isValid() and lines + block.lineCount() <= self._lines:
             lines += block.lineCount()
             high += document.documentLayout().blockBoundingRect(block).height()
             block = block.next()
         frame = self.details.height() - self.details.contentsRect().height()
-        self.details.setFixedHeight(math.ceil(high + 2 * document.documentMargin()) + frame)
+        margins = (
+            1 if block.isValid() else 2
+        ) * document.documentMargin()  # no half of a line below the last
+        self.details.setFixedHeight(math.ceil(high + margins) + frame)
 
     def _show_details(self, shown: bool) -> None:
         self.details.setVisible(shown)
@@ -214,7 +255,9 @@ class NoticeBar(QWidget):
 
     def _place_buttons(self) -> None:
         """Put the buttons beside the words, or under them where those would be squeezed into a column."""
-        wide = sum(each.sizeHint().width() for each in self._buttons) > _MOST_ROOM * self.width()
+        others = (each for each in (self.more, self.unfold) if not each.isHidden())
+        taken = sum(each.sizeHint().width() + 8 for each in (*self._buttons, *others))
+        wide = self.width() - taken < _LEAST_WORDS
         row, other = (self._below, self._row) if wide else (self._row, self._below)
         first = 0 if wide else self._row.count() - 2 - sum(self._row.indexOf(b) >= 0 for b in self._buttons)
         for place, each in enumerate(self._buttons):
@@ -233,6 +276,7 @@ class NoticeBar(QWidget):
     def _show_waiting(self) -> None:
         self.more.setText(tr("{count} more").format(count=len(self._waiting)))
         self.more.setVisible(bool(self._waiting))
+        self._place_buttons()
 
     def _turn_over(self) -> None:
         """Show the next notice, and let the one that stands there wait behind all others."""

@@ -13,14 +13,15 @@ GAP = 14
 APART = 8
 """Least distance between two panels [px]."""
 
-CORNERS = ("bottom", "bottom-left", "bottom-right", "top", "top-left", "top-right")
+CORNERS = ("bottom", "bottom-left", "bottom-right", "top-left", "top-right", "top")
 """Where panels can be; panels of one corner are piled up, the first one at the edge."""
 
 
 class Floating(QObject):
     """Keeps panels in their corners of ``view`` while it, or what they hold, changes its size.
 
-    What stands in the middle keeps its place: a panel of a corner that would lie on it moves up or down.
+    What stands in the middle of the lower edge keeps its place: a panel of a corner that would lie on it
+    moves up. In the middle of the upper edge a panel moves sideways, where there is room, else below others.
     A panel that ``yields`` gets its place after all others. ``rearranged``: one of those others came, went,
     grew or moved.
     """
@@ -91,7 +92,10 @@ class Floating(QObject):
         for corner, panel in panels:
             low = corner.startswith("bottom")
             panel.adjustSize()
-            room = _cleared(self._room(panel, corner), taken[low], low)
+            room = self._room(panel, corner)
+            if corner == "top":
+                room = _between(room, taken[low], self._view.rect().adjusted(GAP, GAP, -GAP, -GAP))
+            room = _cleared(room, taken[low], low)
             taken[low].append(room)
             panel.move(room.topLeft() - QPoint(_shadow(panel).left(), _shadow(panel).top()))
 
@@ -132,6 +136,17 @@ class Floating(QObject):
         else:
             room.moveBottom(area.bottom())
         return room
+
+
+def _between(room: QRect, taken: list[QRect], area: QRect) -> QRect:
+    """Return ``room`` moved sideways between those at its left and at its right, if it fits there."""
+    level = [each for each in taken if each.top() <= room.bottom() and room.top() <= each.bottom()]
+    middle = area.center().x()
+    low = max([area.left(), *(each.right() + 1 + APART for each in level if each.center().x() < middle)])
+    high = min([area.right(), *(each.left() - 1 - APART for each in level if each.center().x() >= middle)])
+    if high - low + 1 < room.width():
+        return room
+    return QRect(QPoint(max(low, min(room.left(), high + 1 - room.width())), room.top()), room.size())
 
 
 def _cleared(room: QRect, taken: list[QRect], upwards: bool) -> QRect:
