@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
@@ -30,6 +31,15 @@ MOST_PIECES = 200
 
 MARGIN = 9.0
 """So near to a hole [mm] a smoothed profile bends as the hole does, not as the body."""
+
+RIM = 18.0
+"""The direction of the skin at the rim of a hole is that of its last part of this length [mm]."""
+
+ROUND = 70.0
+"""Radius of the underside of a breast where a hole hides it [mm]."""
+
+HIGHEST = 0.3
+"""Above the lower rim of a hole a hidden fold lies no higher than this part of the hole's length [1]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,9 +78,10 @@ def _profile(mesh: Mesh, bust: Points, offset: float, bottom: float) -> Profile:
     away = [d.min() + LOOSE * (length < SHORT) for d, length in zip(distances, lengths, strict=True)]
     nearest = int(np.argmin(away))
     own, closed = pieces.pop(nearest)
-    curve = _downward(own, closed, int(np.argmin(distances[nearest])))
+    curve, rest = _downward(own, closed, int(np.argmin(distances[nearest])))
     bridges = []
-    ends = [piece[::turn] for piece, ring in pieces if not ring for turn in (1, -1)]
+    # Round a body without an opening the skin below the hole is the other end of the same piece.
+    ends = [rest, rest] + [piece[::turn] for piece, ring in pieces if not ring for turn in (1, -1)]
     if (
         closed
     ):  # without a hole: where the body is narrower below, the profile ends at the back of what is here
@@ -85,8 +96,10 @@ def _profile(mesh: Mesh, bust: Points, offset: float, bottom: float) -> Profile:
         nearest = int(np.argmin(jumps))
         if jumps[nearest] > BRIDGE:
             break
-        bridges.append([last, starts[nearest]])
-        parts.append(ends[nearest])
+        fold = _hidden_fold(parts[-1], ends[nearest])
+        corners = [last, *fold, starts[nearest]]
+        bridges += [list(pair) for pair in pairwise(corners)]
+        parts += [fold, ends[nearest]]
         free[nearest - nearest % 2 : nearest - nearest % 2 + 2] = False
     curve = np.concatenate(parts)
     below = np.flatnonzero(curve[:, 2] < bottom)
@@ -94,15 +107,50 @@ def _profile(mesh: Mesh, bust: Points, offset: float, bottom: float) -> Profile:
     return _measured(curve, np.reshape(bridges, (-1, 2, 3)), np.inf if closed else bottom)
 
 
-def _downward(curve: Points, closed: bool, start: int) -> Points:
-    """Return ``curve`` from ``start`` on in the direction that leads down over the first 18 mm."""
+def _hidden_fold(above: Points, below: Points) -> Points:
+    """Return where the fold lies in the hole between two parts of a profile, shape (1, 3) [mm]; else (0, 3).
+
+    The underside of the breast goes on as an arc to where it meets the straight skin of the chest. Source: ours.
+    """
+    gap = float(np.linalg.norm(below[0] - above[-1]))
+    if gap < MARGIN:
+        return np.empty((0, 3))
+    start, way = _at_rim(above[::-1])
+    end, up = _at_rim(below)
+    if up[1] < 0.5:  # what lies below the hole is no chest that stands upright
+        up = np.array([0.0, 1.0])
+    inward = np.array([-way[1], way[0]])
+    inward *= 1.0 if inward.sum() > 0.0 else -1.0
+    centre = start + ROUND * inward
+    along = float((centre - end) @ up)
+    apart = ROUND**2 - float((centre - end) @ (centre - end)) + along**2
+    height = float(np.clip(along - np.sqrt(max(apart, 0.0)), 0.0, HIGHEST * gap))
+    return np.array([[above[-1, 0], *(end + height * up)]])
+
+
+def _at_rim(curve: Points) -> tuple[Floats, Floats]:
+    """Return place and direction, out of the skin, at the first point of ``curve``: y and z, shape (2,)."""
+    arc = arc_length(curve)
+    part = resample(curve[: max(int(np.searchsorted(arc, RIM)), 2)], 1.0)[:, 1:]
+    middle = part.mean(axis=0)
+    way = np.linalg.svd(part - middle)[2][0]
+    way = way if way @ (part[0] - part[-1]) > 0.0 else -way
+    return middle + way * ((part[0] - middle) @ way), way
+
+
+def _downward(curve: Points, closed: bool, start: int) -> tuple[Points, Points]:
+    """Return ``curve`` from ``start`` on in the direction that leads down over the first 18 mm, and the rest.
+
+    The rest runs from its far end towards ``start``.
+    """
     if closed:
         turned = np.roll(curve[:-1], -start, axis=0)
         ways = [turned, np.roll(turned[::-1], 1, axis=0)]
     else:
         ways = [curve[start:], curve[start::-1]]
-    ways = [way for way in ways if len(way) > 1] or [curve]
-    return min(ways, key=lambda way: float(np.interp(18.0, arc_length(way), way[:, 2])))
+    ways = [way for way in ways if len(way) > 1] or [curve, curve[:1]]
+    ways.sort(key=lambda way: float(np.interp(18.0, arc_length(way), way[:, 2])))
+    return ways[0], ways[-1][::-1]
 
 
 def _measured(curve: Points, bridges: Points, bottom: float) -> Profile:

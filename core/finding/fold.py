@@ -28,8 +28,8 @@ SAME, OWN_BEND = 18, 12
 EVEN, ASTRAY = 2.0, 0.01
 """A fold may leave the even course of its run by this [mm]; each mm more costs so much curvature [1/mm]."""
 
-HIDDEN = 0.02
-"""What a place in a hole is worth [1/mm]: more than a faint hollow beside it, less than a crease."""
+HIDDEN, BLURRED = 1.0, 8.0
+"""In a hole the estimated course counts by this share [1], smoothed over this length [mm]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,8 +63,9 @@ def trace(bundle: list[Profile], height: float) -> Trace | None:
         n = len(profile.points)
         points[k, :n] = profile.points
         high = np.abs(profile.points[:, 2] - height)
-        worth = gaussian_filter1d(profile.bend, 4.0) - STRAY * np.maximum(high - FREE, 0.0)
-        value[k, :n] = np.where(_allowed(profile, height), np.where(profile.seen, worth, HIDDEN), -np.inf)
+        shown, hidden = (gaussian_filter1d(profile.bend, width) for width in (4.0, BLURRED))
+        worth = np.where(profile.seen, shown, HIDDEN * hidden) - STRAY * np.maximum(high - FREE, 0.0)
+        value[k, :n] = np.where(_allowed(profile, height), worth, -np.inf)
     usable = np.isfinite(value).any(axis=1)
     if not usable[OWN]:
         return None

@@ -25,12 +25,19 @@ BELOW, BEYOND = 75.0, 20.0
 CONTRADICTED = 8.0
 """Beside a hole a fold so far off the height of the other breast's [mm] is taken for the rim of the hole."""
 
+UNSEEN_WEIGHT = 0.4
+"""What a hidden place of the crease counts, beside 1 of one that is seen [1]."""
+
+AROUND, LEVEL = 12.0, 1.0
+"""Hidden places count less, the further [mm] beside the bust point they are; that the crease runs level counts
+as much as so many places that are seen [1]."""
+
 NEAR = 42.0
 """Behind a hole the crease is taken from what is seen of it so far to both sides [mm]."""
 
 CREASE = "The sharpest crease below the breast, on the upright profile through the bust point."
 NO_CREASE = "The most hollow place below the breast: the upright profile shows no crease."
-ESTIMATED = "Estimated, as the scan has a hole there: from the crease beside the hole."
+ESTIMATED = "Estimated, as the scan has a hole there: from the skin around the hole."
 MIRRORED = "Estimated, as the scan has a hole there: from the fold of the other breast."
 GUESSED = "Estimated, as the scan shows no fold there: from the height of the hole."
 UNSEEN = "Estimated, as no fold shows there: a little above where the body comes forward."
@@ -45,14 +52,17 @@ MISSING = 0.3
 ASTRAY = 17.0
 """A bust point without any certainty may lie so far to the side [mm], and the profile through it with it."""
 
-CLIMB, CLIMBS = 3.0, 10.0
+ROUGH = 8.0
+"""A crease that strays so far from a smooth curve [mm] divides the confidence by e."""
+
+CLIMB, CLIMBS = 4.0, 13.0
 """Over that way the crease may climb by ``CLIMB`` [mm]; each ``CLIMBS`` more divide the confidence by e."""
 
 RIVAL = 1.1, 0.4
 """Another place may be so many times as hollow as the fold; each second part more divides by e."""
 
-OVERHANG = 40.0
-"""Behind a breast that hangs over its fold the hollow is wide: so much [mm] divides the confidence by e."""
+OVERHANG = 18.0
+"""Behind a breast whose fold lies above its bust point the hollow is wide: so much [mm] divides it by e."""
 
 UNLIKE = 6.0, 8.0
 """Sides may differ by the first [mm], as bodies do; each second [mm] more divides the confidence by e."""
@@ -138,7 +148,7 @@ def _confidence(crease: Trace, bust: Landmark) -> float:
     own, astray = crease.curve[crease.own], ASTRAY * (1.0 - bust.confidence)
     climb = np.abs(np.interp(own[0] + astray * np.linspace(-1.0, 1.0, 9), x, z) - own[2]).max()
     over = max(float(own[2] - bust.position[2]), 0.0)
-    doubt = crease.rough / 5.0 + max(climb - CLIMB, 0.0) / CLIMBS + over / OVERHANG
+    doubt = crease.rough / ROUGH + max(climb - CLIMB, 0.0) / CLIMBS + over / OVERHANG
     doubt += max(crease.rival - RIVAL[0], 0.0) / RIVAL[1]
     return float(confidence * np.exp(-doubt))
 
@@ -178,14 +188,14 @@ def _mirrored(other: Under, busts: tuple[Points, Points]) -> Points | None:
 
 def _beside(crease: Trace | None, bust: Points) -> Points | None:
     """Return the fold below ``bust`` from the visible parts of the crease on both sides of it, (3,) [mm]."""
-    if crease is None or crease.seen.sum() < 4 or crease.depth < 0.0:
+    if crease is None or len(crease.curve) < 6:
         return None
-    x = crease.curve[:, 0] - bust[0]
-    known = crease.seen & (np.abs(x) < NEAR)
-    if known.sum() < 3 or not (x[known].min() < -2.0 and x[known].max() > 2.0):
-        return None
-    y, z = (float(np.polyval(np.polyfit(x[known], crease.curve[known, k], 2), 0.0)) for k in (1, 2))
-    return np.array([bust[0], y, z])
+    x, y, z = (crease.curve - (bust[0], 0.0, 0.0)).T
+    weight = np.where(crease.seen, np.abs(x) < NEAR, UNSEEN_WEIGHT * np.exp(-0.5 * (x / AROUND) ** 2))
+    terms = np.stack([np.ones(len(x)), x / NEAR, (x / NEAR) ** 2], axis=1)
+    hold = np.diag([0.0, LEVEL, LEVEL])  # a few places do not show its slope and bend
+    share = np.linalg.solve((terms * weight[:, None]).T @ terms + hold, (terms * weight[:, None]).T)
+    return np.array([bust[0], *(float(share[0] @ each) for each in (y, z))])
 
 
 def _lowest(own: Under, other: Under, fold: Landmark, side: str, busts: tuple[Points, Points]) -> Landmark:
