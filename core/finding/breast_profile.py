@@ -110,7 +110,7 @@ def _profile(mesh: Mesh, bust: Points, offset: float, bottom: float) -> Profile:
 def _hidden_fold(above: Points, below: Points) -> Points:
     """Return where the fold lies in the hole between two parts of a profile, shape (1, 3) [mm]; else (0, 3).
 
-    The underside of the breast goes on as an arc to where it meets the straight skin of the chest. Source: ours.
+    The underside of the breast goes on as an arc to where it meets the straight chest. Source: ours.
     """
     gap = float(np.linalg.norm(below[0] - above[-1]))
     if gap < MARGIN:

@@ -29,8 +29,8 @@ UNSEEN_WEIGHT = 0.4
 """What a hidden place of the crease counts, beside 1 of one that is seen [1]."""
 
 AROUND, LEVEL = 12.0, 1.0
-"""Hidden places count less, the further [mm] beside the bust point they are; that the crease runs level counts
-as much as so many places that are seen [1]."""
+"""Hidden places count less, the further [mm] beside the bust point they are; that the crease runs level
+counts as much as so many places that are seen [1]."""
 
 NEAR = 42.0
 """Behind a hole the crease is taken from what is seen of it so far to both sides [mm]."""
