@@ -50,8 +50,8 @@ def backed_up(project: Path, most: int = MOST) -> Iterator[None]:
     """
     try:
         back_up(project, most)
-    except (OSError, UserError):
-        logging.exception("the former version could not be kept")
+    except (OSError, UserError) as problem:
+        logging.error("the former version could not be kept: %s", problem)
     yield
     with suppress(OSError):
         for old in _versions(_folder_of(project))[:-most] if most > 0 else ():

@@ -70,6 +70,16 @@ def from_values(values: Any) -> Design:
     known = {key: field_of(Design, key, values[key]) for key in values if key in _KNOWN}
     others = {key: values[key] for key in values if key not in (*_KNOWN, "format", "length_unit")}
     check_nesting(others)
-    if others and len(json.dumps(others, indent=1)) > LARGEST_UNKNOWN:
+    if not _fits(others):
         raise ProjectError("The project holds too much that this Busk does not know.", "Update Busk.")
     return Design(**known, unknown=others)
+
+
+def _fits(others: Mapping[str, Any]) -> bool:
+    """Return whether what is unknown can be written within its limit; no more of it is than that."""
+    left = LARGEST_UNKNOWN
+    for part in json.JSONEncoder(indent=1).iterencode(others):
+        left -= len(part)
+        if left < 0:
+            return False
+    return True

@@ -17,7 +17,7 @@ LARGEST_TEXT = 20_000_000
 LARGEST_PICTURE = 8_000_000
 """Bytes of the picture in a project."""
 
-MOST_VALUES = 1_000_000
+MOST_VALUES = 700_000
 """Values in each text of a project, roughly: a small file could stand for a large amount of memory."""
 
 MOST_NESTED = 32

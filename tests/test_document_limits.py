@@ -160,7 +160,7 @@ def test_a_picture_that_would_not_be_shown_is_left_out(
         assert "preview.png" not in archive.namelist()
 
 
-def test_a_text_of_a_million_values_is_refused_before_it_takes_memory() -> None:
+def test_a_text_of_far_too_many_values_is_refused_before_it_takes_memory() -> None:
     check_values("[" + "1," * (MOST_VALUES // 2))
     with pytest.raises(ValueError, match="too many"):
         check_values("[]," * (MOST_VALUES // 2 + 1))

@@ -11,6 +11,7 @@ from shapes import SAMPLES
 
 from app.cli import BAD_INPUT, main
 from app.commands.ending import NOT_SETTLED, SETTLED
+from core.backups import backups
 from core.project import open_project
 
 STANDING = ("--unit", "mm", "--up", "+z", "--front", "-y")
@@ -35,7 +36,9 @@ def test_how_left_and_right_differ_is_told_side_by_side(capsys: pytest.CaptureFi
 
 def test_what_makes_it_even_is_found_and_saved(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "even.busk"
+    out.write_bytes(b"the former version")
     assert main(["even", *WORN, "--make", "--out", str(out)]) == SETTLED
+    assert [each.path.read_bytes() for each in backups() if each.project == out] == [b"the former version"]
     told = capsys.readouterr().out
     names = "full-bust, mid-bust, strap left, strap right"
     assert f"Left and right now change each by itself: {names}." in told

@@ -19,6 +19,7 @@ from core.aims.figure import Goal
 from core.aims.girth import GIRTH
 from core.aims.outline import profiles_off, section_of
 from core.aims.readings import NAMES
+from core.backups import backed_up
 from core.design import Design
 from core.document import Document
 from core.errors import LineError, UserError
@@ -87,7 +88,8 @@ def run_ask(
     reply = ask(stages, goals, shortest, kept, most_kpa=wishes.pressure)
     if wishes.out:
         document = open_project(source) if is_project(source) else Document.of(reply.design)
-        save_project(wishes.out, document.with_design(reply.design), stages.scan, None)
+        with backed_up(Path(wishes.out)):
+            save_project(wishes.out, document.with_design(reply.design), stages.scan, None)
     return Asked(stages, goals, reply, wishes.out)
 
 

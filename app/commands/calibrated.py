@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from app.commands.settings import dressed, made_of
 from core import __version__
+from core.backups import backed_up
 from core.calibration import (
     THICKEST,
     CalibrationResult,
@@ -79,7 +81,8 @@ def run_calibrate(
     if told.out:
         taken = found.design if found.helped else stages.design  # as in the window
         document = open_project(source) if is_project(source) else Document.of(taken)
-        save_project(told.out, document.with_design(taken), stages.scan, None)
+        with backed_up(Path(told.out)):
+            save_project(told.out, document.with_design(taken), stages.scan, None)
     return Calibrated(stages, worn, found, told.out)
 
 

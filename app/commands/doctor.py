@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from app.commands.settings import dressed, made_of
@@ -12,6 +13,7 @@ from core import __version__
 from core.advice.fight import Clash, Fight, Pull
 from core.advice.remedy import Cure
 from core.advice.ways import Change
+from core.backups import backed_up
 from core.design import Design
 from core.doctor import Diagnosis, diagnose
 from core.document import Document
@@ -86,7 +88,8 @@ def run_doctor(
     found = diagnose(stages)
     if out and found.cure is not None:
         document = open_project(source) if is_project(source) else Document.of(found.cure.change.design)
-        save_project(out, document.with_design(found.cure.change.design), stages.scan, None)
+        with backed_up(Path(out)):
+            save_project(out, document.with_design(found.cure.change.design), stages.scan, None)
         return Examined(found, out)
     return Examined(found, "")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
+from pathlib import Path
 from typing import Any
 
 from app.commands.asked import reasons
@@ -13,6 +14,7 @@ from app.commands.worn import run_to_body
 from core import __version__
 from core.advice.evening import EVEN, Evened, make_even
 from core.advice.parting import ENOUGH
+from core.backups import backed_up
 from core.design import Design
 from core.document import Document
 from core.errors import UserError
@@ -100,7 +102,8 @@ def run_even(
         even = replace(even, turned=_turned(build(even.found, stages)))
     if out:
         document = open_project(source) if is_project(source) else Document.of(even.found)
-        save_project(out, document.with_design(even.found), stages.scan, None)
+        with backed_up(Path(out)):
+            save_project(out, document.with_design(even.found), stages.scan, None)
         even = replace(even, out=out)
     return even
 
