@@ -119,7 +119,7 @@ def cut(options: argparse.Namespace) -> int:
 
     design = design_of(options.input, options)
     found = run_cut(design, options.line or [], options.elastic or [], options.as_worn)
-    return told(cut_text(found, _form(options), options.out), found.settled, found.warnings)
+    return told(cut_text(found, _form(options), options.out), found.worn.settled, found.worn.warnings)
 
 
 def press(options: argparse.Namespace) -> int:
@@ -128,7 +128,7 @@ def press(options: argparse.Namespace) -> int:
 
     design = design_of(options.input, options)
     found = run_press(design, options.line or [], options.elastic or [])
-    return told(press_text(found, _form(options), options.out), found.settled, found.warnings)
+    return told(press_text(found, _form(options), options.out), found.worn.settled, found.worn.warnings)
 
 
 def report(options: argparse.Namespace) -> int:
@@ -138,7 +138,7 @@ def report(options: argparse.Namespace) -> int:
     wishes = SheetWishes(**{name: getattr(options, name) for name in SheetWishes.__dataclass_fields__})
     design = design_of(options.input, options)
     found = run_report(options.input, design, options.line or [], options.elastic or [], wishes)
-    print(f"written to {', '.join(found.files)}", flush=True)
+    print("\n".join([*found.verdict, f"written to {', '.join(found.files)}"]), flush=True)
     warn(found.warnings)
     return SETTLED if found.settled else NOT_SETTLED
 

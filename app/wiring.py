@@ -104,6 +104,7 @@ def _connect_safe(window: MainWindow) -> None:
     session.frame_ready.connect(history.note)
     for changed in (session.frame_ready, session.design_changed, window.variant_desk.solved):
         changed.connect(lambda *_: window.variant_figures.follow())
+    window.pressure_desk.found.connect(window.verdict_desk.refresh)
     window.pressure_desk.found.connect(window.variant_figures.follow)
     stack.cleanChanged.connect(safe.note)
     stack.indexChanged.connect(history.show_edits)

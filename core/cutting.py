@@ -6,10 +6,13 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from core.design_elastics import Elastic
 from core.lines import Line
 from core.mesh import Points
 from core.pipeline import Stages
+from core.sections import arc_length
 from core.sewing.tensions import LineTension, line_tensions
 from core.solving.newtons import newtons_per_unit
 
@@ -18,6 +21,12 @@ FAR = 0.8
 
 UNEVEN = 0.1
 """A tension that differs by more than this along a line is told [1]."""
+
+SLACK = "Slack: it is longer than the body needs there, and a band cannot push. Shorten it, or take it off."
+"""What is said of a line without tension that the model would have push."""
+
+UNCHOSEN = "No elastic is chosen for it: choose one to get its length to cut."
+"""What is said of a line that is made of nothing in particular."""
 
 FRONT_ONLY = (
     "Front part only, up to the edge of the control mesh: what goes on over shoulder or back is not in it."
@@ -30,11 +39,14 @@ class CutRow:
     """One piece to cut, or why there is none yet.
 
     ``reached_front_mm`` is the front part as it is worn, ``reached_whole_mm`` the whole closed band, or the
-    same for an open line. ``cut_mm`` = whole / (1 + ``elongation``) + ``allowance_mm``. None stands for what
-    is not known, an empty ``elastic`` for a line that is made of nothing in particular. ``notes`` are
-    sentences. ``front_only`` tells of an open line that ends where the control mesh does, as straps do: its
-    lengths are those of the part that is modelled, and no whole piece can be cut to them. ``far`` tells of an
-    elastic that is stretched nearly to the end of its table.
+    same for an open line. ``cut_mm`` = whole / (1 + ``elongation``) + ``allowance_mm``; a slack piece is not
+    stretched, and is cut to the length that is set. None stands for what is not known, an empty ``elastic``
+    for a line that is made of nothing in particular. ``notes`` are sentences. ``front_only`` tells of an open
+    line that ends where the control mesh does, as straps do: its lengths are those of the part that is
+    modelled, and no whole piece can be cut to them. ``far`` tells of an elastic that is stretched nearly to
+    the end of its table, ``refused`` why none can be cut to this length. A ``slack`` line has no tension;
+    ``push_n`` is what it would have to push with to hold the shape. ``height_mm`` is how high the middle of
+    its front part is over the bust points.
     """
 
     line: str
@@ -52,6 +64,10 @@ class CutRow:
     notes: tuple[str, ...] = ()
     front_only: bool = False
     far: bool = False
+    slack: bool = False
+    push_n: float = 0.0
+    refused: str = ""
+    height_mm: float | None = None
 
 
 @dataclass(frozen=True)
@@ -78,13 +94,23 @@ def cut_list(stages: Stages, control_points: Points) -> CutList:
     """
     design = stages.design
     tensions = line_tensions(stages, control_points)
+    bust = float(stages.watch.bust_points(control_points)[:, 2].mean())
     rows = tuple(
-        _row(stages, line, line.length(control_points), tensions)
+        replace(
+            _row(stages, line, line.length(control_points), tensions),
+            height_mm=_middle(control_points[line.path]) - bust,
+        )
         for line in stages.model.lines
         if line.name in design.worn()
     )
     unit = newtons_per_unit(stages.model, design.tissue_stiffness)
     return CutList(rows, design.tissue_stiffness, unit, _notes(rows, design.tissue_stiffness))
+
+
+def _middle(places: Points) -> float:
+    """Return the height of the middle of a path, shape (k, 3) [mm]."""
+    along = arc_length(places)
+    return float(np.interp(0.5 * along[-1], along, places[:, 2]))
 
 
 def _row(stages: Stages, line: Line, reached: float, tensions: Mapping[str, LineTension]) -> CutRow:
@@ -103,9 +129,11 @@ def _row(stages: Stages, line: Line, reached: float, tensions: Mapping[str, Line
         row = replace(row, front_only=True, notes=(FRONT_ONLY,))
     tension = tensions.get(line.name)
     if tension is not None:
-        row = replace(row, tension_n=tension.mean, notes=(*row.notes, *_uneven(tension)))
+        slack = tension.push > 0.0
+        notes = (*row.notes, *([SLACK] if slack else _uneven(tension)))
+        row = replace(row, tension_n=tension.pull, slack=slack, push_n=tension.push, notes=notes)
     if elastic is None:
-        return _noted(row, "No elastic is chosen for it: choose one to get its length to cut.")
+        return _noted(row, UNCHOSEN)
     if design.line_hold == "held":
         return _held(row, elastic)
     elongation = reached / (design.ratio(line.name) * line.rest_length) - 1.0
@@ -129,25 +157,25 @@ def _held(row: CutRow, elastic: Elastic) -> CutRow:
             row, "It lies on points that do not move, so its tension is not known: let lines spring back."
         )
     if row.tension_n > elastic.strength:
-        return _noted(row, str(elastic.overpulled(row.tension_n, row.title)))
-    if row.tension_n < 0.0:
-        return _noted(row, "It is held longer than the body would have it: no elastic can push.")
+        return _refused(row, str(elastic.overpulled(row.tension_n, row.title)))
+    if row.slack:
+        return row
     return _stretched(row, elastic, elastic.elongation(row.tension_n), row.tension_n)
 
 
 def _stretched(row: CutRow, elastic: Elastic, elongation: float, tension: float) -> CutRow:
     if elongation > elastic.reach:
-        return _noted(row, str(elastic.overstretched(elongation, row.title)))
+        return _refused(row, str(elastic.overstretched(elongation, row.title)))
     row = replace(
         row,
-        elongation=elongation,
+        elongation=max(elongation, 0.0),
         tension_n=tension,
         allowance_mm=elastic.allowance_mm,
         cut_mm=row.reached_whole_mm / (1.0 + elongation) + elastic.allowance_mm,
         estimate=elastic.estimate,
     )
     if elongation < 0.0:
-        return _noted(row, "It lies slack: as long as this it does not pull.")
+        return row if row.slack else _noted(replace(row, slack=True), SLACK)
     if elongation <= FAR * elastic.reach:
         return row
     end = 100.0 * elastic.reach
@@ -155,12 +183,16 @@ def _stretched(row: CutRow, elastic: Elastic, elongation: float, tension: float)
     return _noted(replace(row, far=True), note)
 
 
+def _refused(row: CutRow, why: str) -> CutRow:
+    return replace(_noted(row, why), refused=why)
+
+
 def _noted(row: CutRow, note: str) -> CutRow:
     return replace(row, notes=(*row.notes, note))
 
 
 def _uneven(tension: LineTension) -> tuple[str, ...]:
-    low, high = float(tension.segments.min()), float(tension.segments.max())
+    low, high = max(float(tension.segments.min()), 0.0), max(float(tension.segments.max()), 0.0)
     if high - low <= UNEVEN * abs(tension.mean):
         return ()
     return (f"Its tension goes from {low:.1f} to {high:.1f} N along the line.",)

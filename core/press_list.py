@@ -108,7 +108,7 @@ def _row(
     return PressRow(
         *named,
         width_mm=worn.width,
-        tension_n=tension.mean,
+        tension_n=tension.pull,
         mean_kpa=worn.mean,
         mean_mmhg=mmhg(worn.mean),
         max_kpa=worn.largest,

@@ -37,6 +37,9 @@ LEFT_OUT = (
 )
 """What the figures leave out."""
 
+LIES_SLACK = "It is slack: it does not press."
+"""What is said of a line without tension."""
+
 NOT_FOR_STRAPS = (
     "The limits of the light are for soft parts round the trunk: "
     "they were not set for what goes over shoulders."
@@ -145,7 +148,7 @@ class LinePressure:
         """What is to be said of this band: what was taken for granted, and where it does not press."""
         said = list(self.told)
         if not self.tension.any():
-            said.append("It is slack: it does not press.")
+            said.append(LIES_SLACK)
         elif not self.tension.all():
             said.append("Part of it is slack: it does not press there.")
         if self.bridges:

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import csv
 import json
-import math
 import os
 import platform
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Protocol
 
 from core import __version__
-from core.design_lines import WornLine
 from core.design_text import to_json
 from core.export import write_control_points, write_mesh
 from core.lines import Line
@@ -62,8 +60,10 @@ def kept_volume(shown: Shown) -> tuple[float, float]:
     return 100.0 * change / rest, change / 1000.0
 
 
-def write_solution(solution: Solution, folder: Path) -> dict[str, Any]:
+def write_solution(solution: Solution, folder: Path, more: Mapping[str, Any] | None = None) -> dict[str, Any]:
     """Write body.ply, control.ply, control.csv, turns.csv and report.json, and return the report.
+
+    ``more`` stands in the report beside its own figures.
 
     Raises UserError if something cannot be written.
     """
@@ -72,7 +72,7 @@ def write_solution(solution: Solution, folder: Path) -> dict[str, Any]:
     write_mesh(folder / "control.ply", stages.control.mesh.moved(solution.control_points))
     write_control_points(folder / "control.csv", stages.control)
     write_turns(folder / "turns.csv", solution.records, stages)
-    figures = report(solution)
+    figures = {**(more or {}), **report(solution)}
     write_text(folder / "report.json", json.dumps(figures, indent=1, ensure_ascii=False) + "\n")
     return figures
 
@@ -208,7 +208,7 @@ def notes(stages: Stages) -> list[str]:
 
 
 def shape_warnings(shown: Shown) -> list[str]:
-    """Return in a sentence what is wrong with a folded or overstrained shape, and what to do then."""
+    """Return in a sentence what is wrong with a folded or overstrained shape."""
     condition, state = shown.verdict.condition, shown.verdict.state
     if condition is None or state not in ("folded", "overstrained"):
         return []
@@ -218,16 +218,7 @@ def shape_warnings(shown: Shown) -> list[str]:
     else:
         low, high = f"{100.0 * condition.shortest:.0f}", f"{100.0 * condition.longest:.0f}"
         said = f"The shape is overstrained: edges of the mesh have {low} to {high} % of their rest lengths."
-    line = blamed_line(shown.stages)
-    wish = f" Set {line.name} {'longer' if line.ratio < 1.0 else 'shorter'}." if line else ""
-    return [f"{said} It does not tell how a body would look.{wish}"]
-
-
-def blamed_line(stages: Stages) -> WornLine | None:
-    """Return the worn line that is set furthest from its rest length, among those that move anything."""
-    moving = {line.name for line in stages.model.lines if line.constrains}
-    worn = (line for line in stages.design.lines if line.name in moving and line.ratio != 1.0)
-    return max(worn, key=lambda line: abs(math.log(line.ratio)), default=None)
+    return [" ".join((said, "It does not tell how a body would look."))]
 
 
 def still_lines(stages: Stages) -> list[str]:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from core import __version__
+from core.assessment import Assessment, assessment_of
 from core.cutting import CutList, cut_list
 from core.doubts import doubts
 from core.measures import Measures, before_after, measure_rows
@@ -121,11 +122,11 @@ class Sheet:
     None in any state that is not ``SOUND``. ``measures`` are rows of ``core.measures.measure_rows``,
     ``sizes`` those of ``core.sizes.sizes_text``, the chosen system first, or none and ``no_size`` says why;
     ``pressures`` follow the cut list row by row, ``limits`` are those of their lights; ``doubts`` say what
-    should be looked at before landmarks are trusted. ``off`` is how far figures may be off, by the keys of
-    ``core.measuring.plus_minus``, in their units: nothing where that was not worked out; see ``with_spread``.
-    ``off_factor`` tells of others how many times smaller or larger they may be [1], ``off_notes`` where all
-    of this says less than it seems to, ``off_sources`` what any of it comes from. ``strain`` is that of the
-    verdict.
+    should be looked at before landmarks are trusted; ``assessment`` is the overall verdict. ``off`` is how
+    far figures may be off, by the keys of ``core.measuring.plus_minus``, in their units: nothing where that
+    was not worked out; see ``with_spread``. ``off_factor`` tells of others how many times smaller or larger
+    they may be [1], ``off_notes`` where all of this says less than it seems to, ``off_sources`` what any of
+    it comes from. ``strain`` is that of the verdict.
     """
 
     heading: Heading
@@ -147,6 +148,7 @@ class Sheet:
     left_out: tuple[str, ...]
     model: Mapping[str, Any]
     versions: Mapping[str, str]
+    assessment: Assessment
     definitions: tuple[dict[str, Any], ...] = field(
         default_factory=lambda: tuple(asdict(each) for each in DEFINITIONS.values())
     )
@@ -164,7 +166,7 @@ class Sheet:
     def as_data(self) -> dict[str, Any]:
         """Return the sheet ready for JSON."""
         told = {name: dict(getattr(self, name)) for name in ("limits", "model", "off", "off_factor")}
-        return {**asdict(self), **told}
+        return {**asdict(self), **told, "assessment": self.assessment.as_data()}
 
 
 def sheet_of(shown: Shown, records: Sequence[Record], heading: Heading, progress: Progress = quiet) -> Sheet:
@@ -179,7 +181,8 @@ def sheet_of(shown: Shown, records: Sequence[Record], heading: Heading, progress
     before, after = before_after(stages, points)
     found, why = _sizes(before, heading)
     progress("pressing", 0.8)
-    pressed, (percent, error_ml) = press_list(stages, points), kept_volume(shown)
+    cuts, pressed = cut_list(stages, points), press_list(stages, points)
+    percent, error_ml = kept_volume(shown)
     return Sheet(
         heading=heading,
         scan=stages.design.scan.name,
@@ -190,16 +193,17 @@ def sheet_of(shown: Shown, records: Sequence[Record], heading: Heading, progress
         measures=tuple(measure_rows(before, after)),
         sizes=found,
         no_size=why,
-        cuts=cut_list(stages, points),
+        cuts=cuts,
         pressures=pressed.rows,
         limits=pressed.as_data()["limits"],
         sections=_sections(stages, points),
         turns=_turns(stages, records),
         doubts=tuple(doubts(stages.body, stages.landmarks)),
-        warnings=_warnings(shown),
+        warnings=(*shape_warnings(shown), *still_lines(stages), *warnings(stages)),
         left_out=(*NOT_MODELLED, *LEFT_OUT),
         model=_model(stages),
         strain=verdict.strain,
+        assessment=assessment_of(shown, cuts, pressed),
         versions={"busk": __version__, "python": platform.python_version(), "numpy": np.__version__},
     )
 
@@ -286,11 +290,6 @@ def _turns(stages: Stages, records: Sequence[Record]) -> Turns:
         tuple(100.0 * row.error for row, _ in rows),
         tuple(_lift(rest, marks).up for _, marks in rows),
     )
-
-
-def _warnings(shown: Shown) -> tuple[str, ...]:
-    stages = shown.stages
-    return *shape_warnings(shown), *still_lines(stages), *warnings(stages)
 
 
 def _model(stages: Stages) -> dict[str, Any]:

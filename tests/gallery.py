@@ -62,6 +62,8 @@ LANDMARKS = (
 class Said:
     """An invented verdict."""
 
+    level: str
+    headline: str
     state: str
     numbers: list[tuple[str, str]]
     pace: str
@@ -211,7 +213,8 @@ class Mock(QWidget):
             (tr("Volume error"), "1.6 ± 1.8 %" if vibrating else "−0.02 % · −1.1 ml"),
             (tr("Bust point"), "14.4 mm up, 2.1 mm forward"),
         ]
-        self.strip.set_verdict(Said("vibrating" if vibrating else "settled", numbers, "0.9 s"))
+        said = ("bad", "Do not use", "vibrating") if vibrating else ("good", "No problems found", "settled")
+        self.strip.set_verdict(Said(*said, numbers, "0.9 s"))
         main = "conventional" if vibrating else "adaptive"
         self.strip.set_control(main)
         self.strip.set_run(invented_tracks(), main, Exact(0.0, 0.0, 24.3, 24.3))

@@ -17,9 +17,11 @@ from app.panels.line_parts import LineChip
 from app.panels.rail import Rail
 from app.panels.status import StatusBar
 from app.panels.view_tools import VIEWS, CompareTools, ViewTools
+from app.presenting.assessment import IDLE
 from app.showing.convergence import Strip
 from app.showing.tracks import Exact, Track
 from app.showing.verdict_chip import SHORTEST_SHOW_MS, TONES, VerdictChip
+from core.assessment import LEVELS
 from core.verdict import STATES
 
 
@@ -180,6 +182,8 @@ def test_a_chip_turns_only_while_it_settles_and_is_seen(qtbot: QtBot) -> None:
 @dataclass(frozen=True)
 class Said:
     state: str
+    level: str = "bad"
+    headline: str = "Do not use"
     numbers: list[tuple[str, str]] = field(default_factory=lambda: [("Volume error", "0.1 %")])
     hint: str = ""
     pace: str = "0.9 s"
@@ -202,10 +206,11 @@ def strip(qtbot: QtBot) -> Strip:
 
 def test_the_strip_says_the_verdict(strip: Strip, qtbot: QtBot) -> None:
     strip.set_verdict(Said("vibrating"))
-    qtbot.waitUntil(lambda: strip.chip.state() == "vibrating")
+    qtbot.waitUntil(lambda: strip.chip.state() == "bad")
+    assert strip.chip.accessibleName() == "Do not use"
     said = [label.text() for label in strip.findChildren(QLabel) if label.isVisible()]
     assert {"0.9 s", "Volume error", "0.1 %"} <= set(said)
-    assert set(TONES) == {*STATES, "strained", "stale", "paused"}
+    assert set(TONES) == {*STATES, "strained", "stale", "paused", *LEVELS, IDLE}
 
 
 def test_the_strip_says_what_to_do_about_a_fold(strip: Strip) -> None:

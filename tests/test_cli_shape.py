@@ -26,9 +26,9 @@ def _after_the_scan(said: str) -> list[str]:
             "80%",
             0,
             "overstrained",
-            "rest lengths. It does not tell how a body would look. Set mid-bust longer.",
+            "rest lengths. It does not tell how a body would look.",
         ),
-        ("60%", 3, "folded", "degrees. It does not tell how a body would look. Set mid-bust longer."),
+        ("60%", 3, "folded", "degrees. It does not tell how a body would look."),
     ],
 )
 def test_a_shape_that_is_no_body_is_named_and_the_line_to_blame(

@@ -101,7 +101,7 @@ def dressed(window: MainWindow) -> Script:
     assert window.session.design.ratio("strap left") == window.session.design.ratio("strap right") < 0.96
     assert bust_move(window.session.frame).mean.up > lift + 1.0
     # The word stands a while before another takes its place.
-    yield lambda: window.strip.chip.accessibleName().startswith("Settled")
+    yield lambda: window.strip.chip.state() != "pending"
     for shown in (1.0, 0.0):
         window.actions_.flip.trigger()
         assert window.view.compare.isVisible(), shown

@@ -94,13 +94,13 @@ def test_what_the_other_lines_do_is_told_as_theirs() -> None:
 
 def test_an_opened_row_has_a_key_to_its_zones(qtbot: QtBot) -> None:
     assert {tone: plain(words) for tone, words in key(LEEWAY).items()} == {
-        "green": "Without trouble from 93.9 to 98.1 %",
+        "green": "Valid shape from 93.9 to 98.1 %",
         "amber": "Strained below 93.9 %",
         "red": "Folds below 86.0 %",
         "slack": "Slack above 98.1 %",
     }
     free = Leeway("waist", (Zone("green", 0.5, 1.3),))
-    assert key(free) == {"green": "Without trouble at any length"}
+    assert key(free) == {"green": "Valid shape at any length"}
     shown = LeewayKey()
     qtbot.addWidget(shown)
     for leeway, ratio, lit in (
@@ -127,8 +127,11 @@ def test_the_key_says_where_green_is_no_word_on_pressure(qtbot: QtBot) -> None:
         (Leeway("waist", (Zone("red", 0.5, 1.3, (FOLDED,)),)), False),
     ):
         shown.show_leeway(leeway, 0.9, stale=False)
-        assert shown.unseen.isHidden() is not told
-    assert shown.unseen.text() == "Pressure is not looked at here: see Garment."
+        assert shown.pressure.isHidden() is not told
+    assert shown.pressure.text() == "Pressure is not looked at here: see Garment."
+    shown.show_leeway(Leeway("waist", (green,)), 0.9, False, "47.7 kPa · tight", "bad")
+    assert shown.pressure.text() == "Pressure now: 47.7 kPa · tight"
+    assert shown.pressure.property("tone") == "bad", "green of the shape is no green of the pressure"
 
 
 def test_what_a_line_stands_in_and_why_a_hand_is_held_is_told() -> None:

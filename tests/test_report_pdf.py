@@ -22,6 +22,7 @@ from app.reporting.pages import pages_of
 from app.reporting.paper import A4, MARGIN, TYPES
 from app.reporting.pdf import write_pdf
 from app.wording.words import language, number, use_language
+from core.assessment import Assessment, Finding
 from core.design_lines import LineTraits
 from core.elastics import find_elastic
 from core.errors import UserError
@@ -84,11 +85,12 @@ def test_every_figure_of_the_tables_is_that_of_the_data(sheet: Sheet, tmp_path: 
     for cut, press in zip(data["cuts"]["rows"], data["pressures"], strict=True):
         stretch = None if cut["elongation"] is None else 100.0 * cut["elongation"]
         figures = (
-            *(told(cut["reached_whole_mm"], 0), told(cut["cut_mm"], 0)),
-            *(told(cut["allowance_mm"], 0), told(stretch, 0)),
-            *(told(cut["tension_n"], 1), told(press["max_kpa"], 1), told(press["max_mmhg"], 0)),
+            *(told(cut["cut_mm"], 0), told(cut["allowance_mm"], 0), told(stretch, 0)),
+            *(told(cut["reached_whole_mm"], 0), told(cut["height_mm"], 0, signed=True)),
+            *(told(cut["tension_n"], 1), told(press["max_kpa"], 1)),
         )
-        assert " ".join(figures) in text, cut["line"]
+        shown = figures if cut["cut_mm"] is not None else figures[3:]
+        assert " ".join(shown) in text, cut["line"]
         if cut["cut_mm"] is not None:
             assert f"{cut['cut_mm']:,.0f} mm" in text, "the great figure at the head"
     assert f"{told(data['lift']['up'], 1, signed=True)} mm" in text
@@ -161,10 +163,12 @@ def test_what_is_missing_is_said(sheet: Sheet, built: Built, tmp_path: Path) -> 
     plain = tuple(replace(row, elastic="", cut_mm=None, elongation=None) for row in sheet.cuts.rows)
     without = replace(sheet, cuts=replace(sheet.cuts, rows=plain))
     assert "No elastic is chosen yet" in written(handout(without), tmp_path / "plain.pdf").text()
-    sizeless = replace(sheet, sizes=(), no_size="The scan shows no bust.", state="vibrating", lift=None)
+    found = Finding("convergence", "bad", "The calculation does not converge: it oscillates.")
+    wrong = {"state": "vibrating", "lift": None, "assessment": Assessment((found,))}
+    sizeless = replace(sheet, sizes=(), no_size="The scan shows no bust.", **wrong)
     text = written(handout(sizeless), tmp_path / "none.pdf").text()
     assert "The scan shows no bust." in text
-    assert "Vibrating: these figures are no result to sew for." in text
+    assert "Do not use The calculation does not converge: it oscillates." in text
     assert "No figure: the shape is no result." in text
 
 
@@ -173,7 +177,8 @@ def test_what_is_missing_is_said(sheet: Sheet, built: Built, tmp_path: Path) -> 
 )
 def test_doubts_stand_on_the_first_page(sheet: Sheet, tmp_path: Path, words: str, said: str) -> None:
     unclear = "The fold under the left breast could not be seen clearly: please check it."
-    page = written(handout(replace(sheet, doubts=(unclear,))), tmp_path / "sheet.pdf", words)
+    doubted = replace(sheet, assessment=Assessment((Finding("landmarks", "caution", unclear),)))
+    page = written(handout(doubted), tmp_path / "sheet.pdf", words)
     assert said in "".join(piece.text for piece in page.pieces(0))
     assert said not in "".join(piece.text for piece in page.pieces(1))
 
@@ -181,7 +186,8 @@ def test_doubts_stand_on_the_first_page(sheet: Sheet, tmp_path: Path, words: str
 def test_a_shape_that_is_no_result_tells_no_figure_of_it(sheet: Sheet, tmp_path: Path) -> None:
     folded = replace(sheet, state="folded", lift=None)
     text = written(handout(folded), tmp_path / "folded.pdf").text()
-    assert text.count("No figure: the shape is no result.") == 3
+    assert text.count("No figure: the shape is no result.") == 3 + len(sheet.cuts.rows)
+    assert text.count("NOT TO CUT") == len(sheet.cuts.rows)
     assert "Bust points, mm up" not in text
     for cut in sheet.cuts.rows:
         assert cut.cut_mm is None or f" {cut.cut_mm:,.0f} " not in text

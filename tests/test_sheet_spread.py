@@ -17,10 +17,10 @@ from PySide6.QtGui import QImage
 from app.commands import reported
 from app.commands.reported import SheetWishes, run_report
 from app.dress.theme import load_fonts
+from app.reporting.cut_rows import line_notes, vague_forces
 from app.reporting.grounds import note_groups
 from app.reporting.handout import SHOTS, Handout
 from app.reporting.pages import pages_of
-from app.reporting.telling import cut_views
 from app.wording.samples import sample_design
 from core.elastics import find_elastic
 from core.measuring.plus_minus import (
@@ -116,20 +116,30 @@ def test_a_usual_design_has_room_on_two_pages(
         assert pages_of(Handout(sheet, pictures, {}), language).count == 2
 
 
+def notes_of(sheet: Sheet) -> list[str]:
+    return [note for _, notes in line_notes(sheet, []) for note in notes]
+
+
 def test_pieces_tell_how_far_they_may_be_off(built: Callable[[str], Stages]) -> None:
     stages = built("mannequin")
     made = stages.design.with_line("mid-bust", 0.75).with_elastic("mid-bust", find_elastic("plush 12"))
     shown = run(build(made, stages))
     plain = sheet_of(shown, shown.records, Heading("anna", "2026-01-31"))
-    assert not any("95 %" in note for note in cut_views(plain, [])[1])
+    assert not any("95 %" in note for note in notes_of(plain))
+    assert vague_forces(plain) == ""
     sheet = with_spread(plain, shown.stages, shown.control_points, everywhere(shown.stages, plain))
+    (note,) = (note for note in notes_of(sheet) if "95 %" in note)
+    assert note == "In 95 % of cases: cut ± 8.0 mm.", "nobody can work by forces within a factor of e"
+    assert "a factor of 3:" in vague_forces(sheet)
+    surer = replace(sheet, off_factor=dict.fromkeys(sheet.off_factor, 1.5))
     newtons, kpa = plain.cuts.rows[0].tension_n, plain.pressures[0].max_kpa
-    ends = [f"{value * each:.1f}" for value in (newtons, kpa) for each in (np.exp(-1.0), np.exp(1.0))]
-    (note,) = (note for note in cut_views(sheet, [])[1] if "95 %" in note)
+    ends = [f"{value * each:.1f}" for value in (newtons, kpa) for each in (1.0 / 1.5, 1.5)]
+    (note,) = (note for note in notes_of(surer) if "95 %" in note)
     assert note == (
         f"In 95 % of cases: cut ± 8.0 mm, tension {ends[0]} to {ends[1]} N, "
         f"largest pressure {ends[2]} to {ends[3]} kPa."
     )
+    assert vague_forces(surer) == ""
     rows = {row["key"]: row for row in csv.DictReader(io.StringIO(sheet_csv(sheet)))}
     assert sheet.off_sources == ("scan", "tissue", "tape"), "no elastic, no landmark: it holds none of them"
     (meaning,) = (each for _, notes in note_groups(sheet) for each in notes if "It holds" in each)

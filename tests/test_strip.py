@@ -5,10 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from app.presenting.assessment import assessment_view
 from app.presenting.verdict import StripVerdict, strip_verdict
+from core.assessment import assessment_of
 from core.comparison import Comparison
-from core.live import make_frame
+from core.cutting import cut_list
+from core.live import Frame, make_frame
 from core.pipeline import Stages, build, targets_of
+from core.press_list import press_list
+
+
+def verdict_of(frame: Frame) -> StripVerdict:
+    pressed = press_list(frame.stages, frame.control_points) if frame.verdict.sound else None
+    overall = assessment_of(frame, cut_list(frame.stages, frame.control_points), pressed)
+    return strip_verdict(frame, assessment_view(overall, frame.stages.design))
 
 
 def said(stages: Stages, **settings: object) -> StripVerdict:
@@ -18,12 +28,12 @@ def said(stages: Stages, **settings: object) -> StripVerdict:
     comparison = Comparison(stages.model, targets_of(design, stages), stages.watch)
     while not comparison.resting:
         comparison.advance()
-    return strip_verdict(make_frame(1, stages, comparison, 0.3))
+    return verdict_of(make_frame(1, stages, comparison, 0.3))
 
 
 def test_the_exact_answer_takes_newton_steps_and_not_turns(built: Callable[[str], Stages]) -> None:
     exact = said(built("mannequin"), volume="exact")
-    assert exact.pace == "0.3 s"
+    assert exact.pace.endswith(" · 0.3 s")
     assert exact.effort.endswith(" Newton steps")
     assert " turns: " in said(built("mannequin"), volume="adaptive").effort
 
@@ -32,11 +42,12 @@ def test_of_one_newton_step_it_says_step(built: Callable[[str], Stages]) -> None
     stages = build(replace(built("mannequin").design.with_line("mid-bust", 0.8), volume="exact"))
     comparison = Comparison(stages.model, targets_of(stages.design, stages), stages.watch)
     comparison.exact = replace(comparison.exact, steps=1)
-    assert strip_verdict(make_frame(1, stages, comparison)).effort == "Worked out in one Newton step"
+    assert verdict_of(make_frame(1, stages, comparison)).effort == "Worked out in one Newton step"
 
 
 def test_a_run_that_ran_away_has_no_figures(built: Callable[[str], Stages]) -> None:
     verdict = said(built("mannequin"), line_force="explicit")
     assert verdict.state == "diverging"
     assert verdict.numbers == []
-    assert verdict.hint.endswith("as it was before."), "what to do says the doctor, who has tried it"
+    assert verdict.level == "bad"
+    assert verdict.hint.startswith("The calculation diverges")

@@ -30,7 +30,8 @@ def test_the_sample_opens_in_a_finished_state() -> None:
         assert not gc.isenabled(), "the solver's thread must not look for garbage"
         assert frame.marks.apex_z - frame.stages.rest_marks.apex_z > 1.0
         window.desk.plot_now()
-        yield lambda: window.strip.chip.state() == "settled"
+        yield lambda: window.strip.chip.state() in ("good", "caution", "bad")
+        assert window.strip._turns.text().startswith("Settled · ")
         assert set(frame.tracks) == {"adaptive", "conventional"}
 
     assert run_main([], script) == 0
@@ -159,7 +160,8 @@ def test_the_conventional_force_vibrates_when_the_line_is_too_short() -> None:
         assert frame is not None
         assert frame.verdict.state == "vibrating"
         window.desk.plot_now()
-        yield lambda: window.strip.chip.state() == "vibrating"
+        yield lambda: window.strip.chip.state() == "bad"
+        assert window.strip._turns.text().startswith("Vibrating · ")
 
     run_main([], script)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +14,8 @@ from app.main_window import MainWindow
 from app.presenting.spread import left_out_sentences
 from core.advice.assumed import assumed
 from core.errors import UserError
+from core.measuring.plus_minus import Spread
+from core.progress import Progress
 from tests.window_tools import Script, run_main, settled, undrawn
 
 
@@ -68,6 +71,34 @@ def test_it_is_told_where_it_is_looked_at_and_fades_while_a_line_moves() -> None
     run_main([], script)
 
 
+def test_nothing_is_shown_before_all_sources_are_in(monkeypatch: pytest.MonkeyPatch) -> None:
+    reached, go, known = threading.Event(), threading.Event(), core.spread.Spreading.whole
+
+    def waiting(self: core.spread.Spreading, progress: Progress) -> Spread:
+        self.quick(progress)
+        reached.set()
+        go.wait(60.0)
+        return known(self, progress)
+
+    monkeypatch.setattr(core.spread.Spreading, "whole", waiting)
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.desk.go_to("result")
+        yield reached.is_set
+        yield lambda: bool(window.result.measured)
+        assert window.spread_desk.shown == (None, True)
+        assert all(view.off == () for view in window.result.measured), "what is known by then is too small"
+        go.set()
+        yield lambda: whole(window)
+        waist = next(view for view in window.result.measured if view.key == "waist_girth")
+        assert "narrowest" in waist.title
+        assert "several centimetres" in waist.told()
+
+    run_main([], script)
+
+
 def test_where_it_is_given_up_there_is_none_and_the_reason_stands_there(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -83,7 +114,7 @@ def test_where_it_is_given_up_there_is_none_and_the_reason_stands_there(
         window.desk.go_to("result")
         yield lambda: "No balance was found" in card.meaning.text()
         assert card.meaning.text().startswith("How far they may be off was not worked out.")
-        assert desk.shown == (None, True), "the quick part alone would be too small for good"
+        assert desk.shown == (None, True), "without the landmarks it would be too small for good"
         yield lambda: bool(window.result.measured)
         assert all(view.off == () for view in window.result.measured)
 

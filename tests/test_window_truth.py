@@ -65,12 +65,16 @@ def test_the_whole_window_tells_one_lift_that_of_the_bust_points() -> None:
         yield lambda: window.history.snapshots.count() == 1
         assert kept(window).words[1] == f"Bust point {said}"
         window.inspector.open("variants")
-        yield lambda: window.variants.view is not None and "" not in window.variants.view.states
+        yield (
+            lambda: (
+                window.variants.view is not None and not {"", "pending"} & set(window.variants.view.levels)
+            )
+        )
         table = {row.label: row.figures[0].values[1] for row in window.variants.view.rows}
         assert (table["Bust point, up"], table["Bust point, forward"]) == (up, forward)
         window.variant_desk.flip_side_by_side()
         assert title_of_b(window) == [
-            "Variant B   Settled, strained",
+            f"Variant B   {window.strip.chip.accessibleName()}",
             f"Bust point {said}",
             "Mid-bust 90.0 %",
         ]
@@ -78,6 +82,11 @@ def test_the_whole_window_tells_one_lift_that_of_the_bust_points() -> None:
         assert window.section_desk.panel.readout.text().startswith("Bust point left ")
 
     run_main([], script)
+
+
+def all_judged(window: MainWindow) -> bool:
+    view = window.variants.view
+    return view is not None and not {"", "pending"} & set(view.levels)
 
 
 def row_of(window: MainWindow, label: str) -> float | None:
@@ -88,19 +97,20 @@ def test_a_settled_body_that_is_strained_says_so_in_one_voice() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
         window.desk.plot_now()
-        assert window.rail.items["lines"].state() == "done"
         window.lines_desk.commit_length("mid-bust", 0.9)
         yield settled(window)
         window.desk.plot_now()
         condition = frame_of(window).verdict.condition
         assert condition is not None
         assert condition.shortest < CALM_RANGE[0]
-        yield lambda: window.strip.chip.state() == "strained"
-        told = window.strip._hint.text()
-        assert told.startswith("Skin pressed or stretched by over 20 %"), "the strip says what is wrong"
-        assert "longer" not in told, "what ends it says the doctor alone: two advices would be one too many"
-        assert {window.rail.items[step].state() for step in ("lines", "result")} == {"look"}
-        assert window.status._facts.text().endswith("Settled, strained")
+        yield lambda: window.strip.chip.state() in ("caution", "bad")
+        overall = window.verdict_desk.of(frame_of(window))
+        said = [message for message, _ in overall.reasons]
+        assert any(each.startswith("Skin is compressed or stretched by over 20 %") for each in said)
+        assert window.strip._hint.text() == overall.first, "the worst reason stands in the strip"
+        assert "Settled, strained" in window.strip._turns.text(), "the run has its own word"
+        looks = {"caution": "look", "bad": "bad"}[overall.level]
+        assert {window.rail.items[step].state() for step in ("lines", "result")} == {looks}
         row = window.lines.rows["mid-bust"]
         window.desk.select_line("mid-bust")
         yield lambda: row.view.leeway is not None and not row.view.stale
@@ -109,7 +119,7 @@ def test_a_settled_body_that_is_strained_says_so_in_one_voice() -> None:
         ratio = row.view.leeway.at(0.9).long + 0.005
         window.lines_desk.commit_length("mid-bust", ratio)
         yield settled(window)
-        yield lambda: window.strip.chip.state() == "settled"
+        yield lambda: window.strip._turns.text().startswith("Settled · ")
         assert row.view.leeway.at(ratio).tone == "green"
 
     run_main([], script)
@@ -128,19 +138,23 @@ def test_a_run_that_never_rests_is_no_result_and_has_a_way_out() -> None:
         assert notice is not None
         assert "swings by ±3.7 mm" in notice.sentence
         assert strip_says(window)["Bust point"].endswith(" ± 3.7 mm")
-        assert window.rail.items["result"].state() == "look"
+        assert window.rail.items["result"].state() == "bad"
         window.inspector.open("variants")
-        yield lambda: window.variants.view is not None and "" not in window.variants.view.states
+        yield (
+            lambda: (
+                window.variants.view is not None and not {"", "pending"} & set(window.variants.view.levels)
+            )
+        )
         table = {row.label: row.figures[0].values for row in window.variants.view.rows}
         assert table["Bust point, up"][0] is not None
         assert table["Bust point, up"][1] is None
         window.variant_desk.flip_side_by_side()
-        assert title_of_b(window) == ["Variant B   Vibrating", "Mid-bust 60.0 %"]
+        assert title_of_b(window) == ["Variant B   Do not use", "Mid-bust 60.0 %"]
         window.desk.go_to("result")
         assert "no result" in window.result.doubt
         yield lambda: window.history.snapshots.count() >= 1
-        assert kept(window).words == ("Vibrating", "No result to sew for")
-        assert kept(window).mark == ("warn", "wave")
+        assert kept(window).words == ("Do not use", "No result to sew for")
+        assert kept(window).mark == ("bad", "warning-octagon")
 
         offered = [button.text() for button in window.notices._buttons]
         assert "Use Adaptive" not in offered, "it would lead to a fold"

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 from app.commands.told import csv_text, told
-from app.commands.worn import run_worn
+from app.commands.worn import Worn, run_worn
 from core import __version__
 from core.cutting import CutList, CutRow, cut_list
 from core.design import Design
@@ -17,11 +17,10 @@ COLUMNS = tuple(field.name for field in fields(CutRow))
 
 @dataclass(frozen=True)
 class Cut:
-    """A cut list, whether the body came to rest, and what to look at."""
+    """A cut list, and the solved design that it is of."""
 
     cuts: CutList
-    settled: bool
-    warnings: list[str]
+    worn: Worn
 
 
 def run_cut(design: Design, lines: Sequence[str], elastics: Sequence[str], same: bool = False) -> Cut:
@@ -31,7 +30,7 @@ def run_cut(design: Design, lines: Sequence[str], elastics: Sequence[str], same:
     """
     worn = run_worn(design, lines, elastics, same=same)
     solution = worn.solution
-    return Cut(cut_list(solution.stages, solution.control_points), worn.settled, worn.warnings)
+    return Cut(cut_list(solution.stages, solution.control_points), worn)
 
 
 def cut_text(found: Cut, kind: str, out: str | None) -> str:
@@ -43,7 +42,8 @@ def _plain(found: Cut) -> str:
     heading = (
         f"{'':22}{'cut mm':>9}{'stretch %':>11}{'tension N':>11}{'front mm':>10}{'whole mm':>10}  elastic"
     )
-    return "\n".join([heading, *(line for row in found.cuts.rows for line in _lines(row)), *found.cuts.notes])
+    rows = (line for row in found.cuts.rows for line in _lines(row))
+    return "\n".join([*found.worn.verdict, "", heading, *rows, *found.cuts.notes])
 
 
 def _lines(row: CutRow) -> list[str]:
@@ -59,7 +59,8 @@ def _lines(row: CutRow) -> list[str]:
 
 
 def _as_json(found: Cut) -> str:
-    whole = {**found.cuts.as_data(), "warnings": found.warnings, "versions": {"busk": __version__}}
+    whole = {**found.cuts.as_data(), "assessment": found.worn.assessment.as_data()}
+    whole |= {"warnings": found.worn.warnings, "versions": {"busk": __version__}}
     return json.dumps(whole, indent=1, ensure_ascii=False)
 
 

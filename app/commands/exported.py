@@ -10,6 +10,8 @@ from app.commands.settings import dressed, made_of
 from app.commands.worn import run_to_body
 from app.exporting.outcome import Manner, Outcome
 from app.exporting.ready import check, make_ready
+from app.presenting.assessment import assessment_lines
+from core.assessment import assessed
 from core.design import Design
 from core.errors import UserError
 from core.pipeline import build
@@ -49,6 +51,7 @@ def run_export(
     outcome = Outcome(solution.stages, solution.control_points, solution.records)
     for kind, name in wished.items():
         say(_write(kind, name, outcome, manner))
+    say("\n".join(assessment_lines(assessed(solution), solution.stages.design)))
     settled = solution.verdict.motion == "settled" and solution.verdict.state != "folded"
     return Exported(settled, shape_warnings(solution))
 

@@ -8,7 +8,9 @@ from typing import Any
 
 from app.commands.told import told
 from app.commands.worn import run_to_body
+from app.presenting.assessment import assessment_lines
 from core import __version__
+from core.assessment import assessed
 from core.design import Design
 from core.doubts import doubts
 from core.measures import before_after, measure_rows, measures
@@ -30,6 +32,7 @@ class Measured:
     solved: bool
     settled: bool
     warnings: list[str]
+    verdict: tuple[str, ...] = ()
 
 
 def run_measure(design: Design, *, solved: bool) -> Measured:
@@ -44,7 +47,8 @@ def run_measure(design: Design, *, solved: bool) -> Measured:
     rows = measure_rows(*before_after(stages, solution.control_points))
     settled = solution.verdict.motion == "settled" and solution.verdict.state != "folded"
     warnings = [*doubts(stages.body, stages.landmarks), *shape_warnings(solution)]
-    return Measured(rows, True, settled, warnings)
+    verdict = assessment_lines(assessed(solution), stages.design)
+    return Measured(rows, True, settled, warnings, tuple(verdict))
 
 
 def measured_text(found: Measured, kind: str, out: str | None) -> str:
@@ -57,7 +61,8 @@ def _plain(found: Measured) -> str:
     wide = max(34, *(len(title) + 1 for title in titles))
     heading = f"{'':{wide}}{'before':>9}" + (f"{'after':>9}{'change':>8}" if found.solved else "")
     rows = zip(titles, found.rows, strict=True)
-    return "\n".join([heading, *(_line(f"{title:{wide}}", row, found.solved) for title, row in rows)])
+    head = [*found.verdict, ""] if found.verdict else []
+    return "\n".join([*head, heading, *(_line(f"{title:{wide}}", row, found.solved) for title, row in rows)])
 
 
 def _line(title: str, row: dict[str, Any], solved: bool) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 from app.commands.told import csv_text, told
-from app.commands.worn import run_worn
+from app.commands.worn import Worn, run_worn
 from core import __version__
 from core.design import Design
 from core.press_list import PressList, PressRow, press_list
@@ -19,18 +19,17 @@ COLUMNS = tuple(field.name for field in fields(PressRow))
 
 @dataclass(frozen=True)
 class Press:
-    """What lines press with, whether the body came to rest, and what to look at."""
+    """What lines press with, and the solved design that it is of."""
 
     listed: PressList
-    settled: bool
-    warnings: list[str]
+    worn: Worn
 
 
 def run_press(design: Design, lines: Sequence[str], elastics: Sequence[str]) -> Press:
     """Solve a design with lines and elastics as requested, and list what presses. Raises UserError."""
     worn = run_worn(design, lines, elastics)
     listed = press_list(worn.solution.stages, worn.solution.control_points)
-    return Press(listed, worn.settled, worn.warnings)
+    return Press(listed, worn)
 
 
 def press_text(found: Press, kind: str, out: str | None) -> str:
@@ -46,7 +45,20 @@ def _plain(found: Press) -> str:
     rows = [line for row in found.listed.rows for line in _lines(row)]
     total = f"All bands together press on the skin with {found.listed.force_n:.1f} N."
     left_out = [f"  {sentence}" for sentence in LEFT_OUT]
-    return "\n".join([heading, *rows, "", total, *_limits(), "", "What the figures leave out:", *left_out])
+    return "\n".join(
+        [
+            *found.worn.verdict,
+            "",
+            heading,
+            *rows,
+            "",
+            total,
+            *_limits(),
+            "",
+            "What the figures leave out:",
+            *left_out,
+        ]
+    )
 
 
 def _lines(row: PressRow) -> list[str]:
@@ -77,7 +89,8 @@ def _figure(value: float | None, wide: int, digits: int) -> str:
 
 
 def _as_json(found: Press) -> str:
-    whole = {**found.listed.as_data(), "warnings": found.warnings, "versions": {"busk": __version__}}
+    whole = {**found.listed.as_data(), "assessment": found.worn.assessment.as_data()}
+    whole |= {"warnings": found.worn.warnings, "versions": {"busk": __version__}}
     return json.dumps(whole, indent=1, ensure_ascii=False)
 
 

@@ -50,11 +50,12 @@ class SheetWishes:
 
 @dataclass(frozen=True)
 class Reported:
-    """What came of it: whether the design settled, the files, and what to say."""
+    """What came of it: whether the design settled, the files, what to say, and the overall verdict."""
 
     settled: bool
     files: list[str]
     warnings: list[str]
+    verdict: list[str]
 
 
 def run_report(
@@ -77,9 +78,8 @@ def run_report(
             write_text(Path(name), text(sheet), code)
     said = _write(solution, sheet, wishes)
     files = [name for name in (wishes.out, wishes.json, wishes.csv) if name]
-    return Reported(
-        worn.settled, files, [*dict.fromkeys((*worn.warnings, *sheet.doubts, *sheet.warnings)), *said]
-    )
+    warnings = [*dict.fromkeys((*worn.warnings, *sheet.doubts, *sheet.warnings)), *said]
+    return Reported(worn.settled, files, warnings, worn.verdict)
 
 
 def _check(wishes: SheetWishes) -> None:

@@ -8,7 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from app.commands.settings import dressed, made_of
+from app.presenting.assessment import assessment_lines
 from core.answer import NoBalanceError
+from core.assessment import assessed
 from core.design import Design
 from core.doubts import doubts
 from core.pipeline import build
@@ -46,11 +48,12 @@ def run_solve(
     if design.line_hold == "held" and verdict.motion in lost:
         raise NoBalanceError(design)
     out = place()
-    figures = write_solution(solution, out)
+    assessment = assessed(solution)
+    figures = write_solution(solution, out, {"assessment": assessment.as_data()})
     ran_away = [RAN_AWAY] * (verdict.motion == "diverging")
     unclear = doubts(stages.body, stages.landmarks)
     warnings = [*unclear, *still_lines(solution.stages), *shape_warnings(solution), *ran_away]
-    told = [*_lines(figures), _end(figures, solution, out)]
+    told = [*assessment_lines(assessment, design), *_lines(figures), _end(figures, solution, out)]
     return Solved(told, verdict.motion == "settled" and verdict.state != "folded", warnings)
 
 

@@ -96,7 +96,7 @@ def _of_lines(figures: Mapping[str, float]) -> Iterator[Figure]:
         kind, _, line = key.partition(":")
         if line:
             words, unit = OF_LINES[kind]
-            yield Figure(key, f"{line}: {words}", unit, value)
+            yield Figure(key, f"{line}: {words}", unit, max(value, 0.0))  # a slack line does not push
         else:
             what, _, side = key.partition(" ")
             yield Figure(key, f"{OF_BUST[what]}, {side or 'mean'}", "mm", value)
@@ -131,7 +131,7 @@ def _of_worn(found: Spreading) -> list[str]:
     for figure in found.figures:
         if figure.key.partition(":")[0] not in KINDS:
             other = found.spread.other.get(figure.key)
-            beside = "-" if other is None else f"{other:.1f}"
+            beside = "-" if other is None else f"{max(other, 0.0) if figure.unit == 'N' else other:.1f}"
             lines.append(f"{figure.title:36}{_cell(found.spread, figure):>20}{beside:>30} {figure.unit}")
     return lines
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import reduce
+from functools import cached_property, reduce
 
 from app.commands.settings import dressed, made_of
+from app.presenting.assessment import assessment_lines
 from core.answer import NoBalanceError
+from core.assessment import Assessment, assessed
 from core.design import Design
 from core.errors import LineError
 from core.pipeline import Stages, build
@@ -24,6 +26,16 @@ class Worn:
     solution: Solution
     settled: bool
     warnings: list[str]
+
+    @cached_property
+    def assessment(self) -> Assessment:
+        """The overall verdict."""
+        return assessed(self.solution)
+
+    @property
+    def verdict(self) -> list[str]:
+        """The overall verdict with its reasons, as lines of text."""
+        return assessment_lines(self.assessment, self.solution.stages.design)
 
 
 def run_to_body(stages: Stages) -> Solution:

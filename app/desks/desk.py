@@ -18,11 +18,10 @@ from app.keeping.loss_dialogs import ask_overwrite
 from app.keeping.project_picture import project_picture
 from app.keeping.recent import remember_file
 from app.panels.notice import FAULT, FILES, REFUSED, SCAN
-from app.presenting.faults import fault_words, out_of_date, solver_fault_words
+from app.presenting.faults import fault_words, solver_fault_words
 from app.presenting.frame import facts
 from app.presenting.lines import titled
 from app.presenting.run import PLOT_INTERVAL, exact_answer, tracks
-from app.presenting.verdict import state_of, strip_verdict
 from app.wording.samples import sample_design
 from app.wording.words import tr
 from core.design import Design
@@ -272,8 +271,8 @@ class Desk(QObject):
 
     def _preview(self) -> bytes:
         """Return a small picture of the view, for the project file."""
-        state = state_of(self._frame) if self._frame is not None else ""
-        return project_picture(self._window.view.viewport.picture(labels=False), state)
+        level = self._window.verdict_desk.of(self._frame).level if self._frame is not None else ""
+        return project_picture(self._window.view.viewport.picture(labels=False), level)
 
     def plot_now(self) -> None:
         """Bring plots and figures up to date, if there is a frame that they have not shown."""
@@ -288,8 +287,6 @@ class Desk(QObject):
         self._window.status.set_facts(facts(frame, self._session.failure is None))
         main = frame.stages.design.volume
         strip = self._window.strip
-        verdict = strip_verdict(frame)
-        strip.set_verdict(verdict if self._session.failure is None else out_of_date(verdict))
+        self._window.verdict_desk.show_frame(frame)
         strip.set_run(tracks(frame), main, exact_answer(frame))
         self._window.measures_desk.show_frame(frame)
-        self._window.verdict_desk.show_frame(frame)

@@ -22,7 +22,8 @@ from app.panels.export_sheet import ExportSheet
 from app.presenting.verdict import is_result, state_of
 from app.showing.verdict_chip import state_title
 from app.wording.export_choices import exports, format_title
-from app.wording.words import joined, say, tr
+from app.wording.words import colon, joined, say, tr
+from core.assessment import BAD
 from core.errors import UserError
 from core.live import Frame
 from core.whole_file import still_written
@@ -193,7 +194,8 @@ class ExportDesk(QObject):
         if frame.at_work:
             return tr("The run is still under way: what is written is how far it is.")
         if is_result(frame):
-            return ""
+            overall = self._window.verdict_desk.of(frame)
+            return f"{overall.headline}{colon()}{overall.first}" if overall.level == BAD else ""
         return tr("{state}: this is no shape to work from.").format(state=state_title(state_of(frame)))
 
     def _file_name(self, what: str) -> str:

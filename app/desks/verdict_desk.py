@@ -1,34 +1,65 @@
-"""The desk of the verdict: what the steps at the left say of a run."""
+"""The desk of the overall verdict: computed once a run has converged, shown wherever a design is judged."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Signal
 
-from app.presenting.verdict import state_of
-from app.showing.verdict_chip import TONES, TROUBLED
+from app.presenting.assessment import IDLE, AssessmentView, assessment_view
+from app.presenting.faults import out_of_date
+from app.presenting.verdict import strip_verdict
+from core.assessment import BAD, CAUTION, GOOD, PENDING, assessment_of
+from core.cutting import CutList, cut_list
 from core.live import Frame
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
 
+_RAIL = {BAD: "bad", CAUTION: "look", GOOD: "done", PENDING: "available", IDLE: "available"}
+
 
 class VerdictDesk(QObject):
-    """Says how the shown run stands where the strip does not."""
+    """Keeps the overall verdict of frames, and shows that of the current one in the strip and the rail.
+
+    ``changed`` is emitted whenever the verdict of the current frame may be another one.
+    """
+
+    changed = Signal()
 
     def __init__(self, window: MainWindow) -> None:
         super().__init__(window)
         self._window = window
+        self._frame: Frame | None = None
+        self._cuts: WeakKeyDictionary[Frame, CutList] = WeakKeyDictionary()
+
+    def of(self, frame: Frame) -> AssessmentView:
+        """Return the overall verdict of a frame, as far as it is known; pressures are computed in a job."""
+        window, design = self._window, frame.stages.design
+        moves = frame is window.session.frame and not window.is_at_rest()
+        running, cuts, pressed = frame.at_work or moves, None, None
+        if not running and frame.verdict.sound and design.worn():
+            cuts = self._cuts.get(frame)
+            if cuts is None:
+                cuts = self._cuts[frame] = cut_list(frame.stages, frame.control_points)
+            pressed = window.pressure_desk.of(frame)
+        return assessment_view(assessment_of(frame, cuts, pressed, running=running), design)
 
     def show_frame(self, frame: Frame) -> None:
-        """Show how a frame stands."""
-        rail, session = self._window.rail, self._window.session
-        state = state_of(frame) if session.failure is None else "stale"
-        if state in TROUBLED:
-            looks = "bad" if TONES[state][0] == "bad" else "look"  # one colour with the word below the body
-            rail.set_state("lines", looks, 1)
-            rail.set_state("result", looks)
-        else:
-            for step in ("lines", "result"):
-                rail.set_state(step, "done" if state == "settled" else "available")
+        """Show the verdict of a frame."""
+        self._frame = frame
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Show the verdict of the current frame as far as it is known by now."""
+        if self._frame is None:
+            return
+        view, window = self.of(self._frame), self._window
+        verdict, failed = strip_verdict(self._frame, view), window.session.failure is not None
+        window.strip.set_verdict(out_of_date(verdict) if failed else verdict)
+        looks = "available" if failed else _RAIL[view.level]
+        count = len(view.reasons) if looks in ("bad", "look") else 0
+        window.rail.set_state("lines", looks, count)
+        window.rail.set_state("result", looks)
+        self.changed.emit()

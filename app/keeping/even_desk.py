@@ -97,9 +97,8 @@ class EvenDesk(QObject):
         self.follow_map()
 
     def _sure(self, frame: Frame) -> Spread | None:
-        """Return how far figures may be off, once all of it is known."""
-        spread = self._window.spread_desk.of(frame)
-        return spread if spread and spread.whole else None
+        """Return how far figures may be off, once that is known."""
+        return self._window.spread_desk.of(frame)
 
     def follow_map(self) -> None:
         """Tell by the card whether the map lies on the body."""

@@ -13,9 +13,10 @@ from PySide6.QtGui import QImage
 from app.panels.history import HistoryPanel
 from app.panels.picture_list import PictureRow
 from app.presenting.bust import bust_move, bust_sentence
-from app.presenting.verdict import is_result, state_of
-from app.showing.verdict_chip import TONES, state_title
+from app.presenting.verdict import is_result
+from app.showing.verdict_chip import TONES
 from app.wording.words import colon, number, tr
+from core.assessment import PENDING
 from core.design import Design
 from core.document import Document
 from core.frame import Frame
@@ -124,12 +125,16 @@ class HistoryDesk(QObject):
             # The sheet lies over the body: its picture is taken once that is seen again.
             self._clock.start()
             return
+        overall = self._window.verdict_desk.of(frame)
+        if overall.level == PENDING:
+            self._clock.start()
+            return
         row = PictureRow(
             stack.text(stack.index() - 1),
             time.strftime("%H:%M:%S"),
-            _figures(frame),
+            _figures(frame, overall.headline),
             self._picture(),
-            mark=TONES[state_of(frame)],
+            mark=TONES[overall.level],
         )
         self._snapshots.append(_Snapshot(document.shown, frame.stages.design, row))
         self.show_snapshots()
@@ -145,11 +150,10 @@ def _title(snapshot: _Snapshot, document: Document) -> str:
     return f"{snapshot.variant}{colon()}{snapshot.row.title}" if several else snapshot.row.title
 
 
-def _figures(frame: Frame) -> tuple[str, ...]:
-    """Return where the bust points of a frame are and its volume error in words, and how its run stands."""
-    state = state_title(state_of(frame))
+def _figures(frame: Frame, headline: str) -> tuple[str, ...]:
+    """Return the verdict on a frame, where its bust points are and its volume error in words."""
     if not is_result(frame):
-        return state, tr("No result to sew for")
+        return headline, tr("No result to sew for")
     percent = number(kept_volume(frame)[0], 2, signed=True)
-    said = tr("{state}, volume {percent} %").format(percent=percent, state=state)
+    said = tr("{state}, volume {percent} %").format(percent=percent, state=headline)
     return said, bust_sentence(bust_move(frame))

@@ -17,7 +17,6 @@ from app.asking.writing import Writing
 from app.dress.wishes import wish
 from app.keeping.project_picture import project_picture
 from app.keeping.recent import day_of
-from app.presenting.verdict import state_of
 from app.wording.words import tr
 from core.document import Document
 from core.errors import UserError
@@ -161,7 +160,7 @@ class KeepingDesk(QObject):
             return None
         if QGuiApplication.mouseButtons() != Qt.MouseButton.NoButton:
             return None
-        return project_picture(view.viewport.picture(labels=False), state_of(frame))
+        return project_picture(view.viewport.picture(labels=False), self._window.verdict_desk.of(frame).level)
 
     def _hold_project(self) -> None:
         self._window.notices.withdraw(_HELD)

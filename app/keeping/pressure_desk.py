@@ -62,9 +62,9 @@ class PressureDesk(QObject):
             )
         return self._known.get(frame)
 
-    def of_elastics(self, frame: Frame) -> PressList | None:
-        """Return the same for the list of lines: only where it is seen, and a line is made of an elastic."""
-        seen = self._window.lines.isVisible() and frame.stages.design.worn_elastics()
+    def of_listed(self, frame: Frame) -> PressList | None:
+        """Return the same for the list of lines: only where it is seen, and a line is worn."""
+        seen = self._window.lines.isVisible() and frame.stages.design.worn()
         return self.of(frame) if seen and not doubt_of(frame) else None
 
     @property

@@ -9,11 +9,11 @@ WIDTH, HEIGHT = 480, 456
 """Size of a picture [px]: twice that of a card, for fine screens."""
 
 STATE = "Verdict"
-"""Under this word the picture says how the run stood that it shows; results themselves are never stored."""
+"""Key of the level of the overall verdict on what the picture shows; results themselves are never stored."""
 
 
-def project_picture(view: QImage, state: str) -> bytes:
-    """Return the middle of what the ``view`` shows as a PNG file; ``state`` is one of a verdict's words."""
+def project_picture(view: QImage, level: str) -> bytes:
+    """Return the middle of what the ``view`` shows as a PNG file; ``level`` that of its verdict."""
     width, height = view.width(), view.height()
     across = min(width, height * WIDTH // HEIGHT)
     down = min(height, width * HEIGHT // WIDTH)
@@ -21,7 +21,7 @@ def project_picture(view: QImage, state: str) -> bytes:
     image = middle.scaled(
         WIDTH, HEIGHT, Qt.AspectRatioMode.IgnoreAspectRatio, Qt.TransformationMode.SmoothTransformation
     )
-    image.setText(STATE, state)
+    image.setText(STATE, level)
     return png_of(image)
 
 

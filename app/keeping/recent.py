@@ -15,9 +15,12 @@ from app.dress.tip import set_tip
 from app.dress.wishes import wish
 from app.keeping.project_picture import STATE
 from app.panels.project_card import ProjectView
-from app.showing.verdict_chip import TONES, state_title
+from app.presenting.assessment import headline
+from app.showing.verdict_chip import state_title
 from app.wording.words import tr
+from core.assessment import BAD, CAUTION
 from core.project import is_project, picture_bytes
+from core.verdict import STATES
 
 _KEY, _TIMES = "recent", "recent_times"
 _TOURED = "toured"
@@ -97,7 +100,9 @@ def _view_of(path: Path) -> ProjectView:
         return ProjectView(str(path), name, "", gone=True)
     picture = picture_of(path) if is_project(path) else None
     state = picture.text(STATE) if picture is not None else ""
-    look = "" if state in ("", "settled") or state not in TONES else state_title(state)
+    look = headline(state) if state in (CAUTION, BAD) else ""
+    if state in STATES and state != "settled":  # as versions before 0.2 wrote it
+        look = state_title(state)
     return ProjectView(
         str(path), name, day_of(_opened().get(str(path), changed), time.time()), picture, look=look
     )

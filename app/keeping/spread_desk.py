@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
 from typing import TYPE_CHECKING, cast
 
 from PySide6.QtCore import QObject, QTimer, Signal
@@ -65,7 +64,7 @@ class SpreadDesk(QObject):
         frame = self._window.session.frame
         known = None if frame is None else self.of(frame)
         if known is not None:
-            return known, not known.whole
+            return known, False
         comes = frame is not None and not doubt_of(frame) and self._why_not(frame.stages.design) is None
         return (self._last if comes else None), True
 
@@ -76,7 +75,7 @@ class SpreadDesk(QObject):
     def on_sheet(self, sheet: Sheet, frame: Frame | None, whole: Frame | None) -> Sheet:
         """Return the sheet of a frame, made of ``whole``, with its ± once all of that is known."""
         spread = None if frame is None else self.of(frame)
-        if spread is None or whole is None or not spread.whole or sheet.off:
+        if spread is None or whole is None or sheet.off:
             return sheet
         return with_spread(sheet, whole.stages, whole.control_points, spread)
 
@@ -91,8 +90,7 @@ class SpreadDesk(QObject):
         if self._asked is not None and self._asked is not design:
             self._window.jobs.cancel(self._job)
             self._job = self._asked = None
-        known = self._known.get(design)
-        missing = known is None or not known.whole
+        missing = design not in self._known
         if not (self._looked_at and self._window.is_settled() and not doubt_of(frame)):
             self._clock.stop()
         elif missing and self._asked is None and self._why_not(design) is None:
@@ -105,31 +103,23 @@ class SpreadDesk(QObject):
         return self._panel.isVisible() or window.section_desk.is_on or window.report_desk.is_open
 
     def _begin(self) -> None:
-        """Work out the quick part, then the whole."""
+        """Compute the ± by all sources: without the landmarks, which are slow, it would be too small."""
         frame = self._window.session.frame
         if frame is None or not self._window.is_settled() or self._asked is not None:
             return
         self._asked, stages, former = frame.stages.design, frame.stages, self._trials
 
-        def quick(progress: Progress) -> tuple[Spreading, Spread]:
-            finding = Spreading(Trials(stages, former))
-            return finding, finding.quick(progress)
+        def work(progress: Progress) -> tuple[Trials, Spread]:
+            trials = Trials(stages, former)
+            return trials, Spreading(trials).whole(progress)
 
-        self._run(quick, self._go_on)
-
-    def _go_on(self, found: object) -> None:
-        finding, first = cast(tuple[Spreading, Spread], found)
-        self._trials, design = finding.trials, finding.trials.base.design
-        self._keep(design, first)
-        self._run(finding.whole, lambda whole: self._end(design, cast(Spread, whole)))
-
-    def _end(self, design: Design, whole: Spread) -> None:
-        self._job = self._asked = None
-        self._keep(design, whole)
-
-    def _run(self, work: Callable[[Progress], object], done: Callable[[object], None]) -> None:
         said = tr("Working out how sure the figures are")
-        self._job = self._window.jobs.run(said, work, done, self._fail, left=self._leave_off)
+        self._job = self._window.jobs.run(said, work, self._end, self._fail, left=self._leave_off)
+
+    def _end(self, found: object) -> None:
+        self._trials, spread = cast(tuple[Trials, Spread], found)
+        self._job = self._asked = None
+        self._keep(self._trials.base.design, spread)
 
     def _keep(self, design: Design, spread: Spread) -> None:
         self._known[design] = self._last = spread
@@ -145,11 +135,9 @@ class SpreadDesk(QObject):
         self._give_up("")
 
     def _give_up(self, why: str) -> None:
-        """Tell no ± of a design at all: what is known of it already lacks the landmarks, and is too small."""
+        """Tell no ± of a design."""
         if self._asked is not None:
             self._given_up = self._asked, why
-            if self._known.pop(self._asked, None) is self._last:
-                self._last = None
         self._job = self._asked = None
         self.found.emit()
 

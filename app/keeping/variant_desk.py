@@ -108,7 +108,7 @@ class VariantDesk(QObject):
             (name, None) if name == document.shown else (name, self._solved[design])
             for name, design in document.designs
         ]
-        titles = variant_titles(self.frames())
+        titles = variant_titles(self.frames(), self._window.verdict_desk.of)
         self._window.view.show_variants(
             [(title, each) for title, (_, each) in zip(titles, shown, strict=True)]
         )

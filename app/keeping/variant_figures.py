@@ -46,9 +46,10 @@ class VariantFigures(QObject):
             self._panel.set_view(None)
             return
         if self._are_beside and len(self._window.view.panes.titles) == len(variants):
-            self._window.view.panes.set_titles(variant_titles(variants))
+            self._window.view.panes.set_titles(variant_titles(variants, self._window.verdict_desk.of))
         if self._panel.isVisible():
-            self._panel.set_view(variants_view(variants, document.shown, self._window.pressure_desk.of))
+            known = self._window.pressure_desk.of, self._window.verdict_desk.of
+            self._panel.set_view(variants_view(variants, document.shown, *known))
             desk.solve_others()
 
     @property

@@ -41,7 +41,7 @@ class Swatch(QWidget):
 class LeewayKey(QWidget):
     """A row for each kind of zone that a line has: a swatch and words; the one it stands in is told apart.
 
-    Beneath them ``unseen`` says that green is no word on pressure, where that was not looked at.
+    Beneath them stands the ``pressure`` at the present length, or that zones do not include it.
     """
 
     def __init__(self) -> None:
@@ -56,11 +56,16 @@ class LeewayKey(QWidget):
             swatch, words = self.rows[tone] = Swatch(tone), sentence("", "secondary")
             grid.addWidget(swatch, row, 0, Qt.AlignmentFlag.AlignTop)
             grid.addWidget(words, row, 1)
-        self.unseen = sentence(tr("Pressure is not looked at here: see Garment."), "caption")
-        grid.addWidget(self.unseen, len(KEY_ORDER), 1)
+        self.pressure = sentence("", "caption")
+        grid.addWidget(self.pressure, len(KEY_ORDER), 1)
 
-    def show_leeway(self, leeway: Leeway, ratio: float, stale: bool) -> None:
-        """Tell of the leeway of a line set to ``ratio`` [1]; ``stale``: of the design before."""
+    def show_leeway(
+        self, leeway: Leeway, ratio: float, stale: bool, pressed: str = "", pressed_tone: str = ""
+    ) -> None:
+        """Show the leeway of a line set to ``ratio`` [1]; ``stale``: of the design before.
+
+        ``pressed`` is its pressure now in words, in the tone of its light, empty where that is not known.
+        """
         told, here = key(leeway), leeway.at(ratio).tone
         for tone, (swatch, words) in self.rows.items():
             words.setText(told.get(tone, ""))
@@ -68,4 +73,7 @@ class LeewayKey(QWidget):
             swatch.show_stale(stale)
             for each in (swatch, words):
                 each.setVisible(tone in told)
-        self.unseen.setVisible(GREEN in told and not leeway.pressure_known)
+        unseen = tr("Pressure is not looked at here: see Garment.")
+        self.pressure.setText(tr("Pressure now: {pressure}").format(pressure=pressed) if pressed else unseen)
+        set_tag(self.pressure, "tone", pressed_tone)
+        self.pressure.setVisible(bool(pressed) or (GREEN in told and not leeway.pressure_known))

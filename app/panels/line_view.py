@@ -30,7 +30,7 @@ class LineView:
     ``apart`` is the side, "left" or "right", of a line that is set apart from its partner; ``pair_title``
     what both are called together.
     ``elastic`` is what it is made of, if anything: its length is then that of the elastic unstretched.
-    ``pressed`` tells what an elastic presses with and what that means, in the ``tone`` of its light; empty
+    ``pressed`` is what the line presses with and what that means, in the ``tone`` of its light; empty
     while it is not known.
     ``leeway`` is how far it can go, None while that is not known; ``stale`` that of the design before.
     ``width_mm`` is that of its band; ``stiffness`` [1] its own, or None for the ``usual_stiffness``.

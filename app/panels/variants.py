@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QFrame, QScrollArea, QVBoxLayout, QWidget
 from app.dress.parts import EmptyState, sentence
 from app.dress.press_row import press_row
 from app.dress.theme import font, tokens_of
-from app.showing.verdict_chip import TONES, state_title
+from app.showing.verdict_chip import TONES
 from app.wording.words import number, tr
 
 
@@ -72,11 +72,15 @@ class FigureRow:
 
 @dataclass(frozen=True)
 class VariantsView:
-    """Variants by name, which of them is shown, their verdicts, empty for one not solved yet, and figures."""
+    """Variants by name, which of them is shown, their figures, and the level and headline of each verdict.
+
+    A variant that is not solved yet has an empty level.
+    """
 
     names: tuple[str, ...]
     shown: int
-    states: tuple[str, ...]
+    levels: tuple[str, ...]
+    verdicts: tuple[str, ...]
     rows: tuple[FigureRow, ...]
 
 
@@ -156,7 +160,7 @@ class _Table(QWidget):
 
     def __init__(self) -> None:
         super().__init__()
-        self._view = VariantsView((), 0, (), ())
+        self._view = VariantsView((), 0, (), (), ())
 
     def sizeHint(self) -> QSize:
         return QSize(280, self.HEAD + round(sum(map(self._height, self._view.rows))) + 1)
@@ -174,15 +178,15 @@ class _Table(QWidget):
 
     def paintEvent(self, event: QPaintEvent) -> None:
         painter, view, tokens = QPainter(self), self._view, tokens_of(self)
-        for place, (name, state) in enumerate(zip(view.names, view.states, strict=True)):
+        for place, (name, level) in enumerate(zip(view.names, view.levels, strict=True)):
             worked_on = place == view.shown
             painter.setPen(QColor(tokens.accent if worked_on else tokens.text))
             painter.setFont(font("heading"))
             painter.drawText(self._cell(place, 0, 24), _LEFT, name)
-            tone = TONES[state][0] if state else "plain"
+            tone = TONES[level][0] if level else "plain"
             painter.setPen(QColor(tokens.text_caption if tone == "plain" else getattr(tokens, tone)))
             painter.setFont(font("title"))
-            painter.drawText(self._cell(place, 24, 20), _LEFT, _verdict(state))
+            painter.drawText(self._cell(place, 24, 20), _LEFT, view.verdicts[place])
         top = float(self.HEAD)
         for row in view.rows:
             self._paint_row(painter, row, top)
@@ -228,15 +232,9 @@ _ELIDED = Qt.TextElideMode.ElideMiddle  # the width of an elastic stands at its 
 _LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
 
 
-def _verdict(state: str) -> str:
-    return state_title(state) if state else tr("Not solved yet")
-
-
 def _spoken(view: VariantsView) -> Sequence[str]:
     """Return the table for ears, variant by variant."""
     return [
-        ", ".join(
-            (name, _verdict(state), *(f"{row.label} {row.figures[0].written(place)}" for row in view.rows))
-        )
-        for place, (name, state) in enumerate(zip(view.names, view.states, strict=True))
+        ", ".join((name, verdict, *(f"{row.label} {row.figures[0].written(place)}" for row in view.rows)))
+        for place, (name, verdict) in enumerate(zip(view.names, view.verdicts, strict=True))
     ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from app.presenting.verdict import StripVerdict
+from app.showing.verdict_chip import state_title
 from app.wording.words import tr
 
 
@@ -31,4 +32,5 @@ def fault_words(error: Exception) -> tuple[str, str]:
 def out_of_date(verdict: StripVerdict) -> StripVerdict:
     """Return the verdict on a frame that is not that of the present design, marked as such."""
     hint = tr("Not computed: the view shows the last computed shape.")
-    return replace(verdict, state="stale", hint=hint, settling=False)
+    title = state_title("stale")
+    return replace(verdict, level="stale", headline=title, state="stale", hint=hint, settling=False)

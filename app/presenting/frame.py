@@ -6,7 +6,6 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 from app.presenting.lines import line_colours, line_title
-from app.presenting.verdict import state_of
 from app.seeing.band import OFF_WIDTH, Band, band_width
 from app.showing.verdict_chip import state_title
 from app.wording.words import number, tr
@@ -87,5 +86,5 @@ def facts(frame: Frame, current: bool = True) -> list[str]:
     return [
         "mm",
         tr("{count} triangles").format(count=number(len(frame.stages.body.mesh.faces), 0)),
-        state_title(state_of(frame) if current else "stale"),
+        *([] if current else [state_title("stale")]),
     ]

@@ -61,7 +61,7 @@ def pressed_view(view: LineView, listed: PressList | None) -> LineView:
     """Return the row of a line with what it presses with, if that is known; of a pair the larger one."""
     known = () if listed is None else listed.rows
     rows = [row for row in known if row.line in view.names and row.max_kpa is not None]
-    if not view.elastic or not rows:
+    if not rows:
         return view
     most = max(rows, key=lambda row: row.max_kpa or 0.0)
     words = f"{number(most.max_kpa or 0.0)} kPa · {light_word(most.light)}"

@@ -29,11 +29,7 @@ def size_views(
 
 def within_words(answer: SizeAnswer, spread: Spread | None) -> str:
     """Return which other sizes lie within what both girths may be off, once all of that is known."""
-    offs = (
-        [spread.plus_minus(f"{BEFORE}:{key}") for key in GIRTHS_OF_SIZES]
-        if spread and spread.whole
-        else [None]
-    )
+    offs = [spread.plus_minus(f"{BEFORE}:{key}") for key in GIRTHS_OF_SIZES] if spread else [None]
     known = [off for off in offs if off is not None]
     if len(known) < len(GIRTHS_OF_SIZES) or not answer.inside:
         return ""

@@ -41,7 +41,7 @@ def left_out_sentences() -> tuple[str, ...]:
 
 
 def spread_views(views: Iterable[MeasureView], spread: Spread | None, faint: bool) -> list[MeasureView]:
-    """Return measures with their ±; ``faint`` are those of a former shape, or not whole yet."""
+    """Return measures with their ±; ``faint`` are those of a former shape."""
     if spread is None:
         return list(views)
     return [_with_off(view, spread, faint) for view in views]
@@ -55,7 +55,7 @@ def _with_off(view: MeasureView, spread: Spread, faint: bool) -> MeasureView:
         for off, value in zip(offs, (view.before, view.after, view.change), strict=True)
     )
     if not any(each is not None for each in told):
-        followed = not view.key and spread.whole
+        followed = not view.key
         return replace(view, off_told=(_without_off(),)) if followed else view
     return replace(view, off=told, off_faint=faint, off_told=_shares(keys, told, spread, view.unit))
 
@@ -95,9 +95,6 @@ def spread_view(spread: Spread | None, waiting: str, faint: bool) -> SpreadView:
     if spread is None:
         return SpreadView(waiting, short=tr("± is not there yet: why") if waiting else "")
     meaning = tr("± is twice the standard deviation: 95 % of all cases, if errors are normal.")
-    if not spread.whole:
-        more = tr("Landmarks are still being added: these are too small.")
-        return SpreadView(joined([meaning, more]), faint=faint, short=tr("± is still growing: why"))
     told = tr("± of a former shape: what it means") if faint else tr("± holds 95 % of cases: what it means")
     return SpreadView(
         joined([meaning, _without_off(), *map(say, spread.cautions)]), _contact(spread), faint, told

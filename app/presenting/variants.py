@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from app.panels.variants import Figure, FigureRow, Told, VariantsView
+from app.presenting.assessment import AssessmentView
 from app.presenting.bust import bust_move, bust_sentence
 from app.presenting.lines import line_colours, line_title, row_title
-from app.presenting.verdict import is_result, state_of
-from app.showing.verdict_chip import state_title
+from app.presenting.verdict import is_result
 from app.wording.words import say, tr
 from core.cutting import CutRow, cut_list
 from core.design import Design
@@ -25,22 +25,27 @@ Pressed = Callable[[Frame], PressList | None]
 _TOLD = 2  # lengths that differ which have room over a body
 
 
-def variants_view(variants: Variants, shown: str, pressed: Pressed) -> VariantsView:
+Judged = Callable[[Frame], AssessmentView]
+"""The overall verdict of a frame, as far as it is known."""
+
+
+def variants_view(variants: Variants, shown: str, pressed: Pressed, judged: Judged) -> VariantsView:
     """Return the table of variants, of which one is ``shown``."""
-    states = tuple(state_of(frame) if frame else "" for _, _, frame in variants)
+    overall = [None if frame is None else judged(frame) for _, _, frame in variants]
+    levels = tuple("" if view is None else view.level for view in overall)
+    verdicts = tuple(tr("Not solved yet") if view is None else view.headline for view in overall)
     names = tuple(name for name, _, _ in variants)
     rows = *_lengths(variants), *_pieces(variants, pressed), *_results(variants)
-    return VariantsView(names, names.index(shown), states, rows)
+    return VariantsView(names, names.index(shown), levels, verdicts, rows)
 
 
 def as_table(view: VariantsView) -> list[list[str]]:
     """Return the table as plain cells: a heading, the verdicts, each figure and what it differs by."""
     first, *others = view.names
     differences = [f"{name} - {first}" for name in others]
-    verdicts = [state_title(state) if state else tr("Not solved yet") for state in view.states]
     rows = [
         [tr("Figure"), tr("Unit"), *view.names, *differences],
-        [tr("Verdict"), "", *verdicts, *[""] * len(others)],
+        [tr("Verdict"), "", *view.verdicts, *[""] * len(others)],
     ]
     for row in view.rows:
         for figure in row.figures:
@@ -48,13 +53,13 @@ def as_table(view: VariantsView) -> list[list[str]]:
     return rows
 
 
-def variant_titles(variants: Variants) -> list[str]:
+def variant_titles(variants: Variants, judged: Judged) -> list[str]:
     """Return what stands over the bodies of variants: name and verdict, bust point, lengths that differ."""
     differing = [row for row in _lengths(variants) if len(set(row.figures[0].values)) > 1]
     return [
         "\n".join(
             (
-                _head(name, frame),
+                _head(name, frame, judged),
                 *([bust_sentence(bust_move(frame))] if frame is not None and is_result(frame) else []),
                 *(f"{row.label} {row.figures[0].written(place)}" for row in differing[:_TOLD]),
             )
@@ -63,9 +68,9 @@ def variant_titles(variants: Variants) -> list[str]:
     ]
 
 
-def _head(name: str, frame: Frame | None) -> str:
+def _head(name: str, frame: Frame | None, judged: Judged) -> str:
     title = tr("Variant {name}").format(name=name)
-    return title if frame is None else f"{title}   {state_title(state_of(frame))}"
+    return title if frame is None else f"{title}   {judged(frame).headline}"
 
 
 def _lengths(variants: Variants) -> list[FigureRow]:

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from app.presenting.assessment import AssessmentView
 from app.presenting.bust import bust_move, sides_words, step_words, ups
 from app.showing.verdict_chip import state_title
-from app.wording.words import number, say, tr
-from core.doubts import ESSENTIAL, weak_sides
+from app.wording.words import number, tr
 from core.live import Frame
-from core.report import kept_volume, warnings
+from core.report import kept_volume
 from core.solving.condition import Condition
 
 _WATCHED = 24  # turns over which a swing is measured
@@ -20,8 +20,13 @@ _STEADY = 5e-4  # a swing that changes by less a turn stays as large as it is [1
 
 @dataclass(frozen=True)
 class StripVerdict:
-    """What the strip says of a run; ``effort`` says what the ``pace`` took."""
+    """What the strip shows: ``level`` and ``headline`` of the overall verdict, and the ``state`` of the run.
 
+    ``effort`` says what the ``pace`` took.
+    """
+
+    level: str
+    headline: str
     state: str
     numbers: list[tuple[str, str]]
     hint: str
@@ -40,13 +45,16 @@ def is_result(frame: Frame) -> bool:
     return frame.verdict.sound
 
 
-def strip_verdict(frame: Frame) -> StripVerdict:
-    """Return how the run of a frame stands, with the figures that matter then."""
+def strip_verdict(frame: Frame, overall: AssessmentView) -> StripVerdict:
+    """Return how a frame stands under its ``overall`` verdict, with the figures that matter then."""
+    state, seconds = state_of(frame), tr("{seconds} s").format(seconds=number(frame.seconds))
     return StripVerdict(
-        state_of(frame),
+        overall.level,
+        overall.headline,
+        state,
         _figures(frame),
-        _hint(frame),
-        tr("{seconds} s").format(seconds=number(frame.seconds)),
+        overall.first,
+        tr("{state} · {seconds}").format(state=state_title(state), seconds=seconds),
         _effort(frame),
         frame.verdict.motion == "settling",
     )
@@ -123,12 +131,6 @@ def _swing_figures(frame: Frame) -> list[tuple[str, str]]:
     ]
 
 
-def strain_sentence(strain: tuple[float, float] | None) -> str:
-    """Return that skin strains, and how far [%], see ``Verdict.strain``; nothing if that is None."""
-    said = tr("Skin pressed or stretched by over 20 % ({strain}).")
-    return said.format(strain=_percents(*strain)) if strain is not None else ""
-
-
 def _strain(condition: Condition) -> str:
     """Return how far the skin is pressed together and stretched at the worst places."""
     return _percents(100.0 * (condition.shortest - 1.0), 100.0 * (condition.longest - 1.0))
@@ -138,22 +140,3 @@ def _percents(pressed: float, stretched: float) -> str:
     return tr("{pressed} to {stretched} %").format(
         pressed=number(pressed, 0, signed=True), stretched=number(stretched, 0, signed=True)
     )
-
-
-def _hint(frame: Frame) -> str:
-    """Return what is wrong, or what else has to be known.
-
-    What ends it says the doctor alone, who has tried it: two advices at once would be one too many.
-    """
-    state = state_of(frame)
-    if state == "diverging":
-        return tr("It runs away: the body is shown as it was before.")
-    if state == "settled":
-        if any(weak_sides(frame.stages.landmarks, kind) for kind in ESSENTIAL):
-            return tr("Some landmarks are doubtful: check them in the Landmarks step.")
-        return "".join(map(say, warnings(frame.stages)[:1]))  # the others stand in the notice
-    return {
-        "folded": tr("The skin folds over: this is no body any more."),
-        "overstrained": tr("Skin pressed or stretched by over 30 %: no shape to sew for."),
-        "strained": strain_sentence(frame.verdict.strain),
-    }.get(state, "")

@@ -6,10 +6,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from app.presenting.spread import source_words
-from app.reporting.telling import known, shared_notes, system_word
+from app.reporting.telling import REASONS, known, overall, system_word
 from app.wording.words import colon, joined, language, listed, say, tr
-from core.measuring.definitions import GIRTHS, TAPE, definition_of
-from core.measuring.own import OWN
 from core.sewing.comfort import comfort
 from core.sheet import Sheet
 from core.sizes import built_in
@@ -17,39 +15,28 @@ from core.sizes import built_in
 
 def cut_notes(sheet: Sheet) -> list[str]:
     """Return what holds for all of the cut list."""
-    each = [f"{tr('Each line')}{colon()}{note}" for note in shared_notes(sheet)]
-    return [*each, *(_with_elastics(note, sheet) for note in sheet.cuts.notes)]
-
-
-def definitions(sheet: Sheet) -> list[tuple[str, str]]:
-    """Return the measures that were found and how they are taken; those taken alike stand together.
-
-    How a tape lies is said once, for all girths.
-    """
-    tape, rows = say(TAPE), (row for row in sheet.measures if known(row) and not row["key"].startswith(OWN))
-    found_ones = {definition_of(row["key"])[0].key for row in rows}
-    told: dict[tuple[str, str], list[str]] = {}
-    for each in sheet.definitions:
-        if each["key"] in found_ones:
-            told.setdefault((each["text"], each["iso"]), []).append(say(each["title"]))
-    found = [(say(GIRTHS), tape)]
-    for (text, iso), titles in told.items():
-        standard = tr("ISO 8559-1: {name}.").format(name=iso) if iso else ""
-        own = " ".join(say(text).replace(tape, "").split())
-        found.append((listed(titles), joined([own, standard])))
-    return found
+    height = tr("Height: the middle of the front over (+) or under (−) the bust points, as worn.")
+    return [height, *(_with_elastics(note, sheet) for note in sheet.cuts.notes)]
 
 
 def note_groups(sheet: Sheet) -> Iterator[tuple[str, list[str]]]:
     """Give what is to be known of the figures beside the cut list: what to look at, what is left out."""
-    if sheet.warnings:
-        yield tr("To look at"), [say(each) for each in sheet.warnings]
+    if beyond := _beyond_the_head(sheet):
+        yield tr("To look at"), beyond
     told = tr("Before: on the scan. After: on the body as the model reshapes it.")
-    yield tr("Measured"), [each for each in (told, size_rule(sheet), size_cautions(sheet)) if each]
+    taken = tr("How each measure is taken: user guide, Measures, and the data file of this sheet.")
+    yield tr("Measured"), [each for each in (told, taken, size_rule(sheet), size_cautions(sheet)) if each]
     limits = _limits() if sheet.cuts.rows else []
     if estimated := [*_meaning(sheet), *limits, *_unsure(sheet)]:
         yield tr("Estimated"), estimated
     yield tr("Not modelled"), [say(each) for each in sheet.left_out]
+
+
+def _beyond_the_head(sheet: Sheet) -> list[str]:
+    """Return the reasons of the verdict that have no room at the head, and what else is to be looked at."""
+    told = {each.message for each in sheet.assessment.findings}
+    reasons = [joined(each) for each in overall(sheet).reasons[REASONS:]]
+    return [*reasons, *(say(each) for each in sheet.warnings if each not in told)]
 
 
 def size_rule(sheet: Sheet) -> str:

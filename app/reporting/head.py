@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from app.panels.measure_view import plus_minus
+from app.presenting.assessment import IDLE, AssessmentView
 from app.presenting.bust import forward_words
-from app.presenting.verdict import strain_sentence
+from app.reporting.cut_rows import cut_pieces
 from app.reporting.flow import Block
 from app.reporting.handout import SHOT_SIZES, SHOTS, Handout
-from app.reporting.marks import paint_chip, paint_state
+from app.reporting.marks import paint_chip, paint_level
 from app.reporting.paper import A4, MARGIN, Paper, elided, line_height, text_width, wrapped
-from app.reporting.telling import cut_pieces, project_words, size_words, state_words, system_word
+from app.reporting.telling import REASONS, overall, project_words, size_words, system_word
 from app.wording.tokens import LIGHT
-from app.wording.words import number, say, tr
+from app.wording.words import joined, number, say, tr
+from core.assessment import BAD, CAUTION, GOOD, PENDING
 from core.measuring.plus_minus import LIFT, OUT
 from core.sheet import Sheet
 
@@ -19,54 +21,57 @@ WIDE = A4[0] - 2 * MARGIN
 """What is between the margins of a page [mm]."""
 
 _CELLS = (0.0, 28.0, 58.0, 121.0, 154.0)  # where band, cup, lengths to cut, lift and volume begin [mm]
-_HERO, _LARGE = 26.5, 3
+_HERO, _LARGE = 28.0, 3
 _USUAL = LIGHT.control  # of a line that has no colour
+_TONES = {
+    GOOD: (LIGHT.ok, LIGHT.ok_fill),
+    CAUTION: (LIGHT.warn, LIGHT.warn_fill),
+    BAD: (LIGHT.bad, LIGHT.bad_fill),
+    PENDING: (LIGHT.info, LIGHT.info_fill),
+    IDLE: (LIGHT.text_quiet, LIGHT.pressed),
+}
 
 
 def head_blocks(handout: Handout, share: float = 1.0) -> list[Block]:
-    """Return the head: title, what to beware of if there is anything, the great figures, the pictures.
+    """Return the head: title, overall verdict, the great figures, the pictures.
 
     Those have a ``share`` of their usual height.
     """
     sheet = handout.sheet
-    word, no_result = state_words(sheet)
-    strained = strain_sentence(sheet.strain)
-    blocks = [_title(sheet, word, sound=not (no_result or strained))]
-    if no_result:
-        blocks.append(_beware(no_result, "warning", LIGHT.bad_fill))
-    if strained:
-        blocks.append(_beware(strained, "caution", LIGHT.warn_fill))
-    if sheet.doubts:
-        blocks.append(_beware(say(" ".join(sheet.doubts)), "caution", LIGHT.warn_fill))
-    return [*blocks, _hero(handout), _pictures(handout, share)]
+    return [_title(sheet), _verdict(overall(sheet)), _hero(handout), _pictures(handout, share)]
 
 
-def _title(sheet: Sheet, word: str, *, sound: bool) -> Block:
+def _title(sheet: Sheet) -> Block:
     heading, title = sheet.heading, tr("Fitting sheet")
     customer = elided(heading.customer or project_words(sheet), "name", 100.0)
     gap = text_width(customer, "name") + 3.0
-    project = elided(project_words(sheet), "quiet", WIDE - gap - 30.0) if heading.customer else ""
+    project = elided(project_words(sheet), "quiet", WIDE - gap) if heading.customer else ""
 
     def paint(paper: Paper, x: float, y: float) -> None:
         paper.text(x, y + 5.2, title, "title")
         paper.text(x + WIDE, y + 5.2, heading.date, "quiet", align="right")
         paper.text(x, y + 12.0, customer, "name")
         paper.text(x + gap, y + 12.0, project, "quiet")
-        paper.text(x + WIDE, y + 12.0, word, "quiet", align="right")
-        paint_state(paper, x + WIDE - text_width(word, "quiet") - 2.6, y + 11.0, sound=sound)
 
-    return Block(15.5, paint)
+    return Block(15.0, paint)
 
 
-def _beware(said: str, kind: str, fill: str) -> Block:
-    lines = wrapped(said, kind, WIDE - 6.0)
-    height = len(lines) * line_height(kind) + 3.0
+def _verdict(view: AssessmentView) -> Block:
+    """Return the headline of the sheet: the overall verdict, and the worst of its reasons with what to do."""
+    ink, fill = _TONES[view.level]
+    reasons = [wrapped(joined(each), "body", WIDE - 12.0) for each in view.reasons[:REASONS]]
+    lines = [line for reason in reasons for line in reason]
+    if more := len(view.reasons) - len(reasons):
+        lines.append(tr("{count} more: see the appendix.").format(count=more))
+    height = 7.6 + len(lines) * line_height("body") + (1.4 if lines else 0.0)
 
     def paint(paper: Paper, x: float, y: float) -> None:
         paper.box(x, y, WIDE, height, fill, 1.2)
-        paper.lines(x + 3.0, y + 1.5, lines, kind)
+        paint_level(paper, x + 5.0, y + 3.9, view.level)
+        paper.text(x + 9.5, y + 5.2, view.headline, "name", ink=ink)
+        paper.lines(x + 9.5, y + 7.2, lines, "body")
 
-    return Block(height + 2.0, paint)
+    return Block(height + 3.0, paint)
 
 
 def _hero(handout: Handout) -> Block:
@@ -88,11 +93,12 @@ def _great(
     left: float, width: float, caption: str, figure: str, below: str, unit: str = "", off: str = ""
 ) -> Block:
     """Return one figure with what it is over it and what belongs to it below, first how far it may be off."""
-    lines, end = wrapped(below, "caption", width)[: 2 if off else 3], text_width(figure, "hero") + 1.2
+    kind = "hero" if text_width(figure, "hero") + text_width(unit, "name") + 1.2 <= width else "large"
+    lines, end = wrapped(below, "caption", width)[: 2 if off else 3], text_width(figure, kind) + 1.2
 
     def paint(paper: Paper, x: float, y: float) -> None:
         paper.text(x + left, y + 4.6, caption, "caption")
-        paper.text(x + left, y + 12.8, figure, "hero")
+        paper.text(x + left, y + 12.8, figure, kind)
         paper.text(x + left + end, y + 12.8, unit, "name")
         down = paper.lines(x + left, y + 14.6, [off] if off else [], "figure strong")
         paper.lines(x + left, max(down, y + 14.8), lines, "caption")

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from app.reporting.paper import Paper
 from app.wording.tokens import LIGHT
+from core.assessment import BAD, CAUTION, GOOD
 
 LIGHTS = {"green": LIGHT.ok, "amber": LIGHT.warn_mark, "red": LIGHT.bad}
 """The colours of the lights; each has a shape of its own."""
-
-SETTLED, DOUBTED = "settled", "doubted"
 
 
 def paint_light(paper: Paper, x: float, y: float, light: str) -> None:
@@ -22,12 +21,15 @@ def paint_light(paper: Paper, x: float, y: float, light: str) -> None:
         paper.box(x - 1.05, y - 1.05, 2.1, 2.1, ink)
 
 
-def paint_state(paper: Paper, x: float, y: float, *, sound: bool) -> None:
-    """Paint a tick, or a triangle where figures are doubtful, about a place [mm]."""
-    if sound:
+def paint_level(paper: Paper, x: float, y: float, level: str) -> None:
+    """Paint a level of an overall verdict about a place [mm]: a tick, a triangle, a square, or a ring."""
+    light = {CAUTION: "amber", BAD: "red"}.get(level)
+    if level == GOOD:
         paper.curve([(x - 1.1, y), (x - 0.3, y + 0.8), (x + 1.2, y - 0.9)], LIGHT.ok, 0.45)
+    elif light:
+        paint_light(paper, x, y, light)
     else:
-        paint_light(paper, x, y, "amber")
+        paper.disc(x, y, 0.95, LIGHT.text_quiet, filled=False)
 
 
 def paint_chip(paper: Paper, x: float, y: float, colour: str) -> None:

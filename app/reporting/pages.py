@@ -7,22 +7,34 @@ from dataclasses import dataclass
 
 from PySide6.QtGui import QPainter
 
-from app.reporting.curves import HIGHEST, LOWEST, curve_block
+from app.reporting.curves import LOWEST, curve_block
+from app.reporting.cut_rows import vague_forces
+from app.reporting.cut_table import cut_blocks
 from app.reporting.flow import Block, Column, Placed, flow
+from app.reporting.grounds import cut_notes
 from app.reporting.handout import Handout
 from app.reporting.head import WIDE, head_blocks
 from app.reporting.paper import A4, MARGIN, Paper, elided, text_width
-from app.reporting.tables import HALF, cut_blocks, definition_blocks, measure_blocks, note_blocks
+from app.reporting.tables import (
+    HALF,
+    bullet,
+    heading,
+    key_blocks,
+    line_note_blocks,
+    measure_blocks,
+    note_blocks,
+)
 from app.reporting.telling import foot_words
 from app.wording.tokens import LIGHT
-from app.wording.words import speaking
+from app.wording.words import speaking, tr
 
 BOTTOM = A4[1] - MARGIN - 6.0
 """Down to where blocks stand; below it is the foot of the page [mm]."""
 
 
-_GAP = 4.0  # over the curves [mm]
-_SMALLER = (1.0, 0.85, 0.7, 0.55)  # of the height of the pictures, until the curves have room
+_GAP = 5.0  # over the key measures, and under the curves [mm]
+_SMALLER = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5)  # of the height of the pictures, until the first page holds all
+_CURVES = (100.0, 84.0, 70.0, 60.0)  # heights of the curves at the head of the appendix [mm]
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,43 +59,64 @@ class Pages:
 
 
 def pages_of(handout: Handout, language: str) -> Pages:
-    """Return the pages of a sheet in a language of ``app.wording.words.LANGUAGES``."""
+    """Return the pages of a sheet in a language of ``app.wording.words.LANGUAGES``.
+
+    The first page is for the sample room: verdict, pictures, what to cut, key measures. All else is appendix.
+    """
     with speaking(language):
-        placed, left = _first(handout)
-        placed += _curves(handout, left)
-        last = placed[-1]
-        below = last.y + last.block.height if last.page > left.page else BOTTOM
-        sheet = handout.sheet
-        words: list[Block] = [*measure_blocks(sheet), *note_blocks(sheet), *definition_blocks(sheet)]
-        placed += flow(words, _halves(last.page, below))[0]
-        return Pages(tuple(placed), max(each.page for each in placed) + 1, foot_words(sheet))
+        placed = _first(handout)
+        placed += _appendix(handout, max(each.page for each in placed) + 1)
+        return Pages(tuple(placed), max(each.page for each in placed) + 1, foot_words(handout.sheet))
 
 
-def _first(handout: Handout) -> tuple[list[Placed], Column]:
-    """Return the head and the cut list; where that is long, pictures leave room for the curves below it."""
-    cuts = cut_blocks(handout)
+def _first(handout: Handout) -> list[Placed]:
+    """Return what the sample room needs; where the cut list is long, pictures give way to it."""
+    cuts, measures, notes = cut_blocks(handout), list(key_blocks(handout.sheet)), _cutting(handout)
     for share in _SMALLER:
         placed, left = flow([*head_blocks(handout, share), *cuts], _whole(0))
-        if left.page == 0 and _room(left) >= LOWEST:
-            return placed, left
-    return flow([*head_blocks(handout), *cuts], _whole(0))
+        below = [
+            each
+            for x, blocks in ((MARGIN, measures), (MARGIN + WIDE - HALF, notes))
+            for each in flow(blocks, _halves_at(left, x))[0]
+        ]
+        if all(each.page == 0 for each in below):
+            break
+    return placed + below
 
 
-def _room(left: Column) -> float:
-    return left.bottom - left.top - _GAP
+def _appendix(handout: Handout, page: int) -> list[Placed]:
+    """Return curves, notes and all other measures; where these are many, curves give way to them."""
+    sheet, title = handout.sheet, heading(tr("Appendix"), WIDE)
+    words: list[Block] = [*line_note_blocks(handout), *measure_blocks(sheet), *note_blocks(sheet)]
+    top = MARGIN + title.height + 2.0
+    for height in _CURVES:
+        below = flow(words, _halves(page, top + height + _GAP))[0]
+        if all(each.page == page for each in below):
+            break
+    curves = Placed(page, MARGIN, top, curve_block(handout, height))
+    return [Placed(page, MARGIN, MARGIN, title), curves, *below]
 
 
-def _curves(handout: Handout, left: Column) -> list[Placed]:
-    """Return the curves below the cut list, where they have room, else at the head of the next page."""
-    if (room := _room(left)) >= LOWEST:
-        return [Placed(left.page, MARGIN, left.top + _GAP, curve_block(handout, min(room, HIGHEST)))]
-    return [Placed(left.page + 1, MARGIN, MARGIN, curve_block(handout, LOWEST + 14.0))]
+def _cutting(handout: Handout) -> list[Block]:
+    """Return what has to be known to cut by the list, and how far its forces are known."""
+    sheet = handout.sheet
+    notes = [vague_forces(sheet), *cut_notes(sheet)] if sheet.cuts.rows else []
+    return [heading(tr("For cutting"), HALF), *map(bullet, filter(None, notes))] if notes else []
 
 
 def _whole(page: int) -> Iterator[Column]:
     while True:
         yield Column(page, MARGIN, MARGIN, BOTTOM)
         page += 1
+
+
+def _halves_at(left: Column, x: float) -> Iterator[Column]:
+    """Give half a page below what stands on it, then that of the pages after it."""
+    yield Column(left.page, x, left.top + _GAP, left.bottom)
+    page = left.page
+    while True:
+        page += 1
+        yield Column(page, x, MARGIN, BOTTOM)
 
 
 def _halves(page: int, top: float) -> Iterator[Column]:

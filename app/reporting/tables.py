@@ -1,16 +1,16 @@
-"""The tables of a sheet, row by row, and what is to be known of their figures."""
+"""The measures of a sheet, row by row, and what is to be known of its figures."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
+from app.reporting.cut_rows import line_notes
 from app.reporting.flow import Block, Paint
-from app.reporting.grounds import cut_notes, definitions, note_groups
+from app.reporting.grounds import note_groups
 from app.reporting.handout import Handout
-from app.reporting.head import WIDE
-from app.reporting.marks import paint_chip, paint_light
 from app.reporting.paper import Paper, elided, fitting, line_height, text_width, wrapped
-from app.reporting.telling import CutView, MeasureRow, cut_views, light_legend, measure_rows
+from app.reporting.telling import MeasureRow, key_measures, measure_rows
 from app.wording.tokens import LIGHT
 from app.wording.words import tr
 from core.sheet import Sheet
@@ -21,10 +21,7 @@ Edges = tuple[float, float, float]
 HALF = 88.0
 """The width of a column where two stand beside each other [mm]."""
 
-_ROW, _CUT_ROW = 4.4, 5.6
-_FEW = 3  # footnotes that stand below each other
-_EDGES = (78.0, 92.0, 105.0, 116.0, 130.0, 144.0, 151.5, 161.5)  # right ends of the figures of a cut
-_ELASTIC, _LIGHT, _WORD = 35.0, 164.5, 168.0
+_ROW = 4.4
 _MEASURED = (HALF - 29.0, HALF - 14.5, HALF)  # right ends of before, after, change
 _BESIDE = (HALF - 41.3, HALF - 24.1, HALF - 6.9)  # the same where ± stands behind each
 _OFF = 6.9  # from a figure's right end to that of its ±
@@ -37,29 +34,33 @@ def heading(title: str, width: float, *, gap: float = 5.0) -> Block:
     return Block(5.4, lambda paper, x, y: paper.text(x, y + 3.6, said, "heading"), gap=gap, keep=True)
 
 
-def cut_blocks(handout: Handout) -> list[Block]:
-    """Return the cut list with what each band presses with, or what is missing for it."""
-    title = heading(tr("Cut list"), WIDE)
-    if not handout.sheet.cuts.rows:
-        said = tr("No line is worn: set a line shorter, and it stands here with its length and pressure.")
-        return [title, _paragraph(said, "body", WIDE)]
-    views, footnotes = cut_views(handout.sheet, list(handout.colours))
-    blocks = [title, _cut_head(), *(_cut_row(view, handout.colours.get(view.line, "")) for view in views)]
-    blocks.append(_legend())
-    return [*blocks, *_footnotes(footnotes), _beside([_bullet(note) for note in cut_notes(handout.sheet)])]
+def key_blocks(sheet: Sheet) -> Iterator[Block]:
+    """Give the few measures that a garment is made to."""
+    groups = measure_rows(replace(sheet, measures=key_measures(sheet)))
+    edges = _edges(groups)
+    yield heading(tr("Key measures"), HALF)
+    yield _measure_head(edges)
+    for _, rows in groups:
+        yield from (_measure(row, edges) for row in rows if row.figures)
+
+
+def _edges(groups: list[tuple[str, list[MeasureRow]]]) -> Edges:
+    return _BESIDE if any(row.off for _, rows in groups for row in rows) else _MEASURED
 
 
 def measure_blocks(sheet: Sheet) -> Iterator[Block]:
-    """Give the table of measures before and after, group by group."""
-    groups = measure_rows(sheet)
-    edges = _BESIDE if any(row.off for _, rows in groups for row in rows) else _MEASURED
-    yield heading(tr("Measures"), HALF)
+    """Give the table of all other measures before and after, group by group."""
+    key = {row["key"] for row in key_measures(sheet)}
+    others = tuple(row for row in sheet.measures if row["key"] not in key)
+    groups = measure_rows(replace(sheet, measures=others))
+    edges = _edges(groups)
+    yield heading(tr("Further measures"), HALF)
     yield _measure_head(edges)
     for group, rows in groups:
         said = elided(group, "strong", HALF)
         yield Block(5.0, _ruled(said, "strong", HALF, 5.0), gap=1.2, keep=True)
         for row in rows:
-            yield _measure(row, edges) if row.figures else _paragraph(row.note, "small", HALF, 0.9)
+            yield _measure(row, edges) if row.figures else paragraph(row.note, "small", HALF, 0.9)
 
 
 def note_blocks(sheet: Sheet) -> Iterator[Block]:
@@ -68,126 +69,17 @@ def note_blocks(sheet: Sheet) -> Iterator[Block]:
     for title, sentences in note_groups(sheet):
         yield _title(title)
         for sentence in filter(None, sentences):
-            yield _bullet(sentence)
+            yield bullet(sentence)
 
 
-def definition_blocks(sheet: Sheet) -> Iterator[Block]:
-    """Give how every measure is taken."""
-    yield heading(tr("How measures are taken"), HALF)
-    for title, text in definitions(sheet):
-        yield _definition(title, text)
-
-
-def _cut_head() -> Block:
-    titles = (
-        tr("width mm"),
-        tr("worn mm"),
-        tr("cut mm"),
-        tr("seams"),
-        tr("stretch %"),
-        tr("tension N"),
-        tr("kPa"),
-        tr("mmHg"),
-    )
-    named = (
-        (0.0, tr("Line")),
-        (_ELASTIC, tr("Elastic")),
-        (_LIGHT - 1.2, elided(tr("pressure"), "caption", WIDE - _LIGHT + 1.2)),
-    )
-
-    def paint(paper: Paper, x: float, y: float) -> None:
-        for left, title in named:
-            paper.text(x + left, y + 2.8, title, "caption")
-        for edge, title in zip(_EDGES, titles, strict=True):
-            paper.text(x + edge, y + 2.8, title, "caption", align="right")
-        paper.rule(x, y + 4.2, WIDE, ink=LIGHT.outline)
-
-    return Block(4.2, paint, keep=True)
-
-
-def _cut_row(view: CutView, colour: str) -> Block:
-    marks = " ".join(map(str, view.marks))
-    beside = text_width(marks, "axis") + 0.5
-    lines = wrapped(view.title, "strong", _ELASTIC - 6.5 - beside)  # a name is never cut: it tells the side
-    high = _CUT_ROW + (len(lines) - 1) * line_height("strong")
-    room = _EDGES[0] - _ELASTIC - 4.5
-    kind = fitting(view.elastic, room)
-    elastic = elided(view.elastic, kind, room)
-    word = elided(view.word, "body", WIDE - _WORD)
-    strong = None if view.front_only else 2
-
-    def paint(paper: Paper, x: float, y: float) -> None:
-        base, middle = y + 3.75, y + 2.8
-        paint_chip(paper, x, middle, colour or LIGHT.control)
-        last = paper.lines(x + 4.6, base - 0.74 * line_height("strong"), lines, "strong")
-        above = last - 0.26 * line_height("strong") - 0.9
-        paper.text(x + 5.1 + text_width(lines[-1], "strong"), above, marks, "axis")
-        paper.text(x + _ELASTIC, base, elastic, kind, ink=LIGHT.text)
-        for place, (edge, figure) in enumerate(zip(_EDGES, view.figures, strict=True)):
-            paper.text(
-                x + edge, base, figure, "figure strong" if place == strong else "figure", align="right"
-            )
-        if view.light:
-            paint_light(paper, x + _LIGHT, middle, view.light)
-            paper.text(x + _WORD, base, word, "body")
-        paper.rule(x, y + high, WIDE)
-
-    return Block(high, paint)
-
-
-def _legend() -> Block:
-    """Return what the lights say, on one line."""
-    said = light_legend()
-    before = tr("Tension and pressure are estimates. Largest pressure:")
-
-    def paint(paper: Paper, x: float, y: float) -> None:
-        paper.text(x, y + 2.6, before, "small")
-        x += text_width(before, "small") + 3.5
-        for light, words in said:
-            paint_light(paper, x, y + 1.8, light)
-            paper.text(x + 2.2, y + 2.6, words, "small")
-            x += text_width(words, "small") + 7.5
-
-    return Block(3.8, paint, gap=1.6)
-
-
-def _footnotes(notes: list[str]) -> Iterator[Block]:
-    """Give footnotes, two beside each other where there are many."""
-    count = 2 if len(notes) > _FEW else 1
-    width = (WIDE - 5.0 * (count - 1)) / count
-    numbered = [(str(k), wrapped(note, "small", width - 4.0)) for k, note in enumerate(notes, start=1)]
-    for first in range(0, len(numbered), count):
-        yield _footnote_row(numbered[first : first + count], width)
-
-
-def _footnote_row(notes: list[tuple[str, list[str]]], width: float) -> Block:
-    def paint(paper: Paper, x: float, y: float) -> None:
-        for place, (number, lines) in enumerate(notes):
-            left = x + place * (width + 5.0)
-            paper.text(left + 2.7, y + 2.3, number, "axis", align="right")
-            paper.lines(left + 4.0, y, lines, "small")
-
-    return Block(max(len(lines) for _, lines in notes) * line_height("small"), paint)
-
-
-def _beside(blocks: list[Block]) -> Block:
-    """Return blocks one below the other in two columns that are as even as can be."""
-
-    def high(part: list[Block]) -> float:
-        return sum(block.height + block.gap for block in part)
-
-    halves = min(
-        ((blocks[:k], blocks[k:]) for k in range(len(blocks), -1, -1)), key=lambda two: max(map(high, two))
-    )
-
-    def paint(paper: Paper, x: float, y: float) -> None:
-        for left, part in zip((0.0, WIDE - HALF), halves, strict=True):
-            down = y
-            for block in part:
-                block.paint(paper, x + left, down + block.gap)
-                down += block.height + block.gap
-
-    return Block(max(map(high, halves)), paint, gap=0.6)
+def line_note_blocks(handout: Handout) -> Iterator[Block]:
+    """Give what is to be known of each line."""
+    notes = line_notes(handout.sheet, list(handout.colours))
+    if notes:
+        yield heading(tr("Notes on the lines"), HALF)
+    for title, sentences in notes:
+        yield _title(title or tr("All lines"))
+        yield from map(bullet, sentences)
 
 
 def _measure_head(edges: Edges) -> Block:
@@ -242,7 +134,8 @@ def _title(title: str) -> Block:
     return Block(3.6, lambda paper, x, y: paper.text(x, y + 2.5, said, "small strong"), gap=1.4, keep=True)
 
 
-def _bullet(sentence: str) -> Block:
+def bullet(sentence: str) -> Block:
+    """Return a sentence behind a bullet, half as wide as the page."""
     lines = wrapped(sentence, "small", HALF - 3.0)
 
     def paint(paper: Paper, x: float, y: float) -> None:
@@ -252,24 +145,8 @@ def _bullet(sentence: str) -> Block:
     return Block(len(lines) * line_height("small"), paint, gap=0.3)
 
 
-def _definition(title: str, text: str) -> Block:
-    """Return a name and, going on behind it, how that is taken."""
-    lead = wrapped(title, "small strong", HALF)
-    start = text_width(lead[-1], "small strong") + 1.4
-    first = wrapped(text, "small", HALF - start)[0] if HALF - start > 25.0 else ""
-    rest = wrapped(text.removeprefix(first).strip(), "small", HALF) if text != first else []
-    step = line_height("small")
-
-    def paint(paper: Paper, x: float, y: float) -> None:
-        paper.lines(x, y, lead, "small strong")
-        last = y + (len(lead) - 1) * step
-        paper.text(x + start, last + 0.74 * step, first, "small")
-        paper.lines(x, last + step, rest, "small")
-
-    return Block((len(lead) + len(rest)) * step, paint, gap=0.8)
-
-
-def _paragraph(text: str, kind: str, width: float, gap: float = 0.0) -> Block:
+def paragraph(text: str, kind: str, width: float, gap: float = 0.0) -> Block:
+    """Return a text in a column of a ``width`` [mm], ``gap`` [mm] below what stands over it."""
     lines = wrapped(text, kind, width)
     return Block(len(lines) * line_height(kind), lambda paper, x, y: paper.lines(x, y, lines, kind), gap=gap)
 

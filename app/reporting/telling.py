@@ -2,45 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
 
 from app.panels.measure_view import plus_minus
+from app.presenting.assessment import AssessmentView, assessment_view
 from app.presenting.lines import line_title
 from app.presenting.pressure import light_word
-from app.showing.verdict_chip import state_title
 from app.wording.measure_titles import measure_title
 from app.wording.words import colon, listed, number, say, tr
-from core.cutting import CutRow
 from core.design_lines import partner_of
 from core.measuring.definitions import definition_of
 from core.measuring.own import OWN
-from core.measuring.plus_minus import AFTER, BEFORE, CHANGE, CUT, MAX_KPA, TENSION
-from core.press_list import PressRow
+from core.measuring.plus_minus import AFTER, BEFORE, CHANGE
 from core.sewing.comfort import comfort
 from core.sheet import Sheet
 
 NOTHING = "\N{EN DASH}"
 """What stands in a table where nothing is known."""
-
-
-@dataclass(frozen=True)
-class CutView:
-    """A row of the cut list, as it is printed; ``marks`` are the numbers of its footnotes.
-
-    The lengths of one that is ``front_only`` are no whole piece.
-    """
-
-    line: str
-    title: str
-    elastic: str
-    figures: tuple[str, ...]
-    light: str
-    word: str
-    marks: tuple[int, ...]
-    front_only: bool = False
 
 
 @dataclass(frozen=True)
@@ -72,12 +52,9 @@ def project_words(sheet: Sheet) -> str:
     return " · ".join(filter(None, (heading.project, variant)))
 
 
-def state_words(sheet: Sheet) -> tuple[str, str]:
-    """Return the word for the run, and why its figures are no result, if they are none."""
-    word = state_title(sheet.state)
-    if sheet.sound and sheet.state != "settling":
-        return word, ""
-    return word, tr("{state}: these figures are no result to sew for.").format(state=word)
+def overall(sheet: Sheet) -> AssessmentView:
+    """Return the overall verdict on a sheet in words."""
+    return assessment_view(sheet.assessment)
 
 
 def size_words(sheet: Sheet) -> str:
@@ -97,66 +74,17 @@ def other_sizes(sheet: Sheet) -> str:
     return "\N{NO-BREAK SPACE}· ".join(each.replace(" ", "\N{NO-BREAK SPACE}") for each in said)
 
 
-def cut_views(sheet: Sheet, order: Sequence[str]) -> tuple[list[CutView], list[str]]:
-    """Return the rows of the cut list in the ``order`` of the lines, and their footnotes.
+REASONS = 4
+"""How many reasons of the overall verdict stand at the head of a sheet."""
 
-    Of a shape that is no result no figure is told: nobody is to cut by it. What holds for each row is no
-    footnote, see ``shared_notes``.
-    """
-    footnotes: list[str] = []
-    views, shared = [], shared_notes(sheet)
-    rows = zip(sheet.cuts.rows, sheet.pressures, strict=True)
-    for cut, press in sorted(rows, key=lambda row: _place(row[0].line, order)):
-        notes = [note for note in _row_notes(cut, press, sheet) if note not in shared]
-        footnotes += [note for note in notes if note not in footnotes]
-        view = _cut_view(cut, press, tuple(footnotes.index(note) + 1 for note in notes))
-        views.append(view if sheet.sound else _without_figures(view))
-    return views, footnotes
+KEY_MEASURES = ("bust_girth", "underbust_girth", "bust_point_distance", "bust_point_to_fold", "cup_depth")
+"""What a bra is made to, first of all."""
 
 
-def shared_notes(sheet: Sheet) -> list[str]:
-    """Return what is noted of every row of the cut list, if there are several."""
-    rows = [_row_notes(*each, sheet) for each in zip(sheet.cuts.rows, sheet.pressures, strict=True)]
-    return [note for note in rows[0] if all(note in notes for notes in rows)] if len(rows) > 1 else []
-
-
-def _row_notes(cut: CutRow, press: PressRow, sheet: Sheet) -> list[str]:
-    told = (*map(say, (*cut.notes, *press.notes)), *_within_words(cut, press, sheet))
-    return list(dict.fromkeys(told)) if sheet.sound else []
-
-
-def _within_words(cut: CutRow, press: PressRow, sheet: Sheet) -> Iterator[str]:
-    """Yield where the figures of a piece lie in 95 % of cases, if that was worked out."""
-    parts, off = [], sheet.off.get(f"{CUT}:{cut.line}")
-    if off is not None and cut.cut_mm is not None:
-        parts.append(tr("cut {off} mm").format(off=plus_minus(off)))
-    for key, value, words in (
-        (f"{TENSION}:{cut.line}", cut.tension_n, tr("tension {low} to {high} N")),
-        (f"{MAX_KPA}:{cut.line}", press.max_kpa, tr("largest pressure {low} to {high} kPa")),
-    ):
-        ends = _ends(sheet, key, value)
-        if ends is not None:
-            low, high = (number(each, 1) for each in ends)
-            parts.append(words.format(low=low, high=high))
-    if parts:
-        yield tr("In 95 % of cases: {figures}.").format(figures=listed(parts))
-
-
-def _ends(sheet: Sheet, key: str, value: float | None) -> tuple[float, float] | None:
-    """Return between what a force or pressure may lie, None where that is not known."""
-    off, factor = sheet.off.get(key), sheet.off_factor.get(key)
-    if value is not None and factor is not None:
-        return value / factor, value * factor
-    return None if value is None or off is None else (value - off, value + off)
-
-
-def cut_pieces(sheet: Sheet, order: Sequence[str]) -> list[tuple[str, str, str]]:
-    """Return line, title and length [mm] of whole pieces to be cut, in the ``order`` of the lines."""
-    return [
-        (row.line, piece_title(row.line, row.title), number(row.cut_mm, 0))
-        for row in sorted(sheet.cuts.rows, key=lambda row: _place(row.line, order))
-        if row.cut_mm is not None and not row.front_only
-    ]
+def key_measures(sheet: Sheet) -> tuple[dict[str, Any], ...]:
+    """Return the rows of the few measures that a garment is made to."""
+    keys = {f"{key}{side}" for key in KEY_MEASURES for side in ("", "_left", "_right")}
+    return tuple(row for row in sheet.measures if row["key"] in keys and known(row))
 
 
 def measure_rows(sheet: Sheet) -> list[tuple[str, list[MeasureRow]]]:
@@ -193,39 +121,11 @@ def foot_words(sheet: Sheet) -> str:
     return " · ".join((f"Busk {sheet.versions['busk']}", mesh, sheet.scan))
 
 
-def _cut_view(cut: CutRow, press: PressRow, marks: tuple[int, ...]) -> CutView:
-    stretch = None if cut.elongation is None else 100.0 * cut.elongation
-    width = None if cut.width_mm is None else f"{cut.width_mm:g}"
-    figures = (
-        width or NOTHING,
-        _figure(cut.reached_whole_mm, 0),
-        _figure(cut.cut_mm, 0),
-        _figure(cut.allowance_mm, 0),
-        _figure(stretch, 0),
-        _figure(cut.tension_n, 1),
-        _figure(press.max_kpa, 1),
-        _figure(press.max_mmhg, 0),
-    )
-    word = light_word(press.light) if press.light else ""
-    title = piece_title(cut.line, cut.title)
-    return CutView(cut.line, title, _elastic(cut), figures, press.light, word, marks, cut.front_only)
-
-
-def _elastic(cut: CutRow) -> str:
-    """Return what a line is made of, without the width, which stands beside it."""
-    return say(cut.elastic).removesuffix(f" {cut.width_mm or 0.0:g} mm") if cut.elastic else NOTHING
-
-
-def _without_figures(view: CutView) -> CutView:
-    width, *others = view.figures
-    return replace(view, figures=(width, *(NOTHING for _ in others)), light="", word="")
-
-
 def _measure_row(row: dict[str, Any], sheet: Sheet) -> MeasureRow:
     digits = 0 if row["unit"] == "ml" else 1
     figures = (
-        _figure(row["before"], digits),
-        _figure(row["after"], digits),
+        figure(row["before"], digits),
+        figure(row["after"], digits),
         _change(row, digits),
     )
     figures = figures if sheet.sound else (figures[0], NOTHING, NOTHING)
@@ -263,9 +163,6 @@ def system_word(size: dict[str, Any]) -> str:
     return key.upper() if len(key) == 2 else str(size["system"])
 
 
-def _place(line: str, order: Sequence[str]) -> int:
-    return order.index(line) if line in order else len(order)
-
-
-def _figure(value: float | None, digits: int) -> str:
+def figure(value: float | None, digits: int) -> str:
+    """Return a figure as it is printed, or NOTHING."""
     return NOTHING if value is None else number(value, digits)

@@ -27,11 +27,14 @@ _HIGH, _LOW, _FOLDED = 172, 150, 36
 
 
 class VerdictView(Protocol):
-    """What the strip says of a run: a state of the chip, up to three (label, value) pairs, what to do.
-
-    Then the time it took, by which effort, and whether the run is still on its way.
+    """Level and headline of the overall verdict, up to three (label, value) pairs, what to do; then the run's
+    state, with the time and effort it took, and whether it is still on its way.
     """
 
+    @property
+    def level(self) -> str: ...
+    @property
+    def headline(self) -> str: ...
     @property
     def state(self) -> str: ...
     @property
@@ -159,8 +162,8 @@ class Strip(QWidget):
     def set_verdict(self, verdict: VerdictView) -> None:
         """Show how the run stands; call it before ``set_run``, which takes its colour from it."""
         self._state, self._settling = verdict.state, verdict.settling
-        self.chip.set_state(verdict.state)
-        self._small_chip.set_state(verdict.state)
+        self.chip.set_state(verdict.level, verdict.headline)
+        self._small_chip.set_state(verdict.level, verdict.headline)
         self._turns.setText(verdict.pace)
         set_tip(self._turns, verdict.effort)
         pairs = verdict.numbers[: len(self._pairs)]

@@ -24,11 +24,18 @@ TONES = {
     "overstrained": ("bad", "overstrained"),
     "stale": ("plain", "clock-counter-clockwise"),
     "paused": ("plain", "pause"),
+    "good": ("ok", "check-circle"),
+    "pending": ("info", "arc"),
+    "caution": ("warn", "warning"),
+    "bad": ("bad", "warning-octagon"),
+    "idle": ("plain", "lines"),
 }
-"""Tone and drawing of each state of a run."""
+"""Tone and drawing of each state of a run, and of each level of an overall verdict."""
 
-TROUBLED = ("strained", "overstrained", "folded", "vibrating", "diverging")
+TROUBLED = ("caution", "bad", "strained", "overstrained", "folded", "vibrating", "diverging")
 """States that there is more to say of: a click asks for it."""
+
+_SPINNING = ("settling", "pending")
 
 SHORTEST_SHOW_MS = 250
 """A state stays at least so long, so that the chip does not flicker."""
@@ -39,7 +46,7 @@ _GAP = "     "
 
 
 def state_title(state: str) -> str:
-    """Return the word for a state of ``TONES``."""
+    """Return the word for a state of a run in ``TONES``."""
     return {
         "settled": tr("Settled"),
         "strained": tr("Settled, strained"),
@@ -60,6 +67,7 @@ class VerdictChip(QAbstractButton):
         super().__init__()
         self._small = small
         self._state = self._next = "stale"
+        self._words = self._next_words = state_title("stale")
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
         self._angle = 0.0
         self._since = QElapsedTimer()
@@ -80,11 +88,14 @@ class VerdictChip(QAbstractButton):
         """Return whether the arc turns."""
         return self._spin.isActive()
 
-    def set_state(self, state: str) -> None:
-        """Show a state of ``TONES``, at the latest when the last one has been seen long enough."""
+    def set_state(self, state: str, words: str = "") -> None:
+        """Show a state of ``TONES``, at the latest when the last one has been seen long enough.
+
+        ``words`` are those of a level; a state of a run has its own.
+        """
         if state not in TONES:
             raise ValueError(state)
-        self._next = state
+        self._next, self._next_words = state, words or state_title(state)
         left = SHORTEST_SHOW_MS - self._since.elapsed() if self._since.isValid() else 0
         if state == self._state or left <= 0:
             self._take()
@@ -92,7 +103,7 @@ class VerdictChip(QAbstractButton):
             self._change.start(left)
 
     def sizeHint(self) -> QSize:
-        word = self.fontMetrics().horizontalAdvance(state_title(self._state))
+        word = self.fontMetrics().horizontalAdvance(self._words)
         room = (36 if self._small else 50) + (_CARET + 5 if self._state in TROUBLED else 0)
         return QSize(word + room, 22 if self._small else 32)
 
@@ -117,15 +128,13 @@ class VerdictChip(QAbstractButton):
         size, left = (14.0, 8.0) if self._small else (19.0, 11.0)
         painter.save()
         painter.translate(left + size / 2, self.height() / 2)
-        painter.rotate(self._angle if self._state == "settling" else 0.0)
+        painter.rotate(self._angle if self._state in _SPINNING else 0.0)
         paint_icon(painter, drawing, ink, QRectF(-size / 2, -size / 2, size, size))
         painter.restore()
         painter.setPen(QColor(ink))
         painter.setFont(self.font())
         word = QRectF(left + size + 6, 0, self.width(), self.height())
-        painter.drawText(
-            word, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, state_title(self._state)
-        )
+        painter.drawText(word, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, self._words)
         if self._state in TROUBLED:
             place = QPointF(self.width() - _CARET - 9.0, 0.5 * (self.height() - _CARET))
             painter.drawPixmap(place, pixmap("caret-right", ink, _CARET, self.devicePixelRatioF()))
@@ -136,8 +145,8 @@ class VerdictChip(QAbstractButton):
             return
         if self._next != self._state or not self._since.isValid():
             self._since.restart()
-        self._state = self._next
-        self.setAccessibleName(state_title(self._state))
+        self._state, self._words = self._next, self._next_words
+        self.setAccessibleName(self._words)
         self._let_press(self._state in TROUBLED)
         self._run_spin()
         self.setFixedSize(self.sizeHint())
@@ -150,7 +159,7 @@ class VerdictChip(QAbstractButton):
         set_tip(self, tr("Say what fights in this design, and what ends it") if on else "")
 
     def _run_spin(self) -> None:
-        if self._state == "settling" and self.isVisible():
+        if self._state in _SPINNING and self.isVisible():
             self._spin.start()
         else:
             self._spin.stop()

@@ -86,14 +86,14 @@ _TABLE = (
     Definition("high_bust_girth_skin", "High bust outline", "mm", "", f"Ours. {_SKIN}", GIRTHS),
     Definition(
         "waist_girth",
-        "Waist girth",
+        "Waist girth (narrowest)",
         "mm",
         "Waist girth",
         f"Where the trunk is narrowest. {TAPE} The standard goes midway between lowest rib and hip bone, "
         "which a scan does not show.",
         GIRTHS,
     ),
-    Definition("waist_girth_skin", "Waist outline", "mm", "", f"Ours. {_SKIN}", GIRTHS),
+    Definition("waist_girth_skin", "Waist outline (narrowest)", "mm", "", f"Ours. {_SKIN}", GIRTHS),
     Definition(
         "hip_girth",
         "Hip girth",

@@ -24,6 +24,12 @@ WHY = {
 
 UNSURE_LEVEL = "The fold under the breast is uncertain: an estimate."
 
+NARROWEST = (
+    "At the narrowest place: the waist between lowest rib and hip bone does not show, and its girth may "
+    "differ by several centimetres, which the ± does not include."
+)
+"""What is said of the girth of the waist."""
+
 OVER_GAPS = "It goes over a hole of the scan or over a joined arm: an estimate."
 
 
@@ -43,7 +49,7 @@ def girth_measures(subject: Subject) -> Iterator[Measure]:
             values[f"section_area_{name}"] = (enclosed(skin) / 100.0, skin, "cm2")
         bridged, note = over_gaps(level)
         unsure = name == "underbust" and sure.get(name, 1.0) < CERTAIN
-        note = note or UNSURE_LEVEL * unsure
+        note = note or UNSURE_LEVEL * unsure or NARROWEST * (name == "waist")
         for key, (value, ring, unit) in values.items():
             yield Measure(key, value, unit, (ring,), sure.get(name, 1.0), bridged or unsure, note=note)
 

@@ -106,8 +106,8 @@ class Spread:
             return value / factor, value * factor
         if off is None:
             return None
-        pulls = _kind(key) in FORCES and value > 0.0  # a line that is too long pushes in the model
-        return (max(value - off, 0.0) if pulls else value - off), value + off
+        ends = value - off, value + off
+        return (max(ends[0], 0.0), max(ends[1], 0.0)) if _kind(key) in FORCES else ends  # a band cannot push
 
     def _off(self, key: str) -> float | None:
         doubt = self.doubts.get(key)

@@ -14,19 +14,33 @@ from core.solving.newtons import newtons_per_unit
 from core.solving.potential import Potential
 from core.solving.sliding import Skin
 
+SLACK = 0.05
+"""Up to this push of the model a line counts as without tension [N]: less is not shown."""
+
 
 @dataclass(frozen=True, eq=False)
 class LineTension:
     """The pull along a worn line: ``segments`` (k - 1,) [N] from its right end to the left.
 
     ``mean`` [N] is that over its natural length, so that of a spring it belongs to the line's whole stretch;
-    where the line is too long for the body it is negative. ``estimate`` is always True where the newtons come
-    from the assumed stiffness of tissue alone and not from an elastic.
+    where the line is too long for the body it is negative in the model: see ``pull`` for what a band does.
+    ``estimate`` is always True where the newtons come from the assumed stiffness of tissue alone and not from
+    an elastic.
     """
 
     segments: Floats
     mean: float
     estimate: bool
+
+    @property
+    def pull(self) -> float:
+        """The mean tension of a band in place of the line [N]: none where it would have to push."""
+        return max(self.mean, 0.0)
+
+    @property
+    def push(self) -> float:
+        """How far the model pushes where a band would be slack [N]; 0 for a line that pulls."""
+        return -self.mean if self.mean < -SLACK else 0.0
 
 
 def ran_away() -> LineError:

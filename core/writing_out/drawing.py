@@ -16,7 +16,7 @@ from core.printable_name import printable
 from core.space import Space
 from core.whole_file import whole_file
 from core.writing_out.dxf import new_dxf
-from core.writing_out.worn import Strip, WornCurve
+from core.writing_out.worn import NOT_TO_CUT, Strip, WornCurve
 
 Say = Callable[[str], str]
 """Puts a sentence of the core into another language."""
@@ -28,6 +28,7 @@ SCALE_BAR = 100.0
 """Length of the bar that tells whether a drawing was printed at its size [mm]."""
 
 _MARGIN, _HEAD, _LETTER = 10.0, 24.0, 4.0  # round the drawing, for the scale bar, of the text [mm]
+_APART = 120.0  # between two words across a strip that is not to be cut [mm]
 _LAYER = re.compile(r'[<>/\\":;?*|=`,\x00-\x1f]')
 _INK = ("#111111", "#777777")  # of what is cut, and of what is only told
 
@@ -118,7 +119,12 @@ def _svg(strips: Sequence[Strip], heading: str, say: Say) -> Xml.Element:
         Xml.SubElement(group, "title").text = say(told(strip))
         _svg_text(group, _MARGIN, top - 2.5, say(told(strip)))
         box = {"x": _MARGIN, "y": top, "width": strip.length, "height": strip.width}
-        Xml.SubElement(group, "rect", {key: f"{value:.4f}" for key, value in box.items()})
+        dashed = {} if strip.to_cut else {"stroke-dasharray": "3 2"}
+        Xml.SubElement(group, "rect", {key: f"{value:.4f}" for key, value in box.items()} | dashed)
+        for at in _across(strip):
+            letter = _across_size(strip)
+            down = top + 0.5 * (strip.width + 0.7 * letter)
+            _svg_text(group, _MARGIN + at, down, say(NOT_TO_CUT), letter)
         for at, what in strip.marks:
             _svg_line(
                 group, (_MARGIN + at, top), (_MARGIN + at, top + strip.width + 2.0), {"stroke-dasharray": "1"}
@@ -163,10 +169,26 @@ def _strips_dxf(strips: Sequence[Strip], heading: str, say: Say) -> Any:
         space.add_text(
             say(told(strip)), height=_LETTER, dxfattribs=on | {"insert": (0.0, y + strip.width + 2.0)}
         )
+        for at in _across(strip):
+            size = _across_size(strip)
+            place = {"insert": (at, y + 0.5 * (strip.width - size))}
+            space.add_text(say(NOT_TO_CUT), height=size, dxfattribs=on | place)
         for at, what in strip.marks:
             space.add_line((at, y - 2.0), (at, y + strip.width), dxfattribs=on)
             space.add_text(say(what), height=3.0, dxfattribs=on | {"insert": (at + 0.8, y - 4.0)})
     return drawing
+
+
+def _across(strip: Strip) -> list[float]:
+    """Return where along a strip it is printed that it is not to be cut [mm]: again and again."""
+    if strip.to_cut:
+        return []
+    return [_APART * k + 4.0 for k in range(max(1, int(strip.length // _APART)))]
+
+
+def _across_size(strip: Strip) -> float:
+    """Return how high that is printed [mm]."""
+    return min(0.7 * strip.width, 2.0 * _LETTER)
 
 
 def _tops(strips: Sequence[Strip]) -> list[float]:

@@ -45,7 +45,8 @@ def sheet_rows(sheet: Sheet) -> Iterator[Row]:
     """Give the rows of the table by their columns; a column without anything may be left out."""
     heading = sheet.heading
     told = {"customer": heading.customer, "project": heading.project, "variant": heading.variant}
-    told |= {"date": heading.date, "scan": sheet.scan, "state": sheet.state, **sheet.versions}
+    told |= {"date": heading.date, "scan": sheet.scan, "verdict": sheet.assessment.level}
+    told |= {"state": sheet.state, **sheet.versions}
     for key, value in told.items():
         yield {"section": "sheet", "key": key, "title": key.capitalize(), "after": value}
     for each in sheet.sizes:
@@ -53,6 +54,10 @@ def sheet_rows(sheet: Sheet) -> Iterator[Row]:
         yield {"section": "size", "key": each["key"], "title": each["title"], "before": size}
     if sheet.no_size:
         yield {"section": "size", "key": "none", "title": "No size", "note": sheet.no_size}
+    for number, reason in enumerate(sheet.assessment.findings, start=1):
+        note = " ".join(filter(None, (reason.message, reason.action)))
+        told = {"key": str(number), "title": reason.topic.capitalize(), "after": reason.level}
+        yield {"section": "verdict", **told, "note": note}
     yield from _shape_rows(sheet)
     for row in sheet.measures:
         title = f"{row['title']}, {row['side']}" if row["side"] else row["title"]

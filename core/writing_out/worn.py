@@ -24,6 +24,9 @@ UPPER, LOWER = "upper end", "lower end"
 AS_WORN = "as worn: an elastic is cut shorter"
 """What is said of a strip of which no elastic is chosen."""
 
+NOT_TO_CUT = "NOT TO CUT"
+"""What is printed across such a strip."""
+
 
 @dataclass(frozen=True, eq=False)
 class WornCurve:
@@ -52,7 +55,8 @@ class WornCurve:
 class Strip:
     """A band laid flat, ``length`` by ``width`` [mm], to be cut or as it is worn: ``note`` says which.
 
-    ``marks`` are places along it by distance from its beginning [mm], with what lies there.
+    ``marks`` are places along it by distance from its beginning [mm], with what lies there. ``to_cut`` is
+    False for one as it is worn, which is no pattern piece.
     """
 
     name: str
@@ -61,6 +65,7 @@ class Strip:
     width: float
     marks: tuple[tuple[float, str], ...] = ()
     note: str = ""
+    to_cut: bool = True
 
 
 def worn_curves(
@@ -101,6 +106,7 @@ def strips(
             widths.get(line.name, USUAL_WIDTH),
             _marks(line, control_points[line.path], stages.backs.get(line.name), middle),
             AS_WORN,
+            to_cut=False,
         )
         flat.append(_cut(worn, cuts[line.name]))
     return tuple(flat)
@@ -110,7 +116,7 @@ def _cut(worn: Strip, row: CutRow) -> Strip:
     """Return a strip as it is to be cut, marks where they lie unstretched; as worn if that is not known."""
     if row.cut_mm is None or row.elongation is None or row.allowance_mm is None:
         return worn
-    seam, shrunk = 0.5 * row.allowance_mm, 1.0 / (1.0 + row.elongation)
+    seam, shrunk = 0.5 * row.allowance_mm, (row.cut_mm - row.allowance_mm) / worn.length
     marks = [(seam + at * shrunk, what) for at, what in worn.marks]
     if seam > 0.0:
         marks += [(at, SEAM) for at in (seam, row.cut_mm - seam) if all(abs(at - k) > 1e-6 for k, _ in marks)]
@@ -120,7 +126,7 @@ def _cut(worn: Strip, row: CutRow) -> Strip:
         f"worn {worn.length:.1f} mm, stretched by {100.0 * row.elongation:.0f} %"
     )
     width = row.width_mm or worn.width
-    return replace(worn, length=row.cut_mm, width=width, marks=tuple(sorted(marks)), note=note)
+    return replace(worn, length=row.cut_mm, width=width, marks=tuple(sorted(marks)), note=note, to_cut=True)
 
 
 def _worn(stages: Stages) -> Sequence[Line]:

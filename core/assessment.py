@@ -1,0 +1,187 @@
+"""Assessment: one overall verdict on a solved design, the worst of all that was checked (ours).
+
+Checked are convergence and shape of the run, contact pressure, bands that cannot do what they are set to,
+scan, landmarks and the fit of the control mesh.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from core.cutting import CutList, CutRow, cut_list
+from core.doubts import doubts
+from core.pipeline import Stages
+from core.press_list import PressList, PressRow, press_list
+from core.report import Shown, warnings
+from core.sewing.comfort import AMBER, RED, comfort
+from core.verdict import Verdict
+
+GOOD, PENDING, CAUTION, BAD = LEVELS = ("good", "pending", "caution", "bad")
+"""Levels from the best to the worst; one that is still being computed is better than none that is known."""
+
+TOPICS = ("convergence", "shape", "band", "pressure", "fit", "landmarks")
+"""What is checked, in the order in which findings of one level are ranked."""
+
+PUSHES = 0.5
+"""A line that would have to push with more than this carries part of the shape [N]; an estimate."""
+
+FIT_LIMITS = (20.0, 10.0)
+"""Largest and 95 % deviation of the skin from the control mesh from which a fit is doubtful [mm]; ours."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One reason for an assessment.
+
+    ``topic`` is one of TOPICS, ``level`` CAUTION or BAD. ``message`` states in a sentence what is wrong,
+    ``action`` what to do, empty where the message includes it. ``lines`` are the lines concerned.
+    """
+
+    topic: str
+    level: str
+    message: str
+    action: str = ""
+    lines: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Assessment:
+    """The overall verdict: ``findings`` are ranked, the worst first.
+
+    ``pending`` names what is not known yet, "convergence" or "pressure", or is empty. ``active`` tells
+    whether any line is.
+    """
+
+    findings: tuple[Finding, ...]
+    pending: str = ""
+    active: bool = True
+
+    @property
+    def level(self) -> str:
+        """The worst level: one of LEVELS."""
+        worst = self.findings[0].level if self.findings else GOOD
+        return PENDING if self.pending and worst != BAD else worst
+
+    def as_data(self) -> dict[str, Any]:
+        """Return the assessment ready for JSON."""
+        return {"level": self.level, "findings": [asdict(each) for each in self.findings]}
+
+
+def assessed(shown: Shown) -> Assessment:
+    """Return the assessment of a run that has ended; cut list and pressures are computed for it."""
+    if not shown.verdict.sound:
+        return assessment_of(shown, None, None)
+    stages, points = shown.stages, shown.control_points
+    return assessment_of(shown, cut_list(stages, points), press_list(stages, points))
+
+
+def assessment_of(
+    shown: Shown, cuts: CutList | None, pressed: PressList | None, *, running: bool = False
+) -> Assessment:
+    """Return the assessment of a run, with its cut list and pressures as far as they are known.
+
+    While it is ``running`` it may still converge. A run without a valid shape has neither.
+    """
+    stages, verdict, active = shown.stages, shown.verdict, bool(shown.stages.design.worn())
+    found = [*_run(shown, running), *_foundations(stages)]
+    if verdict.sound:
+        found += [*_bands(cuts), *_pressures(pressed)]
+    ranked = sorted(found, key=lambda each: (-LEVELS.index(each.level), TOPICS.index(each.topic)))
+    pending = "convergence" if running else "pressure" if active and pressed is None and verdict.sound else ""
+    return Assessment(tuple(ranked), pending, active)
+
+
+def _run(shown: Shown, running: bool) -> Iterator[Finding]:
+    """Yield what is wrong with the run and its shape."""
+    verdict = shown.verdict
+    if verdict.motion == "diverging":
+        yield Finding(
+            *("convergence", BAD, "The calculation diverges: there is no shape."),
+            "Set the lines longer or softer.",
+        )
+    elif verdict.motion == "vibrating":
+        action = "Use the adaptive volume control, or diagnose the design."
+        other = "Diagnose the design."
+        conventional = shown.stages.design.volume == "conventional"
+        yield Finding(
+            *("convergence", BAD, "The calculation does not converge: it oscillates."),
+            action if conventional else other,
+        )
+    elif verdict.motion == "settling" and not running:
+        yield Finding(
+            *("convergence", BAD, "The calculation has not converged."),
+            "Diagnose the design.",
+        )
+    if verdict.motion not in ("diverging", "vibrating"):
+        yield from _shape(verdict)
+
+
+def _shape(verdict: Verdict) -> Iterator[Finding]:
+    condition, action = verdict.condition, "Diagnose the design."
+    if condition is None:
+        return
+    ends = (100.0 * (each - 1.0) for each in (condition.shortest, condition.longest))
+    low, high = (f"{each:+.0f}".replace("-", "\N{MINUS SIGN}") for each in ends)
+    if condition.folded:
+        yield Finding("shape", BAD, "The skin folds over: this shape is not valid.", action)
+    elif condition.overstrained:
+        message = f"Skin is compressed or stretched by over 30 % ({low} to {high} %)."
+        yield Finding("shape", BAD, message, action)
+    elif condition.strained:
+        message = f"Skin is compressed or stretched by over 20 % ({low} to {high} %)."
+        yield Finding("shape", CAUTION, message, action)
+
+
+def _bands(cuts: CutList | None) -> Iterator[Finding]:
+    """Yield lines whose band cannot do what it is set to."""
+    for row in cuts.rows if cuts is not None else ():
+        if row.refused:
+            yield Finding("band", BAD, row.refused, lines=(row.line,))
+        if row.slack:
+            yield _slack(row)
+        elif row.far and row.elongation is not None:
+            message = f"The elastic of {row.title} is stretched far, by {100.0 * row.elongation:.0f} %."
+            yield Finding("band", CAUTION, message, "Cut it longer, or choose another elastic.", (row.line,))
+
+
+def _slack(row: CutRow) -> Finding:
+    level = BAD if row.push_n > PUSHES else CAUTION
+    message = f"{row.title} is slack: it has no tension."
+    if row.push_n:
+        message = f"{row.title} is slack: it would have to push with {row.push_n:.1f} N, which no band can."
+    return Finding("band", level, message, "Shorten it, or take it off.", (row.line,))
+
+
+def _pressures(pressed: PressList | None) -> Iterator[Finding]:
+    """Yield lines that press more than the green light allows, the hardest first."""
+    rows = [row for row in pressed.rows if row.light in (AMBER, RED)] if pressed is not None else []
+    for row in sorted(rows, key=lambda row: -(row.max_kpa or 0.0)):
+        yield _pressure(row)
+
+
+def _pressure(row: PressRow) -> Finding:
+    kpa, mmhg = row.max_kpa or 0.0, row.max_mmhg or 0.0
+    message = f"{row.title} presses with {kpa:.1f} kPa ({mmhg:.0f} mmHg)."
+    if row.light == AMBER:
+        action = "Try it on: sit and breathe in with it."
+        return Finding("pressure", CAUTION, message, action, (row.line,))
+    unwearable = kpa >= comfort().beyond[-1][0]
+    action = "Set it longer, wider or softer."
+    much = "It cannot be worn: set it much longer, wider or softer."
+    return Finding("pressure", BAD, message, much if unwearable else action, (row.line,))
+
+
+def _foundations(stages: Stages) -> Iterator[Finding]:
+    """Yield what is doubtful about the scan, its landmarks and the control mesh."""
+    for sentence in doubts(stages.body, stages.landmarks):
+        yield Finding("landmarks", CAUTION, sentence)
+    quality = stages.control.quality
+    if quality is not None and (
+        quality.deviation_max > FIT_LIMITS[0] or quality.deviation_95 > FIT_LIMITS[1]
+    ):
+        message = f"The control mesh is up to {quality.deviation_max:.0f} mm off the skin."
+        yield Finding("fit", CAUTION, message, "Check the bust points and folds.")
+    for sentence in warnings(stages):
+        yield Finding("fit", CAUTION, sentence)

@@ -1,0 +1,182 @@
+"""The overall verdict: the worst of all that was checked, the same in every place that shows it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+
+from app.presenting.assessment import IDLE, assessment_lines, assessment_view
+from app.wording.words import read_words, speaking
+from core.assessment import BAD, CAUTION, GOOD, PENDING, PUSHES, Assessment, assessed, assessment_of
+from core.cutting import CutList, CutRow, cut_list
+from core.design import Design
+from core.design_elastics import Elastic
+from core.pipeline import Stages, build
+from core.press_list import PressList, PressRow, press_list
+from core.pressure import mmhg
+from core.sewing.comfort import comfort
+from core.sewing.tensions import line_tensions
+from core.sheet import Heading, sheet_of
+from core.solution import Solution, run
+from core.solving.condition import Condition
+from core.verdict import Verdict
+
+Built = Callable[[str], Stages]
+CALM = Condition(0.99, 0.95, 1.05)
+
+
+@pytest.fixture(scope="module")
+def sure(built: Built) -> Solution:
+    """A settled design on a body without doubts: landmarks that a hand confirmed."""
+    stages = built("mannequin")
+    points = {name: replace(mark, confidence=1.0) for name, mark in stages.landmarks.points.items()}
+    landmarks = replace(stages.landmarks, points=points, warnings=())
+    design = stages.design.with_line("mid-bust", 0.98)
+    return run(replace(build(design, stages), landmarks=landmarks))
+
+
+def row(kpa: float, line: str = "mid-bust") -> PressRow:
+    return PressRow(line, line, "", max_kpa=kpa, max_mmhg=mmhg(kpa), light=comfort().light(kpa))
+
+
+def pressed(*rows: PressRow) -> PressList:
+    return PressList(rows, {})
+
+
+def cuts(**changes: object) -> CutList:
+    plain = CutRow("mid-bust", "mid-bust", "", 12.0, True, 400.0, 800.0, tension_n=1.0)
+    return CutList((replace(plain, **changes),), 530.0, 1.0, ())  # type: ignore[arg-type]
+
+
+def levels(of: Assessment) -> list[tuple[str, str]]:
+    return [(each.topic, each.level) for each in of.findings]
+
+
+@pytest.mark.parametrize(
+    ("kpa", "level"),
+    [(0.5, GOOD), (2.5, CAUTION), (4.5, BAD), (47.7, BAD)],
+    ids=["green", "amber", "red", "far"],
+)
+def test_pressure_alone_decides_where_all_else_is_well(sure: Solution, kpa: float, level: str) -> None:
+    found = assessment_of(sure, cuts(), pressed(row(kpa)))
+    assert found.level == level
+    if level != GOOD:
+        assert found.findings[0].topic == "pressure"
+        assert f"{kpa:.1f} kPa ({mmhg(kpa):.0f} mmHg)" in found.findings[0].message
+    if kpa > 9.2:
+        assert "cannot be worn" in found.findings[0].action
+
+
+def test_it_is_never_good_before_the_pressure_is_known(sure: Solution) -> None:
+    assert assessment_of(sure, cuts(), None).level == PENDING
+    assert assessment_of(sure, cuts(), None).pending == "pressure"
+    assert assessment_of(sure, None, None, running=True).pending == "convergence"
+    slack = assessment_of(sure, cuts(slack=True, push_n=2.0), None)
+    assert slack.level == BAD, "what is bad already is shown at once"
+    mild = assessment_of(sure, cuts(slack=True, push_n=0.1), None)
+    assert mild.level == PENDING, "it may become worse"
+
+
+@pytest.mark.parametrize(
+    ("motion", "condition", "level", "topic"),
+    [
+        ("diverging", CALM, BAD, "convergence"),
+        ("vibrating", CALM, BAD, "convergence"),
+        ("settling", CALM, BAD, "convergence"),
+        ("settled", replace(CALM, turned=0.0), BAD, "shape"),
+        ("settled", replace(CALM, longest=1.4), BAD, "shape"),
+        ("settled", replace(CALM, shortest=0.75), CAUTION, "shape"),
+        ("settled", CALM, GOOD, ""),
+    ],
+)
+def test_convergence_and_shape_decide_too(
+    sure: Solution, motion: str, condition: Condition, level: str, topic: str
+) -> None:
+    run_so = replace(sure, verdict=Verdict(motion, 100, 0.0, condition=condition))
+    found = assessment_of(run_so, cuts(), pressed(row(0.5)))
+    assert found.level == level
+    assert [each.topic for each in found.findings] == ([topic] if topic else [])
+
+
+def test_what_is_worst_stands_first_and_the_hardest_press_before_others(sure: Solution) -> None:
+    rows = row(2.5, "full-bust"), row(5.0, "under-bust"), row(30.0)
+    slack = cuts(slack=True, push_n=0.5 * PUSHES)
+    found = assessment_of(sure, slack, pressed(*rows))
+    assert levels(found) == [("pressure", BAD), ("pressure", BAD), ("band", CAUTION), ("pressure", CAUTION)]
+    assert [each.lines for each in found.findings] == [
+        *(("mid-bust",), ("under-bust",), ("mid-bust",), ("full-bust",)),
+    ]
+
+
+@pytest.mark.parametrize(("far", "level"), [(39.0, CAUTION), (13.8, GOOD)])
+def test_a_fit_far_off_the_skin_is_no_good_result(sure: Solution, far: float, level: str) -> None:
+    control = sure.stages.control
+    assert control.quality is not None
+    quality = replace(control.quality, deviation_max=far)
+    stages = replace(sure.stages, control=replace(control, quality=quality))
+    found = assessment_of(replace(sure, stages=stages), cuts(), pressed(row(0.5)))
+    assert found.level == level
+    if level == CAUTION:
+        assert f"{far:.0f} mm off the skin" in found.findings[0].message
+
+
+def test_doubtful_landmarks_are_in_it(sure: Solution, built: Built) -> None:
+    stages = replace(sure.stages, landmarks=built("mannequin").landmarks)
+    found = assessment_of(replace(sure, stages=stages), cuts(), pressed(row(0.5)))
+    assert ("landmarks", CAUTION) in levels(found)
+
+
+def test_a_band_that_would_have_to_push_is_slack_everywhere(built: Built) -> None:
+    stages = built("person")
+    design = stages.design.with_line("mid-bust", 0.97).with_line("full-bust", 1.03)
+    solution = run(build(design, stages))
+    points = solution.control_points
+    assert line_tensions(solution.stages, points)["full-bust"].mean < -1.0, "the model pushes"
+    listed = {each.line: each for each in cut_list(solution.stages, points).rows}
+    presses = {each.line: each for each in press_list(solution.stages, points).rows}
+    assert listed["full-bust"].tension_n == presses["full-bust"].tension_n == 0.0
+    assert listed["full-bust"].slack
+    assert listed["full-bust"].push_n > 1.0
+    assert not listed["mid-bust"].slack
+    sheet = sheet_of(solution, solution.records, Heading("anna", "2026-01-31"))
+    assert all((each.tension_n or 0.0) >= 0.0 for each in sheet.cuts.rows)
+    assert not any("-" in note.partition("from ")[2][:3] for each in sheet.cuts.rows for note in each.notes)
+    slack = [each for each in sheet.assessment.findings if each.topic == "band"]
+    assert [each.lines for each in slack] == [("full-bust",)]
+    assert sheet.assessment == assessed(solution), "one verdict on the sheet and for every command"
+
+
+def test_an_elastic_beyond_its_table_is_in_it(built: Built) -> None:
+    stages = built("mannequin")
+    weak = Elastic("weak", 10.0, ((0.0, 0.0), (0.3, 2.0)))
+    design = replace(stages.design.with_line("mid-bust", 0.97), line_hold="held", volume="exact")
+    solution = run(build(design.with_elastic("mid-bust", weak), stages))
+    (listed,) = cut_list(solution.stages, solution.control_points).rows
+    assert "its table ends at 2 N" in listed.refused
+    band = [each for each in assessed(solution).findings if each.topic == "band"]
+    assert [(each.level, each.message) for each in band] == [(BAD, listed.refused)]
+
+
+def test_no_line_is_no_result_yet(sure: Solution) -> None:
+    bare = replace(sure, stages=replace(sure.stages, design=replace(sure.stages.design, lines=())))
+    found = assessment_of(bare, CutList((), 530.0, 1.0, ()), None)
+    assert (found.level, found.active) == (GOOD, False)
+    assert assessment_view(found, bare.stages.design).level == IDLE
+
+
+@pytest.mark.parametrize("code", ["en", "ja"])
+def test_it_is_worded_once_in_every_language(sure: Solution, code: str) -> None:
+    found = assessment_of(sure, cuts(slack=True, push_n=2.0), pressed(row(47.7), row(2.5, "full-bust")))
+    design: Design = sure.stages.design
+    with speaking(code):
+        view, lines = assessment_view(found, design), assessment_lines(found, design)
+    assert lines[0].endswith(view.headline)
+    assert len(lines) == 1 + len(view.reasons) == 4
+    for reason in view.reasons:
+        assert all(reason)
+        assert (code == "en") == all(letter < "\u3000" for text in reason for letter in text)
+    with speaking(code):
+        title = read_words("ja")["Mid-bust"] if code == "ja" else "Mid-bust"
+    assert view.reasons[0][0].startswith(title)
