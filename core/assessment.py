@@ -36,7 +36,8 @@ class Finding:
     """One reason for an assessment.
 
     ``topic`` is one of TOPICS, ``level`` CAUTION or BAD. ``message`` states in a sentence what is wrong,
-    ``action`` what to do, empty where the message includes it. ``lines`` are the lines concerned.
+    ``action`` what to do, empty where the message includes it. ``lines`` are the lines concerned,
+    ``value`` the pressure [kPa] of one on that.
     """
 
     topic: str
@@ -44,6 +45,7 @@ class Finding:
     message: str
     action: str = ""
     lines: tuple[str, ...] = ()
+    value: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -166,11 +168,11 @@ def _pressure(row: PressRow) -> Finding:
     message = f"{row.title} presses with {kpa:.1f} kPa ({mmhg:.0f} mmHg)."
     if row.light == AMBER:
         action = "Try it on: sit and breathe in with it."
-        return Finding("pressure", CAUTION, message, action, (row.line,))
+        return Finding("pressure", CAUTION, message, action, (row.line,), kpa)
     unwearable = kpa >= comfort().beyond[-1][0]
     action = "Set it longer, wider or softer."
     much = "It cannot be worn: set it much longer, wider or softer."
-    return Finding("pressure", BAD, message, much if unwearable else action, (row.line,))
+    return Finding("pressure", BAD, message, much if unwearable else action, (row.line,), kpa)
 
 
 def _foundations(stages: Stages) -> Iterator[Finding]:

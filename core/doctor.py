@@ -11,9 +11,11 @@ from itertools import chain
 
 from threadpoolctl import threadpool_limits
 
+from core.advice.cure import Cure, findings
+from core.advice.easing import cleaner, eased, ranked
 from core.advice.fight import Fight, fight_of
 from core.advice.outlook import Outlook, outlook
-from core.advice.remedy import Cure, Search
+from core.advice.remedy import Search
 from core.advice.standing import Standing, rank_of, standing
 from core.advice.ways import (
     Change,
@@ -26,6 +28,7 @@ from core.advice.ways import (
     together_ways,
     with_setting,
 )
+from core.assessment import Finding
 from core.lines import Line
 from core.pipeline import Stages
 from core.progress import Progress, quiet
@@ -34,6 +37,7 @@ from core.worn_lines import free_lines
 
 __all__ = ["Change", "Cure", "Diagnosis", "diagnose"]
 
+_OTHERS = 2  # changes of other lines that look good, and are run too
 _MOST_GAIN = 10.0
 _GAIN_PRECISION = 0.005
 
@@ -42,20 +46,21 @@ _GAIN_PRECISION = 0.005
 class Diagnosis:
     """What is wrong with a design, and what ends it.
 
+    ``findings`` are those of the overall verdict that a change can end.
+
     ``complaint`` is one of ``standing.COMPLAINTS``, empty if the design is well. ``fight`` tells what pulls
     against what. ``bears`` is the conventional gain at which the shape that the lines make begins to vibrate
     (probe units [1]), and ``onset`` the growth per turn with which a small swing begins, None where that is
-    not asked or not known. ``cure`` was run and ends it; ``others`` look as if they would too, and were not
-    run. If there is no cure, ``nearest`` is the mildest of what was run, and ``locked`` names worn lines that
-    may not be changed.
+    not asked or not known. ``fixes`` were run and end it, the best first. If there are none, ``nearest`` is
+    the mildest of what was run, and ``locked`` names worn lines that may not be changed.
     """
 
     standing: Standing
     fight: Fight
     bears: float | None = None
     onset: float | None = None
-    cure: Cure | None = None
-    others: tuple[Change, ...] = ()
+    fixes: tuple[Cure, ...] = ()
+    findings: tuple[Finding, ...] = ()
     nearest: Cure | None = None
     locked: tuple[str, ...] = ()
 
@@ -63,6 +68,11 @@ class Diagnosis:
     def stages(self) -> Stages:
         """What was looked at."""
         return self.standing.stages
+
+    @property
+    def cure(self) -> Cure | None:
+        """The best of the fixes, if there is any."""
+        return self.fixes[0] if self.fixes else None
 
     @property
     def complaint(self) -> str:
@@ -99,16 +109,20 @@ class Diagnosis:
 def diagnose(stages: Stages, progress: Progress = quiet) -> Diagnosis:
     """Return what is wrong with the design of ``stages``, and the smallest change that ends it.
 
-    First a single line or the gain; if none does, a choice of the model, then that and a line; then all lines
-    nearer to rest, alone or with such a choice; last a line taken off. ``progress`` hears each step; raises
-    Cancelled.
+    First the adaptive control where the conventional one vibrates, a single line, and the gain; if none does,
+    a choice of the model, then that and a line; then all lines nearer to rest, alone or with such a choice;
+    last a line taken off. Where all of these leave something to be checked, more is tried. A design whose run
+    is well may press too much, or have slack lines. ``progress`` hears each step; raises Cancelled.
     """
     # Two BLAS threads make these small products many times slower.
     with threadpool_limits(1):
         progress("diagnosing", 0.0)
         found = Diagnosis(standing(stages, progress), fight_of(stages, progress))
+        if found.complaint != "unreachable":
+            found = replace(found, findings=findings(found.standing))
         if not found.complaint:
-            return found
+            search = Search(found.standing, progress)
+            return replace(found, fixes=eased(search, found.findings)) if found.findings else found
         if found.complaint in ("vibrating", "diverging"):
             seen = outlook(stages)
             bears = borne_gain(stages, progress) if stages.design.volume == "conventional" else None
@@ -117,30 +131,45 @@ def diagnose(stages: Stages, progress: Progress = quiet) -> Diagnosis:
 
 
 def _treated(found: Diagnosis, search: Search) -> Diagnosis:
-    stages, swings = found.stages, found.complaint in ("vibrating", "diverging")
-    tame = swings and stages.design.volume == "conventional"
-    gains = list(lower_gains(stages, found.bears)) if tame else []
-    choices = list(settings(stages.design, found.complaint))
-    cure, others = search.smallest(single_ways(stages, found.complaint))
-    cure = cure or search.smallest(_chosen(stages, gains, line_ways))[0]
-    cure = cure or search.first_of(iter(choices))
-    cure = cure or search.smallest(_chosen(stages, choices, line_ways))[0]
-    cure = cure or search.smallest(together_ways(stages))[0]
-    cure = cure or search.smallest(_chosen(stages, gains, together_ways))[0]
-    cure = cure or search.smallest(_chosen(stages, choices, together_ways))[0]
-    cure = cure or search.first_of(off_changes(stages))
-    if cure is None and not search.tried:
-        for change in choices:
+    """Return the diagnosis with the changes that end its complaint, each run, the best first."""
+    fixes = _ending(found, search)
+    if fixes and all(fix.remains for fix in fixes):
+        fixes += cleaner(search, ranked(fixes)[0])
+    if fixes:
+        return replace(found, fixes=ranked(fixes))
+    stages = found.stages
+    if not search.tried:
+        for change in settings(stages.design, found.complaint):
             search.tried_out(change)  # to know the nearest
-    if cure is not None:
-        cure = search.plainer(cure)
-        return replace(found, cure=cure, others=tuple(others))
     worn = (line.name for line in stages.model.lines if line.constrains)
     free = set(chain.from_iterable(free_lines(stages)))
     locked = tuple(name for name in worn if name in stages.design.worn() and name not in free)
     milder = [each for each in search.tried if rank_of(each.left) < found.standing.rank]
     nearest = min(milder, key=lambda each: (rank_of(each.left), each.change.size), default=None)
     return replace(found, nearest=nearest, locked=locked)
+
+
+def _ending(found: Diagnosis, search: Search) -> list[Cure]:
+    """Return changes that end a complaint: another control if this one vibrates, and the smallest others."""
+    stages, swings = found.stages, found.complaint in ("vibrating", "diverging")
+    tame = swings and stages.design.volume == "conventional"
+    gains = list(lower_gains(stages, found.bears)) if tame else []
+    choices = list(settings(stages.design, found.complaint))
+    adaptive = [each for each in choices if tame and each.setting == ("volume", "adaptive")]
+    calmed = search.first_of(iter(adaptive))
+    cure, others = search.smallest(single_ways(stages, found.complaint))
+    fixes = [each for each in (calmed, cure) if each is not None]
+    fixes += [each for each in map(search.tried_out, others[:_OTHERS]) if each.ends]
+    if fixes:
+        return fixes
+    cure = search.smallest(_chosen(stages, gains, line_ways))[0]
+    cure = cure or search.first_of(iter(choices))
+    cure = cure or search.smallest(_chosen(stages, choices, line_ways))[0]
+    cure = cure or search.smallest(together_ways(stages))[0]
+    cure = cure or search.smallest(_chosen(stages, gains, together_ways))[0]
+    cure = cure or search.smallest(_chosen(stages, choices, together_ways))[0]
+    cure = cure or search.first_of(off_changes(stages))
+    return [] if cure is None else [search.plainer(cure)]
 
 
 def _chosen(stages: Stages, choices: list[Change], ways: Callable[[Stages], Iterator[Way]]) -> Iterator[Way]:

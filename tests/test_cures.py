@@ -108,7 +108,7 @@ def test_of_a_double_change_it_is_known_what_each_part_ends() -> None:
     assert found.stages.design.volume == found.cure.change.design.volume == "conventional"
     assert (found.cure.choice_ends, found.cure.lengths_end) == ("vibrating", "folded")
     assert "The gain ends the swing, the length the fold" in details(found)
-    alike = replace(found, cure=replace(found.cure, lengths_end="vibrating"))
+    alike = replace(found, fixes=(replace(found.cure, lengths_end="vibrating"),))
     assert "Neither is enough alone: it would still end as “Vibrating”" in details(alike)
 
 

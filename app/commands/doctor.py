@@ -9,10 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from app.commands.settings import dressed, made_of
+from app.presenting.assessment import assessment_lines, assessment_view
 from core import __version__
+from core.advice.cure import Cure
 from core.advice.fight import Clash, Fight, Pull
-from core.advice.remedy import Cure
 from core.advice.ways import Change
+from core.assessment import Assessment, assessed
 from core.backups import backed_up
 from core.design import Design
 from core.doctor import Diagnosis, diagnose
@@ -69,8 +71,13 @@ class Examined:
     out: str
 
     @property
+    def assessment(self) -> Assessment:
+        """The overall verdict on the design."""
+        return assessed(self.diagnosis.standing)
+
+    @property
     def helped(self) -> bool:
-        """Whether the design is well, or something was found that makes it so."""
+        """Whether its run is well, or something was found that makes it so."""
         return not self.diagnosis.complaint or self.diagnosis.cure is not None
 
 
@@ -101,9 +108,12 @@ def examined_text(examined: Examined, as_json: bool) -> str:
 
 def _plain(examined: Examined) -> Iterator[str]:
     found = examined.diagnosis
+    yield from assessment_lines(examined.assessment, found.stages.design)
     if not found.complaint:
-        yield f"Nothing is wrong: settled after {found.verdict.turns} turns."
+        yield f"The calculation converges: settled after {found.verdict.turns} turns."
         yield from _table(found)
+        if found.findings:
+            yield from _remedy(examined)
         return
     yield f"{found.complaint}: {MEANING[found.complaint]}"
     verdict = found.verdict
@@ -160,13 +170,12 @@ def _table(found: Diagnosis) -> Iterator[str]:
 
 def _remedy(examined: Examined) -> Iterator[str]:
     found = examined.diagnosis
-    if found.cure is not None:
-        yield f"To end it: {change_words(found, found.cure.change)}."
-        if found.cure.choice_ends:
-            yield _parts(found.cure)
-        yield f"Run with that, from rest and on from here: {found.cure.standing.verdict.told}."
-        for other in found.others:
-            yield f"By its outlook, not run, this would do too: {change_words(found, other)}."
+    if found.fixes:
+        yield "Changes that end it, each run from rest and on from here, the best first:"
+        for place, cure in enumerate(found.fixes, start=1):
+            yield f"  {place}. {change_words(found, cure.change)}: {_remains(found, cure)}"
+            if cure.choice_ends:
+                yield f"     {_parts(cure)}"
         if examined.out:
             yield f"written to {examined.out}"
         return
@@ -175,6 +184,13 @@ def _remedy(examined: Examined) -> Iterator[str]:
         yield f"The nearest: {change_words(found, found.nearest.change)}; it is then {found.nearest.left}."
     if found.locked:
         yield f"Locked, and so left as they are: {', '.join(found.locked)}."
+
+
+def _remains(found: Diagnosis, cure: Cure) -> str:
+    """Return what is left to be checked with a change."""
+    left = Assessment(cure.remains)
+    view = assessment_view(left, cure.change.design)
+    return " ".join((f"{view.headline}.", *(message for message, _ in view.reasons)))
 
 
 def _parts(cure: Cure) -> str:
@@ -203,6 +219,9 @@ def change_words(found: Diagnosis, change: Change) -> str:
         lengths = (f"{name} to {100.0 * change.design.ratio(name):.1f} %" for name in change.lines)
         nearer = f"bring all lines up to {found.moves_mm(change):.0f} mm nearer to rest"
         parts.append(f"{nearer}: {', '.join(lengths)}")
+    if change.kind == "width":
+        width = change.design.traits_of(change.lines[0]).width
+        parts.append(f"widen {' and '.join(change.lines)} to {width:g} mm")
     if change.kind == "off":
         parts.append(f"take {' and '.join(change.lines)} off")
     return ", and ".join(parts)
@@ -211,6 +230,7 @@ def change_words(found: Diagnosis, change: Change) -> str:
 def _figures(examined: Examined) -> dict[str, Any]:
     found, verdict = examined.diagnosis, examined.diagnosis.verdict
     return {
+        "assessment": examined.assessment.as_data(),
         "complaint": found.complaint or None,
         "state": verdict.told,
         "turns": verdict.turns,
@@ -258,10 +278,14 @@ def _treatment(found: Diagnosis) -> dict[str, Any]:
         "state_with_cure": None if cure is None else cure.standing.verdict.told,
         "ended_by_choice": (cure and cure.choice_ends) or None,
         "ended_by_lengths": (cure and cure.lengths_end) or None,
-        "others_not_run": [_change(found, other) for other in found.others],
+        "fixes": [{**_change(found, each.change), **_left(each)} for each in found.fixes],
         "nearest": None if nearest is None else _change(found, nearest.change),
         "state_with_nearest": None if nearest is None else nearest.left,
     }
+
+
+def _left(cure: Cure) -> dict[str, Any]:
+    return {"state": cure.standing.verdict.told, "remains": Assessment(cure.remains).as_data()}
 
 
 def _change(found: Diagnosis, change: Change) -> dict[str, Any]:

@@ -17,6 +17,7 @@ from app.presenting.lines import titled
 from app.presenting.verdict import plain_sentence, state_of, swing_mm
 from app.wording.words import joined, say, tr
 from core.answer import NoBalanceError
+from core.assessment import BAD
 from core.design import Design
 from core.doctor import Diagnosis, diagnose
 from core.errors import UserError
@@ -33,8 +34,11 @@ ABOUT = "doctor"
 PATIENCE = 1200
 """Milliseconds that a strained design rests before it is looked at: who is still at work hears nothing."""
 
+BUTTONS = 2
+"""Fixes that have a button; a narrow window has no room for more."""
+
 _BAD = ("vibrating", "diverging", "folded", "overstrained")
-_CURED = ("lines", "gain", "volume", "line_force", "line_hold")
+_CURED = ("lines", "traits", "gain", "volume", "line_force", "line_hold")
 
 
 @dataclass(frozen=True)
@@ -158,7 +162,7 @@ class DoctorDesk(QObject):
             return  # from rest it does come to rest: what was told at once still holds for what is seen
         found, swing = found.seen(frame.verdict), swing_mm(frame)[1]
         tone = "info" if found.complaint in ("strained", "settling") else "warn"
-        actions = self._cure(found)
+        actions = self._fixes(found)
         self._quiet.add(frame.stages.design)
         worst = found.fight.worst
         trouble = _Trouble(found.complaint, (worst.one.lines, worst.other.lines) if worst else ())
@@ -172,6 +176,15 @@ class DoctorDesk(QObject):
             self._found(frame, found, asked=True)
             return
         self._job = None
+        overall = self._window.verdict_desk.of(frame)
+        if overall.reasons:
+            tone = "warn" if overall.level == BAD else "info"
+            said = joined(message for message, _ in overall.reasons)
+            actions = self._fixes(found)
+            trouble = _Trouble("checked")
+            hint = words.hint(found) if found.findings else joined(overall.reasons[0][1:])
+            self._show(tone, said, hint, actions, words.details(found), trouble, asked=True)
+            return
         said = tr("Nothing is wrong: the calculation comes to rest, and the skin is calm.")
         self._show("ok", said, "", [], words.details(found), None)
 
@@ -188,7 +201,7 @@ class DoctorDesk(QObject):
             "bad",
             said,
             hint,
-            self._cure(found),
+            self._fixes(found),
             lasting=True,
             details=words.details(found),
             about=REFUSED,
@@ -224,11 +237,15 @@ class DoctorDesk(QObject):
         if self._said is not None and not self._window.notices.says(ABOUT):
             self._closed, self._said = self._said, None
 
-    def _cure(self, found: Diagnosis) -> list[Action]:
-        if found.cure is None:
-            return []
-        said, cured = words.change_words(found, found.cure.change), found.cure.change.design
-        return [(words.button_words(found, found.cure), partial(self._apply, said, cured))]
+    def _fixes(self, found: Diagnosis) -> list[Action]:
+        """Return a button for each of the best fixes; the others are in the details."""
+        return [
+            (
+                words.button_words(found, cure),
+                partial(self._apply, words.change_words(found, cure.change), cure.change.design),
+            )
+            for cure in found.fixes[:BUTTONS]
+        ]
 
     def _apply(self, said: str, cured: Design) -> None:
         """Make the change as one step, whatever was only called otherwise since."""

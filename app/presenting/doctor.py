@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from app.presenting.assessment import assessment_view
 from app.presenting.lines import line_title, row_title
 from app.showing.verdict_chip import state_title
 from app.wording.words import joined, listed, number, tr
+from core.advice.cure import Cure
 from core.advice.fight import Pull
-from core.advice.remedy import Cure
 from core.advice.ways import Change
+from core.assessment import BAD, Assessment, Finding
 from core.doctor import Diagnosis
 
 _SEEN = 0.05  # mm that a bust point swings by at least where its swing is worth a word
@@ -77,10 +79,20 @@ def hint(found: Diagnosis) -> str:
 
 
 def button_words(found: Diagnosis, cure: Cure) -> str:
-    """Return what a cure does, and that it leaves strain behind if it does."""
+    """Return what a fix does, and what it leaves to be checked, if it does."""
     said = change_words(found, cure.change)
-    strained = cure.standing.verdict.told == "strained"
-    return tr("{change}, then strained").format(change=said) if strained else said
+    left = listed(dict.fromkeys(_topic(each) for each in cure.remains))
+    return tr("{change}, leaves {what}").format(change=said, what=left) if left else said
+
+
+def _topic(finding: Finding) -> str:
+    """Return what a finding is about in a word or two."""
+    return {
+        "convergence": tr("no convergence"),
+        "shape": tr("strained skin"),
+        "band": tr("a slack or overstretched band"),
+        "pressure": tr("high pressure") if finding.level == BAD else tr("snug pressure"),
+    }[finding.topic]
 
 
 def change_words(found: Diagnosis, change: Change) -> str:
@@ -109,6 +121,10 @@ def change_words(found: Diagnosis, change: Change) -> str:
     elif change.kind == "together":
         what = tr("Bring all lines up to {mm} mm nearer to 100 %")
         what = what.format(mm=number(found.moves_mm(change), 0))
+    elif change.kind == "width":
+        what = tr("Widen {line} to {mm} mm")
+        width = change.design.traits_of(change.lines[0]).width
+        what = what.format(line=row_title(change.lines[0], design), mm=number(width or 0.0, 0))
     elif change.kind == "off":
         what = tr("Take {line} off").format(line=row_title(change.lines[0], design))
     return listed((choice, what[:1].lower() + what[1:])) if choice and what else choice or what
@@ -181,23 +197,24 @@ def _force(found: Diagnosis, pull: Pull) -> str:
 
 
 def _changes(found: Diagnosis) -> Iterator[str]:
-    if found.cure is not None:
-        words = tr("{change}: run from rest and on from here, it ends as “{state}”")
-        yield words.format(change=change_words(found, found.cure.change), state=_state(found.cure))
-        if found.cure.choice_ends:
-            yield "  " + _parts(found.cure)
-        if found.cure.change.kind == "together":
-            after = found.cure.change.design
-            yield from (
-                "  "
-                + tr("{line} {percent} %").format(
+    if found.fixes:
+        yield tr("Fixes, each tried from rest and on from here, the best first:")
+    for place, cure in enumerate(found.fixes, start=1):
+        view = assessment_view(Assessment(cure.remains), cure.change.design)
+        said = joined((tr("{headline}.").format(headline=view.headline), *(each for each, _ in view.reasons)))
+        change = change_words(found, cure.change)
+        yield "  " + tr("{place}. {change}: {what}").format(place=place, change=change, what=said)
+        if cure.choice_ends:
+            yield "     " + _parts(cure)
+        if cure.change.kind == "together":
+            after = cure.change.design
+            lengths = (
+                tr("{line} {percent} %").format(
                     line=line_title(name, after), percent=number(100.0 * after.ratio(name))
                 )
-                for name in found.cure.change.lines
+                for name in cure.change.lines
             )
-    for other in found.others:
-        words = tr("{change}: would do too by its outlook; not run")
-        yield words.format(change=change_words(found, other))
+            yield "     " + listed(lengths)
     if found.nearest is not None:
         words = tr("Nearest: {change}; it ends as “{state}”")
         said = change_words(found, found.nearest.change)
@@ -231,10 +248,6 @@ def _trouble(complaint: str) -> str:
         "unreachable": tr("the lack of a balance"),
     }
     return words.get(complaint, tr("the strain"))
-
-
-def _state(cure: Cure) -> str:
-    return state_title(cure.standing.verdict.told)
 
 
 def _name(found: Diagnosis, pull: Pull) -> str:

@@ -1,4 +1,4 @@
-"""What ends a fight: the smallest single change, looked for by outlooks and proved by runs (ours).
+"""What ends a complaint: the smallest single change, looked for by outlooks and proved by runs (ours).
 
 On each way - a line longer or shorter, the gain lower - the first step whose outlook is good is closed in on;
 then the smallest of all is made and run, and if that does not do, a somewhat larger one or the next. What a
@@ -13,9 +13,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from core.advice.cure import Cure, findings
 from core.advice.outlook import Outlook, apart, outlook, outlook_about
 from core.advice.standing import Ran, Standing, gone_on, rank_of, standing
 from core.advice.ways import Change, Way
+from core.assessment import GOOD, LEVELS
 from core.design import Design
 from core.errors import UserError
 from core.pipeline import Stages, build, targets_of
@@ -29,23 +31,8 @@ _TRIES = 8  # runs on one kind of way, and in all: what a search may take
 _MOST_TRIES = 20
 _CLOSER = 3  # runs between a change that did not do and one that did, at most
 _COARSER = 4  # times as many steps where the outlook was not good
+_DOUBLED = 7  # runs until a change is large enough, at most
 _FURTHER = 0.1  # of a step that a run did not bear out is added to it, and each time three times as much
-
-
-@dataclass(frozen=True, eq=False)
-class Cure:
-    """A change, and how the design stands with it: run from rest, and on from where it was.
-
-    ``left`` is the worse of what is wrong then, empty if nothing is. Of a change that is two,
-    ``choice_ends`` is what would be wrong without the other choice, ``lengths_end`` without the lengths.
-    """
-
-    change: Change
-    standing: Standing
-    ends: bool
-    left: str = ""
-    choice_ends: str = ""
-    lengths_end: str = ""
 
 
 @dataclass(frozen=True, order=True)
@@ -84,6 +71,11 @@ class Search:
         steady = design.volume in ("adaptive", "accumulating", "none") and design.line_hold == "spring"
         self._swings = not steady or design.line_force == "explicit" or sick.complaint == "vibrating"
         self._learn(sick.stages, sick.ran)
+
+    @property
+    def stages(self) -> Stages:
+        """The design that is looked at."""
+        return self._sick.stages
 
     def _learn(self, stages: Stages, ran: Ran) -> None:
         """Keep where a run came to: another place than the outlook's where there is more than one."""
@@ -154,7 +146,8 @@ class Search:
             warm = gone_on(self._sick, stages, self._progress)
             told = "" if warm is None or warm.verdict.told == "settled" else warm.verdict.told
             left, ran = max(left, told, key=rank_of), warm or ran
-        cure = Cure(change, after, self._well(left), left)
+        well = self._well(left)
+        cure = Cure(change, after, well, left, remains=findings(after) if well else ())
         self.tried.append(cure)
         if not cure.ends:
             self._learn(stages, ran)
@@ -236,6 +229,32 @@ class Search:
             alone = Change("gain", alone.design, 100.0 * (1.0 - gain / self._sick.stages.gain))
         choice = self._once(alone)
         return choice if choice.ends else replace(cure, choice_ends=lengths.left, lengths_end=choice.left)
+
+    def clean(self, way: Way, first: int, level: str = GOOD) -> Cure | None:
+        """Return about the fewest steps on a way that leave nothing worse than ``level``, None if none do.
+
+        Steps are doubled from the ``first`` on, then closed in on: a few runs.
+        """
+
+        def does(cure: Cure) -> bool:
+            return cure.ends and LEVELS.index(cure.level) <= LEVELS.index(level)
+
+        short, steps, found = 0, min(first, way.most), None
+        for _ in range(_DOUBLED):
+            tried = self._once(way.at(steps))
+            if does(tried):
+                found = tried
+                break
+            if steps == way.most:
+                return None
+            short, steps = steps, min(2 * steps, way.most)
+        for _ in range(_CLOSER if found else 0):
+            middle = (short + steps) // 2
+            if middle - short < _FURTHER * steps:
+                break
+            closer = self._once(way.at(middle))
+            short, steps, found = (short, middle, closer) if does(closer) else (middle, steps, found)
+        return found
 
     def _once(self, change: Change) -> Cure:
         """Run a change unless its design was run already."""

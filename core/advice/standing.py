@@ -53,6 +53,11 @@ class Standing:
         return self.ran.verdict
 
     @property
+    def control_points(self) -> Points:
+        """Where the run ended, shape (n, 3) [mm]."""
+        return self.stages.model.tensegric.expand(self.ran.state.moved)
+
+    @property
     def rank(self) -> int:
         """How bad it is: 0 if it is well."""
         return rank_of(self.complaint)

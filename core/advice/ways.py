@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from functools import partial, reduce
 from typing import Any
 
+from core.centre_line import USUAL_WIDTH
 from core.design import Design
 from core.lines import RATIO_LIMITS
 from core.pipeline import Stages
@@ -29,7 +30,8 @@ _MOST_TOGETHER = 95  # %: beyond that nothing is left of the garment
 class Change:
     """One change of a design.
 
-    ``kind`` is "length", "gain", "setting", "off" (lines taken off) or "together" (all lines nearer to rest).
+    ``kind`` is "length", "gain", "setting", "off" (lines taken off), "width" (a wider band) or "together"
+    (all lines nearer to rest).
     ``lines`` are those that it is about, ``setting`` the field and its new value, which may come with a
     length. ``size`` [%] is how far a length moves, of that at rest, or the gain, of what it was: one scale;
     of a setting it is 0.
@@ -134,6 +136,14 @@ def off_changes(stages: Stages) -> Iterator[Change]:
     for names in free_lines(stages):
         size = 100.0 * abs(stages.design.ratio(names[0]) - 1.0)
         yield Change("off", stages.design.with_linked(names[0], None), size, names)
+
+
+def wider(design: Design, names: Together, width: float) -> Change:
+    """Return the change to bands ``width`` [mm] wide: they press less, and the shape stays."""
+    widths = [design.traits_of(name).width or USUAL_WIDTH for name in names]
+    for name in names:
+        design = design.with_traits(replace(design.traits_of(name), width=width))
+    return Change("width", design, 100.0 * (width / min(widths) - 1.0), tuple(names))
 
 
 def together_ways(stages: Stages) -> Iterator[Way]:

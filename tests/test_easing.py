@@ -1,0 +1,74 @@
+"""Fixes that leave nothing to be checked: several, each tried, the best first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+
+from core.advice.easing import WIDEST
+from core.assessment import BAD, assessed
+from core.design import Design
+from core.doctor import Diagnosis, diagnose
+from core.pipeline import Stages, build
+from core.solution import run
+
+Built = Callable[[str], Stages]
+
+
+def ends(found: Diagnosis) -> list[tuple[str, str]]:
+    return [(cure.change.kind, cure.level) for cure in found.fixes]
+
+
+def level_of(design: Design, stages: Stages) -> str:
+    """The worst that a change can end, of a design that is solved anew."""
+    findings = assessed(run(build(design, stages))).findings
+    return next((each.level for each in findings if each.topic not in ("landmarks", "fit")), "good")
+
+
+def test_adaptive_comes_first_where_the_conventional_control_alone_vibrates(built: Built) -> None:
+    stages = built("mannequin")
+    design = replace(stages.design.with_line("mid-bust", 0.95), volume="conventional", gain=1.7)
+    found = diagnose(build(design, stages))
+    assert found.complaint == "vibrating"
+    assert found.fixes[0].change.setting == ("volume", "adaptive")
+    assert found.fixes[0].change.kind == "setting"
+    assert len(found.fixes) > 1
+
+
+@pytest.mark.parametrize(("sample", "ratio"), [("mannequin", 0.8), ("person", 0.88)])
+def test_a_fix_without_a_warning_stands_before_one_with_another(
+    built: Built, sample: str, ratio: float
+) -> None:
+    stages = built(sample)
+    found = diagnose(build(stages.design.with_line("mid-bust", ratio), stages))
+    assert found.complaint == "overstrained"
+    assert len(found.fixes) > 1, "several are offered"
+    assert [cure.rank for cure in found.fixes] == sorted(cure.rank for cure in found.fixes)
+    assert found.fixes[0].level == "good"
+    assert found.fixes[-1].level == BAD, "the smallest change alone leaves what nobody can wear"
+    for cure in found.fixes:
+        assert level_of(cure.change.design, stages) == cure.level, "it is told as it ends"
+
+
+def test_a_calm_design_that_presses_too_much_is_widened_or_lengthened(built: Built) -> None:
+    stages = built("mannequin")
+    found = diagnose(build(stages.design.with_line("mid-bust", 0.95), stages))
+    assert found.complaint == ""
+    assert [each.topic for each in found.findings] == ["pressure"]
+    assert ends(found) == [("length", "good"), ("width", "caution")], "wider, the shape stays"
+    assert all(level_of(cure.change.design, stages) == cure.level for cure in found.fixes)
+    wide = found.fixes[1].change.design
+    assert wide.ratio("mid-bust") == 0.95
+    assert 12.0 < (wide.traits_of("mid-bust").width or 0.0) <= WIDEST
+
+
+def test_a_slack_line_is_taken_off(built: Built) -> None:
+    stages = built("person")
+    design = stages.design.with_line("mid-bust", 0.995).with_line("full-bust", 1.03)
+    found = diagnose(build(design, stages))
+    assert "band" in {each.topic for each in found.findings}
+    (off,) = (cure for cure in found.fixes if cure.change.kind == "off")
+    assert off.change.lines == ("full-bust",)
+    assert "band" not in {each.topic for each in off.remains}
