@@ -104,18 +104,10 @@ def _run(shown: Shown, running: bool) -> Iterator[Finding]:
             "Set the lines longer or softer.",
         )
     elif verdict.motion == "vibrating":
-        action = "Use the adaptive volume control, or diagnose the design."
-        other = "Diagnose the design."
-        conventional = shown.stages.design.volume == "conventional"
-        yield Finding(
-            *("convergence", BAD, "The calculation does not converge: it oscillates."),
-            action if conventional else other,
-        )
+        message = "The calculation does not converge: it oscillates."
+        yield Finding("convergence", BAD, message, "Diagnose the design.")
     elif verdict.motion == "settling" and not running:
-        yield Finding(
-            *("convergence", BAD, "The calculation has not converged."),
-            "Diagnose the design.",
-        )
+        yield Finding("convergence", BAD, "The calculation has not converged.", "Diagnose the design.")
     if verdict.motion not in ("diverging", "vibrating"):
         yield from _shape(verdict)
 

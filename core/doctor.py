@@ -133,7 +133,7 @@ def diagnose(stages: Stages, progress: Progress = quiet) -> Diagnosis:
 def _treated(found: Diagnosis, search: Search) -> Diagnosis:
     """Return the diagnosis with the changes that end its complaint, each run, the best first."""
     fixes = _ending(found, search)
-    if fixes and all(fix.remains for fix in fixes):
+    if fixes and found.complaint != "unreachable" and all(fix.remains for fix in fixes):
         fixes += cleaner(search, ranked(fixes)[0])
     if fixes:
         return replace(found, fixes=ranked(fixes))

@@ -93,7 +93,7 @@ def test_nothing_is_shown_before_all_sources_are_in(monkeypatch: pytest.MonkeyPa
         go.set()
         yield lambda: whole(window)
         waist = next(view for view in window.result.measured if view.key == "waist_girth")
-        assert "narrowest" in waist.title
+        assert "narrowest" in waist.label
         assert "several centimetres" in waist.told()
 
     run_main([], script)
