@@ -130,6 +130,13 @@ def strewn(vertices: Points, faces: Faces, areas: Floats, count: int) -> tuple[P
     return np.asarray(a + u[:, None] * (b - a) + v[:, None] * (c - a)), face
 
 
+def rows_of(ends: Indices, start: int, stop: int) -> Indices:
+    """Return the row of each of the items ``start`` to ``stop``, where rows end before the items ``ends``."""
+    first, last = np.searchsorted(ends, [start, stop - 1], side="right")
+    rows = np.arange(first, last + 1)
+    return np.repeat(rows, np.diff(np.minimum(ends[rows], stop), prepend=start))
+
+
 def incidence(faces: Faces, vertex_count: int) -> sparse.csr_array:
     """Return the 0/1 matrix that sums face values at vertices, shape (vertex_count, m)."""
     columns = np.repeat(np.arange(len(faces)), 3)

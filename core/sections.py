@@ -90,7 +90,13 @@ def ordered(section: Section) -> list[Indices]:
         path = walk(start)
         if len(path) > 1:
             curves.append(first[path])
-    return sorted(curves, key=lambda rows: arc_length(section.points[rows])[-1], reverse=True)
+    if not curves:
+        return []
+    row = np.concatenate(curves)
+    begin = np.cumsum([0, *map(len, curves)])[:-1]
+    step = np.linalg.norm(np.diff(section.points[row], axis=0, append=0.0), axis=1)
+    step[np.append(begin[1:], len(row)) - 1] = 0.0  # from one curve to the next
+    return [curves[k] for k in np.argsort(-np.add.reduceat(step, begin), kind="stable").tolist()]
 
 
 def arc_length(curve: Points) -> Floats:

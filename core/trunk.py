@@ -13,7 +13,7 @@ from core.mesh import SIGNS, Flags, Floats, Indices, Mesh, Points
 from core.sections import hull_corners, hull_perimeter
 from core.slicing.arms import SLACK
 from core.slicing.gaps import bearing_bin, bridge, eroded, gaps
-from core.slicing.outline import BINS, Outlines, outlines, places, reach
+from core.slicing.outline import BINS, MOST_SEGMENTS, Outlines, outlines, places, reach, through_the_body
 from core.slicing.trunk_guide import STEP, Guide, cut_off, guide_of
 from core.slicing.trunk_pieces import beside, kept_pieces, main_pieces, split_pieces
 
@@ -214,7 +214,7 @@ class Survey:
 def survey(mesh: Mesh) -> Survey:
     """Measure the trunk of the whole ``mesh`` every 5 mm.
 
-    Raises LandmarkError if it has not the height of a body.
+    Raises LandmarkError if it has not the height of a body, or no skin.
     """
     low, high = mesh.vertices[:, 2].min(), mesh.vertices[:, 2].max()
     if not 100.0 < high - low < 2500.0:
@@ -233,6 +233,8 @@ def survey(mesh: Mesh) -> Survey:
     segments, row = segments[order], row[order]
     length = np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1)
     times = np.maximum(1, np.ceil(length / 4.0).astype(np.int64))
+    if times.sum() > MOST_SEGMENTS:
+        raise through_the_body()
     t = (np.arange(times.sum()) - np.repeat(np.cumsum(times) - times, times) + 0.5) / np.repeat(times, times)
     a, b = (np.repeat(segments[:, k], times, axis=0) for k in (0, 1))
     samples = a + (b - a) * t[:, None]

@@ -12,8 +12,8 @@ import pytest
 
 from core.body import body_of
 from core.errors import ScanError
+from core.mesh import rows_of
 from core.reading.ply_file import read_ply
-from core.reading.raw_scan import rows_of
 from core.reading.scan_file import read_raw
 
 FREE, TIMES, SIZE = 64 << 20, 20, 12_000_000

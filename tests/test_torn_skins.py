@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from core.body import body_of, read_scan
-from core.cleaning.holes import frame_of
+from core.cleaning.holes import MOST, find_holes, frame_of
 from core.errors import LandmarkError, ScanError
 from core.finding.breast_profile import LONGEST, profiles
 from core.finding.chest import ABOVE, find_anchor, find_poles
@@ -18,7 +18,7 @@ from core.mesh import Mesh
 from core.reading.contour import distinct
 from core.sections import hull_corners, hull_perimeter, hull_slopes
 from core.slicing.arms import necks
-from core.slicing.outline import Pieces, ring
+from core.slicing.outline import Pieces, reach, ring
 from core.slicing.trunk_pieces import GAP, _linked, limbs
 from core.trunk import Level, survey
 
@@ -150,3 +150,36 @@ def test_equal_points_are_one():
     found = distinct(points)
     assert len(found) == len(np.unique(points, axis=0)) == len(np.unique(found, axis=0))
     assert distinct(found) is found
+
+
+def test_loose_triangles_are_no_holes_and_the_longest_holes_are_told():
+    spots = 10.0 * np.arange(1200)[:, None, None] * np.array([1.0, 0.0, 0.0])
+    loose = Mesh(
+        (spots + np.array([[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.0, 0.0, 3.0]])).reshape(-1, 3),
+        np.arange(3600).reshape(-1, 3),
+    )
+    assert find_holes(loose) == ()
+    squares = spots + np.array([[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [3.0, 0.0, 3.0], [0.0, 0.0, 3.0]])
+    squares[7] *= 1.0 + np.array([0.0, 0.0, 1.0])
+    halves = (4 * np.arange(1200)[:, None, None] + np.array([[0, 1, 2], [0, 2, 3]])).reshape(-1, 3)
+    holes = find_holes(Mesh(squares.reshape(-1, 3), halves))
+    assert len(holes) == MOST
+    assert max(holes[0].length, holes[0].width) == pytest.approx(6.0)
+
+
+def test_triangles_right_through_the_body_are_refused():
+    count = 30_000
+    foot = np.random.default_rng(6).uniform(-150.0, 150.0, (count, 3)) * [1.0, 1.0, 0.0]
+    rise = np.array([[0.0, 0.0, 0.0], [0.3, 0.2, 0.0], [0.0, 0.0, 600.0]])
+    needles = Mesh((foot[:, None] + rise).reshape(-1, 3), np.arange(3 * count).reshape(-1, 3))
+    with pytest.raises(LandmarkError, match="run right through the body"):
+        survey(needles)
+
+
+def test_the_reach_of_many_segments_is_worked_out_in_parts(monkeypatch):
+    chance = np.random.default_rng(7)
+    segments = np.concatenate([chance.uniform(-200.0, 200.0, (500, 2, 2)), np.zeros((500, 2, 1))], axis=2)
+    level, centre = chance.integers(0, 3, 500), np.zeros((3, 2))
+    whole = reach(segments, level, centre)
+    monkeypatch.setattr("core.slicing.outline.BLOCK", 37)
+    assert np.array_equal(reach(segments, level, centre), whole, equal_nan=True)

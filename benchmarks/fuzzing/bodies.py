@@ -29,7 +29,7 @@ Chance = np.random.Generator
 
 
 @cache
-def _sample(name: str) -> Skin:
+def sample(name: str) -> Skin:
     scan = read_raw(name, (SAMPLES / name).read_bytes())
     upright = body_of(name, (SAMPLES / name).read_bytes())
     return scan.vertices @ upright.pose.file_to_mm[:3, :3].T, scan.faces
@@ -196,13 +196,13 @@ def make(chance: random.Random) -> Any:
 
 def run(recipe: Any) -> str:
     """Write the scan, read it, find the landmarks, lay the control mesh."""
-    skin = _sample(recipe["sample"])
+    skin = sample(recipe["sample"])
     with np.errstate(all="ignore"):
         skin = _thinned(skin, recipe["edge"]) if recipe["edge"] else skin
         for name, seed in recipe["changes"]:
             if len(skin[1]):
                 skin = CHANGES[name](skin, np.random.default_rng(seed))
-    body = body_of("body.ply", _file(skin), **recipe["told"])
+    body = body_of("body.ply", file_of(skin), **recipe["told"])
     placed = _placed(body.calm.vertices, recipe["placed"])
     landmarks = find_landmarks(body, placed)
     detection(body, landmarks)
@@ -228,7 +228,7 @@ def _placed(skin: Points, seed: int | None) -> dict[str, Points]:
     return places
 
 
-def _file(skin: Skin) -> bytes:
+def file_of(skin: Skin) -> bytes:
     head = f"ply\nformat binary_little_endian 1.0\nelement vertex {len(skin[0])}\n"
     head += "".join(f"property double {axis}\n" for axis in "xyz")
     head += f"element face {len(skin[1])}\nproperty list uchar int vertex_indices\nend_header\n"

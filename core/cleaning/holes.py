@@ -7,13 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.cleaning.skin import Skin
-from core.mesh import Floats, Indices, Mesh, Points, unit
+from core.mesh import Flags, Floats, Indices, Mesh, Points, unit
 
 TUBE = 0.5
 """The skin round a hole looks its way; at the end of a neck or an arm it looks across it by more [cosine]."""
 
 FILLED = 0.4
 """An opening fills this share of its two largest extents [1], an ellipse 0.8; a torn ring encloses little."""
+
+MOST = 1000
+"""So many holes are described, those of the longest borders; a torn skin has tens of thousands."""
 
 NAMED = 5
 """So many holes are named one by one."""
@@ -52,12 +55,27 @@ class Hole:
 def find_holes(mesh: Mesh) -> tuple[Hole, ...]:
     """Return all holes of a repaired skin [mm], longest first. Source: ours."""
     skin = Skin(mesh.vertices, mesh.faces)
-    start, end = skin.sides.ends(skin.sides.border)
+    border = skin.sides.border[~islands(skin, np.arange(len(mesh.vertices)))]
+    start, end = skin.sides.ends(border)
     loops = border_loops(start, end, np.arange(len(mesh.vertices)))
     face = np.full(len(mesh.vertices), -1)
-    face[start] = skin.sides.border % max(len(mesh.faces), 1)
+    face[start] = border % max(len(mesh.faces), 1)
+    side = np.zeros(len(mesh.vertices))
+    side[start] = np.linalg.norm(mesh.vertices[end] - mesh.vertices[start], axis=1)
+    loops = sorted(loops, key=lambda loop: -float(side[loop].sum()))[:MOST]
     found = [_hole(mesh, loop, face[loop]) for loop in loops]
     return tuple(sorted(found, key=lambda hole: -hole.length))
+
+
+def islands(skin: Skin, twin: Indices) -> Flags:
+    """Tell which sides of the border, shape (b,), are those of loose single triangles: round no hole.
+
+    ``twin`` (n,) tells which vertex each is sewn to, itself if none.
+    """
+    face = skin.sides.border % max(len(skin.faces), 1)
+    loose = np.bincount(face, minlength=len(skin.faces)) == 3
+    loose &= (twin[skin.faces] == skin.faces).all(axis=1)
+    return np.asarray(loose[face])
 
 
 def border_loops(start: Indices, end: Indices, twin: Indices) -> list[Indices]:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.spatial import cKDTree
 
-from core.cleaning.holes import border_loops, find_holes, frame_of, hole_sentences
+from core.cleaning.holes import border_loops, find_holes, frame_of, hole_sentences, islands
 from core.cleaning.polygon import triangulated
 from core.cleaning.repair import counted
 from core.cleaning.skin import Skin
@@ -16,6 +16,9 @@ from core.progress import Progress, quiet
 
 CLOSED = 30.0
 """Holes up to this length are closed [mm]."""
+
+MOST_CORNERS = 1000
+"""Holes of more corners stay open: so small a one has at most 300 on a fine scan [1]."""
 
 SEAM = 2.0
 """Borders of different parts nearer than this are sewn together [mm]."""
@@ -50,8 +53,13 @@ def mend(mesh: Mesh, progress: Progress = quiet) -> tuple[Mesh, int, int]:
     twin = _twins(mesh, start, end)
     home = np.minimum(twin, np.arange(len(twin)))
     vertices = 0.5 * (mesh.vertices + mesh.vertices[twin])
-    loops = [home[loop] for loop in border_loops(start, end, twin)]
-    small = [loop for loop in loops if _is_small(loop, vertices)]
+    round_hole = ~islands(skin, twin)
+    loops = [home[loop] for loop in border_loops(start[round_hole], end[round_hole], twin)]
+    small = []
+    for done, loop in enumerate(loops):
+        progress("closing holes", 0.5 * done / len(loops))
+        if _is_small(loop, vertices):
+            small.append(loop)
     sewn = int((home != np.arange(len(home))).sum())
     if not sewn and not small:
         return mesh, 0, 0
@@ -59,7 +67,7 @@ def mend(mesh: Mesh, progress: Progress = quiet) -> tuple[Mesh, int, int]:
     count, tree = len(vertices), cKDTree(vertices)
     edges = _edges_at(np.concatenate([*small, start[:0]]), faces[0])
     for done, loop in enumerate(small):
-        progress("closing holes", done / len(small))
+        progress("closing holes", 0.5 + 0.5 * done / len(small))
         patch, new = _filled(vertices[loop], tree, mesh.vertex_normals)
         corners = np.concatenate([loop, count + np.arange(len(new))])[patch]
         inner = set(_keys(corners).tolist()) - set(_keys(loop[None]).tolist())
@@ -74,7 +82,7 @@ def mend(mesh: Mesh, progress: Progress = quiet) -> tuple[Mesh, int, int]:
 
 
 def _is_small(loop: Indices, vertices: Points) -> bool:
-    if len(loop) < 3 or len(set(loop.tolist())) < len(loop):
+    if not 3 <= len(loop) <= MOST_CORNERS or len(set(loop.tolist())) < len(loop):
         return False
     small = float(np.linalg.norm(np.ptp(vertices[loop], axis=0))) <= CLOSED
     return small or bool(frame_of(vertices[loop])[1][:2].max() <= CLOSED)

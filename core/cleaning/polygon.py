@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import Delaunay, QhullError
+from scipy.spatial import Delaunay, QhullError, cKDTree
 
 from core.mesh import Faces, Flags, Floats, Indices
 
@@ -44,7 +44,7 @@ def _even(outline: Floats, rest: Indices) -> tuple[Faces | None, Floats]:
     grid[1::2, :, 0] += 0.5 * step
     places = grid.reshape(-1, 2)
     places = places[_inside(ring, places)]
-    away = np.linalg.norm(places[:, None] - _densely(ring)[None], axis=2).min(axis=1, initial=np.inf)
+    away = np.asarray(cKDTree(_densely(ring)).query(places)[0])
     places = places[away > 0.6 * step]
     try:
         faces = Delaunay(np.concatenate([ring, places])).simplices.astype(np.int64)

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from core.errors import ScanError
-from core.mesh import Faces, Floats, Indices
+from core.mesh import Faces, Floats, Indices, rows_of
 from core.progress import Progress
 from core.reading.ply_header import CORNERS, NEEDED, NORMALS, PLACES, Element, Kind, read_header
 from core.reading.raw_scan import (
@@ -20,7 +20,6 @@ from core.reading.raw_scan import (
     all_faces,
     check_size,
     fans,
-    rows_of,
     strips,
     too_much,
 )

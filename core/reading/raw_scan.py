@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from core.errors import ScanError
-from core.mesh import Faces, Indices, Points
+from core.mesh import Faces, Indices, Points, rows_of
 
 MOST_POINTS, MOST_TRIANGLES = 10_000_000, 5_000_000
 """What a scan may hold: with more of it the memory would not last."""
@@ -125,13 +125,6 @@ def _triangles(
         step = np.arange(start, stop) - (ends - pieces)[row]
         faces[start:stop] = np.stack([corners[at] for at in places(first[row], step)], axis=1)
     return faces
-
-
-def rows_of(ends: Indices, start: int, stop: int) -> Indices:
-    """Return the row of each of the items ``start`` to ``stop``, where rows end before the items ``ends``."""
-    first, last = np.searchsorted(ends, [start, stop - 1], side="right")
-    rows = np.arange(first, last + 1)
-    return np.repeat(rows, np.diff(np.minimum(ends[rows], stop), prepend=start))
 
 
 def _pieces(corners: Indices, counts: Indices) -> Indices:

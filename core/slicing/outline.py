@@ -10,7 +10,8 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from core.mesh import Flags, Floats, Indices, Mesh, Points
+from core.errors import LandmarkError
+from core.mesh import Flags, Floats, Indices, Mesh, Points, rows_of
 
 BINS = 120
 """Directions in which the reach of an outline is told, 3 degrees apart."""
@@ -18,6 +19,12 @@ BINS = 120
 BEARINGS = (np.arange(BINS) + 0.5) * (2.0 * np.pi / BINS) - np.pi
 """Bearing of each direction [rad]: 0 is the front (-y), positive towards the left (+x)."""
 
+
+MOST_SEGMENTS = 1_000_000
+"""Where levels a few mm apart cut a skin into more segments, most triangles run right through the body."""
+
+BLOCK = 1 << 18
+"""Segments are told apart by direction so many at a time, so that what is worked out for them stays small."""
 
 MOST_JOINED = 200
 """Open pieces of a level that are joined to one outline; scans with holes have at most 10."""
@@ -68,7 +75,10 @@ class Outlines:
 
 
 def outlines(mesh: Mesh, z: Floats) -> Outlines:
-    """Cut ``mesh`` at ascending heights, shape (k,) [mm]. Source: ours."""
+    """Cut ``mesh`` at ascending heights, shape (k,) [mm]. Raises LandmarkError if no skin is cut so.
+
+    Source: ours.
+    """
     segments, ids, level = _cut_levels(mesh, z)
     if len(segments) == 0:
         none = np.empty((0, 2))
@@ -84,6 +94,8 @@ def _cut_levels(mesh: Mesh, z: Floats) -> tuple[Points, Indices, Indices]:
     over = np.searchsorted(z, mesh.vertices[:, 2], side="right")[mesh.faces.T]
     first = over.min(axis=0)
     count = over.max(axis=0) - first
+    if count.sum() > MOST_SEGMENTS:
+        raise through_the_body()
     face = np.repeat(np.arange(len(mesh.faces)), count)
     level = np.arange(len(face)) - np.repeat(np.cumsum(count) - count - first, count)
     above = over[:, face] > level
@@ -99,6 +111,13 @@ def _cut_levels(mesh: Mesh, z: Floats) -> tuple[Points, Indices, Indices]:
         ends.append(a + (b - a) * ((z[level] - a[:, 2]) / (b[:, 2] - a[:, 2]))[:, None])
         ids.append((level * len(mesh.vertices) + low) * len(mesh.vertices) + high)
     return np.stack(ends, axis=1), np.stack(ids, axis=1), level
+
+
+def through_the_body() -> LandmarkError:
+    """Return the refusal of a skin most of which is none."""
+    return LandmarkError(
+        "The triangles of this scan run right through the body.", "Export the skin of the body alone."
+    )
 
 
 def _connected(ids: Indices) -> tuple[Indices, Flags]:
@@ -197,15 +216,17 @@ def reach(segments: Points, level: Indices, centre: Points, bins: int = BINS) ->
     width = 2.0 * np.pi / bins
     low = np.ceil((start + np.pi) / width - 0.5).astype(np.int64)
     count = np.maximum(np.floor((start + step + np.pi) / width - 0.5).astype(np.int64) - low + 1, 0)
-    row = np.repeat(np.arange(len(segments)), count)
-    bin_ = np.arange(len(row)) - np.repeat(np.cumsum(count) - count - low, count)
-    bearing = (bin_ + 0.5) * width - np.pi
-    out = np.stack([np.sin(bearing), -np.cos(bearing)], axis=1)
-    along = b[row] - a[row]
-    cross = out[:, 0] * along[:, 1] - out[:, 1] * along[:, 0]
-    distance = (a[row, 0] * along[:, 1] - a[row, 1] * along[:, 0]) / np.where(cross == 0.0, np.nan, cross)
-    good = np.isfinite(distance)
-    np.maximum.at(result, (level[row[good]], bin_[good] % bins), distance[good])
+    ends = np.cumsum(count)
+    for begin in range(0, int(count.sum()), BLOCK):
+        row = rows_of(ends, begin, min(begin + BLOCK, int(ends[-1])))
+        bin_ = np.arange(begin, begin + len(row)) - (ends - count - low)[row]
+        bearing = (bin_ + 0.5) * width - np.pi
+        out = np.stack([np.sin(bearing), -np.cos(bearing)], axis=1)
+        along = b[row] - a[row]
+        cross = out[:, 0] * along[:, 1] - out[:, 1] * along[:, 0]
+        distance = (a[row, 0] * along[:, 1] - a[row, 1] * along[:, 0]) / np.where(cross == 0.0, np.nan, cross)
+        good = np.isfinite(distance)
+        np.maximum.at(result, (level[row[good]], bin_[good] % bins), distance[good])
     return np.where(np.isfinite(result), result, np.nan)
 
 
