@@ -46,15 +46,12 @@ def check_counts(counted: Iterable[tuple[int, int, str]]) -> None:
 def check_size(name: str, data: Sized, most: int) -> None:
     """Raise ProjectError if a part of a project is larger than what is read of it [bytes]."""
     if len(data) > most:
-        raise too_large(name, most)
+        raise too_large(name, most, "Use fewer lines, shorter tables of elastics, or a thinner scan.")
 
 
-def too_large(name: str, most: int) -> ProjectError:
-    """Return what to say of a part of a project that is too large."""
-    return ProjectError(
-        f"{name} of this project is larger than {most / 1e6:.0f} MB.",
-        "Use fewer lines, shorter tables of elastics, or a thinner scan.",
-    )
+def too_large(name: str, most: int, hint: str) -> ProjectError:
+    """Return what to say of a part of a project that is too large, with a ``hint`` what to do."""
+    return ProjectError(f"{name} of this project is larger than {most / 1e6:.0f} MB.", hint)
 
 
 def check_values(text: str) -> None:

@@ -51,8 +51,9 @@ def repeated(names: Iterable[str]) -> str:
 def check_line_name(name: str) -> None:
     """Raise LineError if a line cannot have this name."""
     if not is_printable(name, LONGEST_NAME):
+        told = " ".join(shown(name[:LONGEST_NAME]).split())
         raise LineError(
-            f"The name of the line '{shown(name[:LONGEST_NAME])}' is too long or cannot be printed.",
+            f"The name of the line '{told}' is too long or cannot be printed.",
             f"Use up to {LONGEST_NAME} letters.",
         )
 

@@ -69,6 +69,6 @@ def member_bytes(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
     with archive.open(member) as stream:
         while piece := stream.read(_AT_ONCE):
             if out.tell() + len(piece) > within:
-                raise too_large(name, within)
+                raise too_large(name, within, _HINT)
             out.write(piece)
     return out.getvalue()
