@@ -15,6 +15,7 @@ from app.desks.doctor_desk import DoctorDesk
 from app.desks.export_desk import ExportDesk
 from app.desks.job_desk import JobDesk
 from app.desks.landmark_desk import LandmarkDesk
+from app.desks.opening_desk import OpeningDesk
 from app.desks.picture_desk import PictureDesk
 from app.desks.plot_desk import PlotDesk
 from app.desks.report_desk import ReportDesk
@@ -118,6 +119,7 @@ class MainWindow(QMainWindow):
         self.pressure_desk = PressureDesk(self, self.garment)
         self.map_desk, self.section_desk = MapDesk(self), SectionDesk(self)
         self.start_desk, self.plot_desk = StartDesk(self), PlotDesk(self)
+        self.opening_desk = OpeningDesk(self)
         self.picture_desk, self.export_desk = PictureDesk(self), ExportDesk(self)
         self.report_desk = ReportDesk(self)
         self.lines_desk, self.line_maker = LinesDesk(self), LineMaker(self)

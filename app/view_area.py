@@ -6,12 +6,13 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from PySide6.QtCore import Signal
-from PySide6.QtGui import QAction, QImage, QPainter, QRegion
+from PySide6.QtGui import QAction, QImage, QPainter, QRegion, QResizeEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.asking.jobs import Job, Jobs
 from app.dress.parts import ToolButton
 from app.panels.busy import BusyCard
+from app.panels.opening_cover import OpeningCover
 from app.panels.question import QuestionCard
 from app.panels.view_tools import CompareTools, ViewTools
 from app.seeing.occlusion import bake_occlusion
@@ -54,6 +55,7 @@ class ViewArea(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.panes)
+        self.cover = OpeningCover(self)
         self.floating = Floating(self)
         self._explaining: list[QWidget] = []
         for panel, corner in (
@@ -88,6 +90,11 @@ class ViewArea(QWidget):
 
         words = tr("Getting the 3D view ready")
         self._jobs.run(words, lambda _: load_libraries(), make, failed)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Keep the view covered while something is being opened."""
+        super().resizeEvent(event)
+        self.cover.resize(self.size())
 
     # -- what is shown
 

@@ -141,6 +141,8 @@ def _connect_panels(window: MainWindow) -> None:
 def _connect_start(window: MainWindow) -> None:
     session, desk, start = window.session, window.desk, window.start_desk
     session.opened.connect(start.show_opened)
+    for changed in (session.working, session.frame_ready, session.failed, session.asked):
+        changed.connect(lambda *_: window.opening_desk.follow())
     session.working.connect(start.show_work)
     session.failed.connect(start.show_failure)
     session.asked.connect(start.leave_page)

@@ -73,6 +73,12 @@ class Session(Editing):
             return self.path.stem
         return Path(self.design.scan.name).stem if self.design else ""
 
+    @property
+    def opening(self) -> str:
+        """The file of the document that is on its way in, or an empty text."""
+        opening = self._opening
+        return "" if opening is None else str(opening.path or opening.document.design.scan.path)
+
     def open(self, path: str) -> None:
         """Open a project or a scan; the present design stays until the new one has a first frame."""
         try:

@@ -61,7 +61,8 @@ class JobDesk(QObject):
             words, shown = job.words, job.share
         window.notices.set_aside(carried)
         window.status.set_job(words, shown)
-        window.view.busy.show_work(words if waited else "", shown, steps)
+        at_once = bool(steps and self._session.opening)
+        window.view.busy.show_work(words if waited else "", shown, steps, at_once)
         window.actions_.cancel.setEnabled(waited or carried)
 
     def cancel(self) -> None:

@@ -281,10 +281,16 @@ class EmptyState(QFrame):
         column.setSpacing(6)
         column.addWidget(IconLabel(drawing, "text_quiet", 26))
         column.addSpacing(4)
-        column.addWidget(sentence(missing, "name"))
-        column.addWidget(sentence(hint))
+        self._missing, self._hint = sentence(missing, "name"), sentence(hint)
+        column.addWidget(self._missing)
+        column.addWidget(self._hint)
         if ask:
             press = button(ask)
             press.clicked.connect(self.asked)
             column.addSpacing(6)
             column.addWidget(press, alignment=Qt.AlignmentFlag.AlignLeft)
+
+    def show_words(self, missing: str, hint: str) -> None:
+        """Say something else is missing."""
+        self._missing.setText(missing)
+        self._hint.setText(hint)

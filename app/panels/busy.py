@@ -55,10 +55,13 @@ class BusyCard(FloatingPanel):
         self._wait.timeout.connect(self.show)
         self.hide()
 
-    def show_work(self, text: str, share: float | None, steps: Sequence[str] = ()) -> None:
+    def show_work(
+        self, text: str, share: float | None, steps: Sequence[str] = (), at_once: bool = False
+    ) -> None:
         """Name the work and the share of it that is done [0..1], if that is known; no text ends it.
 
         ``steps`` are all that it goes through in order, if it has some: ``text`` is the one in hand.
+        It shows after ``PATIENCE``, or ``at_once`` where nothing else is to be seen.
         """
         if not text:
             self._wait.stop()
@@ -68,7 +71,9 @@ class BusyCard(FloatingPanel):
         self._bar.set_fraction(share)
         self._steps.show_steps(steps, text)
         self._share.setText("" if share is None else f"{100.0 * share:.0f} %")
-        if self.isHidden() and not self._wait.isActive():
+        if at_once:
+            self.show()
+        elif self.isHidden() and not self._wait.isActive():
             self._wait.start()
 
 

@@ -28,6 +28,10 @@ def keys_in_words() -> list[tuple[str, str]]:
     ]
 
 
+def _no_lines() -> tuple[str, str]:
+    return tr("No lines yet"), tr("They appear once the control mesh lies on the body.")
+
+
 class _Area(QScrollArea):
     """An area that leaves the keys to the list: arrows go from line to line."""
 
@@ -73,9 +77,7 @@ class LinesPanel(QWidget):
         self.head.add_asked.connect(self.add_asked)
         self.head.presets_asked.connect(self.presets_asked)
         column.addWidget(self.head)
-        self._empty = EmptyState(
-            "lines", tr("No lines yet"), tr("They appear once the control mesh lies on the body.")
-        )
+        self._empty = EmptyState("lines", *_no_lines())
         frame = QVBoxLayout()
         frame.setContentsMargins(14, 4, 14, 0)
         frame.addWidget(self._empty)
@@ -102,6 +104,14 @@ class LinesPanel(QWidget):
         self._reach.setVisible(bool(lines))
         self._scroll.setVisible(bool(lines))
         self.head.reset.setEnabled(any(view.settable and view.ratio != 1.0 for view in lines))
+
+    def show_opening(self, name: str) -> None:
+        """Say in the place of lines that a document is being opened; an empty name: that there are none."""
+        if name:
+            hint = tr("The lines appear once the control mesh has been fitted.")
+            self._empty.show_words(tr("Opening {name}…").format(name=name), hint)
+        else:
+            self._empty.show_words(*_no_lines())
 
     def select(self, name: str | None) -> None:
         """Open the row of a line and close the others; nothing is emitted."""
