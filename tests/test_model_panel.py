@@ -60,7 +60,7 @@ def test_a_sliding_line_lifts_the_bust_points_and_undo_brings_the_old_result_bac
         assert bust_points(window) > glued + 1.0
         assert frame_of(window).verdict.state == "settled"
         assert window.session.undo_stack.undoText() == "Skin contact: Slides over it"
-        assert window.session.undo_stack.count() == 2
+        assert window.session.undo_stack.index() == 2
         window.actions_.undo.trigger()
         yield settled(window)
         assert np.abs(points(window) - at_start).max() < 1e-6
@@ -101,7 +101,7 @@ def test_what_cannot_be_held_is_said_and_the_last_good_state_stays() -> None:
         assert "mid-bust cannot be held at 7" in notice.sentence.lower()
         assert not window.notices._waiting
         assert np.abs(points(window) - at_start).max() < 0.2
-        assert window.session.undo_stack.count() == 2
+        assert window.session.undo_stack.index() == 2
         assert window.lines.rows["mid-bust"].slider.ratio() == pytest.approx(0.95)
         window.lines.length_committed.emit("mid-bust", 0.92)
         yield settled(window)

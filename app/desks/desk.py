@@ -93,7 +93,8 @@ class Desk(QObject):
     def note_step(self, index: int) -> None:
         """Withdraw failures of what is undone; those of another edit go with its first frame."""
         former, self._index = self._index, index
-        if index < former:
+        # What was refused is taken back to the design that was there when this was reported: that stays.
+        if index < former and self._session.design is not self._fell_back_to:
             self.forget_failures()
 
     def forget_failures(self) -> None:
