@@ -42,6 +42,7 @@ class Layout(QObject):
         self._keeps = QTimer(window, interval=KEPT_AFTER, singleShot=True)
         self._keeps.timeout.connect(self.keep)
         self._restored = False
+        self._folded_as_low = False
         self.pages = QStackedWidget()
         self._across = Divider(Qt.Orientation.Horizontal, tr("Width of the inspector"))
         self._down = Divider(Qt.Orientation.Vertical, tr("Height of the live plot"))
@@ -222,6 +223,7 @@ class Layout(QObject):
         self._fit_strip(window.strip.is_folded())
 
     def _fit_strip(self, folded: bool) -> None:
+        self._folded_as_low = self._folded_as_low and folded
         unfolded = self._height or (HIGH if self._window.height() >= 850 else LOW)
         height = self._window.strip.maximumHeight() if folded else unfolded
         self._down.setSizes([max(sum(self._down.sizes()) - height, 1), height])
@@ -243,6 +245,7 @@ class Layout(QObject):
         elif watched is self._window and event.type() == QEvent.Type.Show and not event.spontaneous():
             if self._window.height() < 740 and self._height is None:
                 self._window.strip.set_folded(True)
+                self._folded_as_low = True
             self.fit()
         return False
 
@@ -265,7 +268,8 @@ class Layout(QObject):
             return
         settings, do = QSettings(), self._window.actions_
         settings.setValue("window/geometry", self._window.saveGeometry())
-        settings.setValue("window/folded", str(self._window.strip.is_folded()).lower())
+        folded = self._window.strip.is_folded() and not self._folded_as_low  # in a higher window it is not
+        settings.setValue("window/folded", str(folded).lower())
         settings.setValue("window/inspector_shown", str(do.inspector.isChecked()).lower())
         for name, size in (("inspector", self._width), ("strip", self._height)):
             if size is None:

@@ -49,7 +49,7 @@ GOALS = (Goal("lift", 5.0),)
             "Not reachable: nearest is Bust point up +2.0 mm, because Mid-bust may not be shorter, and "
             "Full bust may not be longer: a longer line would have to push.",
             "到達できません。最も近いのは BPの上昇 +2.0 mm。理由：バスト下部はこれ以上短くできません、"
-            "バスト上部はこれ以上長くできません（長いラインは押すことになります）。",
+            "トップバストはこれ以上長くできません（長いラインは押すことになります）。",
         ),
         (
             {"pressing": ("mid-bust",), "strained": True},

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from PySide6.QtCore import QUrl
+from PySide6.QtCore import QProcess, QUrl
 from PySide6.QtGui import QDesktopServices
 
 
@@ -45,3 +45,10 @@ def environment_of_others() -> Iterator[None]:
         yield
     finally:
         os.environ.update(ours)
+
+
+def start_again(file: str = "") -> bool:
+    """Start another Busk, on a file if there is one; tells whether it began."""
+    program = [sys.executable] if getattr(sys, "frozen", False) else [sys.executable, "-m", "app"]
+    words = [*program[1:], *([file] if file else [])]
+    return bool(QProcess.startDetached(program[0], words, os.getcwd())[0])

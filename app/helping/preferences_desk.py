@@ -12,6 +12,7 @@ from app.application import chosen_dark, log_folder
 from app.dress.theme import apply_theme
 from app.dress.wishes import UNTIL_THEN, wants_motion, wish, wish_for
 from app.helping.folders import show_folder
+from app.helping.outside import start_again
 from app.panels.preferences import PreferencesSheet
 from app.showing.viewport import Viewport
 from app.wording.words import tr
@@ -52,12 +53,23 @@ class PreferencesDesk(QObject):
             apply_theme(app, chosen_dark(value))
         elif key == "language":
             said = tr("The language changes when Busk is started again.")
-            self._window.notices.show_notice("info", said)
+            self._window.notices.show_notice("info", said, "", [(tr("Restart now"), self.restart)])
         elif key == "motion":
             self.set_motion()
         elif key == "material":
             self._window.view_desk.choose_material(value)
         self._show_choices()
+
+    def restart(self) -> None:
+        """Start the program again on the same document, after a question about unsaved changes."""
+        window = self._window
+        if not window.desk.may_leave():
+            return
+        document, design = window.session.path, window.session.design
+        scan = "" if design is None or design.scan.member else design.scan.path
+        window.session.undo_stack.setClean()  # what is unsaved was given up a moment ago
+        if window.close():
+            start_again(str(document or scan))
 
     def set_motion(self) -> None:
         """Let the views glide, or jump."""

@@ -125,7 +125,8 @@ class Ring(QWidget):
 def _beside(target: QRect, card: QRect, room: QRect) -> QPoint:
     """Return where a card has room beside ``target``, or the most: below, right, left or above it.
 
-    Below comes first: what stands at an edge has room there, and the body in the middle is seen.
+    Below comes first: what stands at an edge has room there, and the body in the middle is seen. Beside a
+    column, such as the rail of steps, right comes first: below, it would cover the other buttons.
     """
     across, down = target.center().x() - card.width() // 2, target.center().y() - card.height() // 2
     places = (
@@ -134,6 +135,8 @@ def _beside(target: QRect, card: QRect, room: QRect) -> QPoint:
         (target.left() - room.left() - card.width(), QPoint(target.left() - card.width() - _AWAY, down)),
         (target.top() - room.top() - card.height(), QPoint(across, target.top() - card.height() - _AWAY)),
     )
+    if target.height() > target.width():
+        places = (*places[1:3], places[0], places[3])
     _, place = max(places, key=lambda each: min(each[0], _AWAY + 1))
     return QPoint(
         max(room.left(), min(place.x(), room.right() + 1 - card.width())),

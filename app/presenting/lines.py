@@ -52,9 +52,15 @@ def line_title(name: str, design: Design | None = None) -> str:
         "ring right": tr("Ring right"),
     }
     kind, side = kind_of(name), _side(name)
-    kind = titles.get(kind, kind)
-    usual = listed((kind, side)) if side else name
+    kind = titles.get(kind) or _generated(kind)
+    usual = listed((kind, side)) if side else kind
     return titles.get(name, usual[:1].upper() + usual[1:])
+
+
+def _generated(name: str) -> str:
+    """Return a name as the program gives it to a drawn line, such as "line 1", in the window's language."""
+    word, _, number = name.partition(" ")
+    return tr("line {number}").format(number=number) if word == "line" and number.isdecimal() else name
 
 
 def pair_title(name: str, design: Design) -> str:
