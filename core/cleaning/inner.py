@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 from scipy.spatial import cKDTree
 
@@ -45,19 +47,22 @@ def drop_inner(skin: Skin) -> tuple[Skin, int]:
     if len(large) < 2:
         return skin, 0
     size, inner = size_of(skin), np.zeros(len(areas), dtype=bool)
-    faces = {number: np.flatnonzero(skin.piece == number) for number in large}
-    for rank, number in enumerate(large):
+    faces = {int(number): np.flatnonzero(skin.piece == number) for number in large}
+    tree_of = cache(lambda number: cKDTree(skin.centres[faces[number]]))
+    cells_of = cache(lambda number: _gathered(skin, faces[number], CELL * size)[:2])
+    for rank, number in enumerate(faces):
         places = strewn_on(skin, faces[number], 100)
-        for other_rank, other in enumerate(large):
+        for other_rank, other in enumerate(faces):
             # a lining may be a little larger than what it lines, a layer is the smaller one
             if other == number or inner[other] or areas[other] < 0.5 * areas[number]:
                 continue
             low, high = (end(skin.centres[faces[other]], axis=0) for end in (np.min, np.max))
             if ((places > low - LAYER * size) & (places < high + LAYER * size)).all(axis=1).mean() <= COVERED:
                 continue
-            inner[number] |= other_rank < rank and _covered(skin, faces[other], places, LAYER * size)
-            middle, dipole, _ = _gathered(skin, faces[other], CELL * size)
-            inner[number] |= bool(np.mean(_winding(middle, dipole, places, CELL * size) > 0.5) > COVERED)
+            inner[number] |= other_rank < rank and _covered(
+                skin, faces[other], tree_of(other), places, LAYER * size
+            )
+            inner[number] |= bool(np.mean(_winding(*cells_of(other), places, CELL * size) > 0.5) > COVERED)
     return skin.without_pieces(inner), int(inner.sum())
 
 
@@ -114,12 +119,11 @@ def _hidden(skin: Skin, own: Indices, others: Indices, size: float) -> Flags:
     return np.asarray(deep | (reached[skin.piece] & ~seen[part]))
 
 
-def _covered(skin: Skin, faces: Indices, places: Points, near: float) -> bool:
-    """Tell whether nearly all ``places`` lie nearer to the skin of ``faces`` than ``near``."""
-    centres, normals = skin.centres[faces], unit(skin.area_vectors[faces])
-    distance, at = cKDTree(centres).query(places)
-    away = places - centres[at]
-    height = np.abs(np.einsum("ij,ij->i", away, normals[at]))
+def _covered(skin: Skin, faces: Indices, tree: cKDTree, places: Points, near: float) -> bool:
+    """Tell whether nearly all ``places`` lie nearer than ``near`` to ``faces``, in a ``tree`` of centres."""
+    distance, at = tree.query(places)
+    away = places - skin.centres[faces[at]]
+    height = np.abs(np.einsum("ij,ij->i", away, unit(skin.area_vectors[faces[at]])))
     beside = np.sqrt(np.maximum(distance**2 - height**2, 0.0))
     reach = near + 2.0 * np.sqrt(skin.areas[faces[at]])
     return bool(((height < near) & (beside < reach)).mean() > COVERED)
