@@ -183,7 +183,7 @@ def make(chance: random.Random) -> Any:
     changes = [[chance.choice(names), chance.randrange(10**6)] for _ in range(chance.randrange(1, 4))]
     told = TOLD if chance.random() < 0.5 else {}
     placed = chance.randrange(10**6) if chance.random() < 0.3 else None
-    edge = chance.choice((0, 0, 8, 12, 20, 40))
+    edge = chance.choice((0, 8, 12, 12, 20, 30))
     return {
         "sample": chance.choice(NAMES),
         "edge": edge,

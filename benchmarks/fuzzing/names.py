@@ -16,6 +16,7 @@ from typing import Any
 import ezdxf
 
 from app.commands.cut import Cut, cut_text
+from app.commands.worn import Worn, run_to_body
 from app.exporting.outcome import Manner, Outcome
 from app.exporting.ready import make_ready
 from core.cutting import cut_list
@@ -97,14 +98,15 @@ def run(recipe: Any) -> str:
         assert opened.own_lines == design.own_lines
         assert opened.elastics == design.elastics
         stages = build(design, _stages())
-        points = stages.control.mesh.vertices
+        solution = run_to_body(stages)
+        points = solution.control_points
         outcome = Outcome(stages, points, (), named=("names", design.customer))
         for name in FILES:
             ready = make_ready(name.partition(".")[0], str(Path(folder) / name), outcome, Manner())
             drawn = in_one_go(ready.draw()) if ready.draw else None
             ready.write(Path(folder) / name, drawn, quiet)
             _check(Path(folder) / name)
-        cut = Cut(cut_list(stages, points), True, [])
+        cut = Cut(cut_list(stages, points), Worn(solution, True, []))
         for form in ("", "csv", "json"):
             _check_text(cut_text(cut, form, None), form)
     return "written"

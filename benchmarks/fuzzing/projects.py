@@ -118,11 +118,14 @@ def _change(holder: Any, key: Any, how: str, value: int) -> None:
 
 
 def _spots(tree: Any) -> Iterator[tuple[Any, Any]]:
-    """Give each place of a value in a tree of JSON: what holds it, and under which key."""
-    for key, value in list(tree.items() if isinstance(tree, dict) else enumerate(tree)):
-        yield tree, key
-        if isinstance(value, dict | list):
-            yield from _spots(value)
+    """Give each place of a value in a tree of JSON, however deep: what holds it, and under which key."""
+    waiting = [tree]
+    while waiting:
+        holder = waiting.pop()
+        for key, value in list(holder.items() if isinstance(holder, dict) else enumerate(holder)):
+            yield holder, key
+            if isinstance(value, dict | list):
+                waiting.append(value)
 
 
 def _text(tree: Any) -> str:
