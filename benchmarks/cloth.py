@@ -191,8 +191,7 @@ def in_shirt(figure: Figure, rng: Rng) -> Figure:
     free = np.broadcast_to(1.0 - smooth_step(z, shoulder - 60.0, shoulder), field.radius.shape)
     body = field.radius
     cloth = membrane(body, free, 0.9, 0.0)
-    ease = rng.uniform(4.0, 14.0)
-    slope = rng.uniform(0.0, 0.15)
+    ease, slope = rng.uniform(2.0, 14.0), rng.uniform(0.0, 0.7)
     for row in range(field.rows - 2, -1, -1):  # what hangs from the bust keeps its distance downward
         hung = np.maximum(cloth[row], cloth[row + 1] - slope * STEP)
         cloth[row] += free[row] * (hung - cloth[row])
