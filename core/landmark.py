@@ -47,17 +47,30 @@ class Landmark:
         object.__setattr__(self, "confidence", float(np.clip(self.confidence, 0.0, 1.0)))
 
 
+@dataclass(frozen=True)
+class Hint:
+    """What a body seems to be that no customer's should be: its ``kind``, and a sentence for the user.
+
+    Kinds are "size", "clothes", "flat" and "lean".
+    """
+
+    kind: str
+    sentence: str
+
+
 @dataclass(frozen=True, eq=False)
 class Landmarks:
     """The landmarks by name, and the heights of the bust and of the under-bust level [mm].
 
-    ``points`` have names of ``NAMES``; _left is +x. ``warnings`` hold one sentence each.
+    ``points`` have names of ``NAMES``; _left is +x. ``warnings`` hold one sentence each, those of the
+    ``hints`` among them.
     """
 
     points: Mapping[str, Landmark]
     bust_level: float
     underbust_level: float
     warnings: tuple[str, ...] = ()
+    hints: tuple[Hint, ...] = ()
 
     def position(self, name: str) -> Points:
         """Return where landmark ``name`` is, shape (3,) [mm]."""

@@ -11,6 +11,7 @@ from core.cleaning.inner import BURIED
 from core.finding.bust_check import check, check_anchor, check_placed, placed_warnings
 from core.finding.bust_point import bust_points, missing_sides
 from core.finding.chest import find_anchor, find_poles
+from core.finding.likeness import build_of, doubted, hints, refuse_angular
 from core.finding.roots import root_marks
 from core.finding.sampling import coarse_warning, spacing, trust
 from core.finding.trunk_marks import trunk_marks
@@ -35,7 +36,8 @@ def find_landmarks(body: Body, placed: Mapping[str, Points] = NOTHING) -> Landma
     calm = body.calm
     by_hand = laid_on(calm, placed)
     warnings: tuple[str, ...] = ()
-    if all(f"{name}_{side}" in by_hand for name in ("bust_point", "fold") for side in SIDES):
+    around = all(f"{name}_{side}" in by_hand for name in ("bust_point", "fold") for side in SIDES)
+    if around:
         found = _around(calm, by_hand)
     else:
         trunk = survey(calm)
@@ -54,10 +56,17 @@ def find_landmarks(body: Body, placed: Mapping[str, Points] = NOTHING) -> Landma
         for mark in (*trunk_marks(calm, found), *root_marks(calm, found))
     }
     further = {name: held_against(by_hand.get(name), mark) for name, mark in further.items()}
-    points = MappingProxyType({**by_hand, **further, **found.points})
-    warnings = (*[BURIED] * (BURIED in body.repairs), *warnings)
+    told = replace(found, points=MappingProxyType({**by_hand, **further, **found.points}))
+    build = build_of(calm, told)
+    if not around:
+        refuse_angular(build, found)
+    strange = hints(build, body.pose, told)
+    most = doubted(found.points, strange)
+    bust = {name: _at_most(mark, most) for name, mark in found.points.items()}
+    points = MappingProxyType({**told.points, **bust})
+    warnings = (*[BURIED] * (BURIED in body.repairs), *(hint.sentence for hint in strange), *warnings)
     warnings = (*warnings, *placed_warnings(found), *coarse_warning(_spacing(calm, found.points)))
-    return Landmarks(points, found.bust_level, found.underbust_level, warnings)
+    return Landmarks(points, found.bust_level, found.underbust_level, warnings, strange)
 
 
 def _around(mesh: Mesh, by_hand: Mapping[str, Landmark]) -> Landmarks:
@@ -88,6 +97,10 @@ def _levels(
 
 def _less(mark: Landmark, share: float) -> Landmark:
     return mark if mark.by_hand else replace(mark, confidence=share * mark.confidence)
+
+
+def _at_most(mark: Landmark, most: float) -> Landmark:
+    return mark if mark.by_hand else replace(mark, confidence=min(most, mark.confidence))
 
 
 def _spacing(mesh: Mesh, marks: Mapping[str, Landmark]) -> float:

@@ -44,7 +44,7 @@ def carried(landmarks: Landmarks, places: Points) -> Landmarks:
     marks = landmarks.points.items()
     points = {name: replace(mark, position=place) for (name, mark), place in zip(marks, places, strict=True)}
     bust, under = _levels(landmarks.points, landmarks, points)
-    return Landmarks(MappingProxyType(points), bust, under, landmarks.warnings)
+    return Landmarks(MappingProxyType(points), bust, under, landmarks.warnings, landmarks.hints)
 
 
 def _levels(

@@ -1,0 +1,126 @@
+"""What a body seems to be that it should not be: another size, leaning, flat, clothed, of stone."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from altered_bodies import smooth_step
+
+from core.body import Body
+from core.detect import detection
+from core.errors import LandmarkError
+from core.finding.likeness import build_of, clothes_hint, flat_hint, refuse_angular
+from core.landmark import CERTAIN, Landmarks
+from core.landmarks import find_landmarks
+from core.mesh import Mesh, Points
+from core.standing.upright import Pose
+
+ROOT = Path(__file__).parents[1]
+FACTOR = {"mm": 1.0, "inch": 25.4}
+
+
+@cache
+def sample(name: str = "person") -> Mesh:
+    mesh = trimesh.load(ROOT / f"resources/samples/{name}.ply", process=False)
+    return Mesh(np.asarray(mesh.vertices), np.asarray(mesh.faces))
+
+
+def body_of(vertices: Points, unit: str = "mm", name: str = "person") -> Body:
+    """A body whose file was read in ``unit``: its vertices are those in mm already."""
+    pose = Pose(unit, "+z", "-y", np.diag([*np.full(3, FACTOR[unit]), 1.0]), True, "", 1.0)
+    return Body(sample(name).moved(vertices), pose, (), "a body")
+
+
+def kinds(found: Landmarks) -> list[str]:
+    return [hint.kind for hint in found.hints]
+
+
+@cache
+def found(name: str = "person") -> Landmarks:
+    return find_landmarks(body_of(sample(name).vertices, name=name))
+
+
+def leant(degrees: float) -> Points:
+    """The mannequin turned stiffly forward."""
+    a = np.radians(degrees)
+    turn = np.array([[1.0, 0.0, 0.0], [0.0, np.cos(a), -np.sin(a)], [0.0, np.sin(a), np.cos(a)]])
+    return np.asarray(sample("mannequin").vertices @ turn.T)
+
+
+@pytest.mark.parametrize("name", ["person", "mannequin"])
+def test_the_samples_raise_no_doubt(name):
+    assert found(name).hints == ()
+
+
+def test_a_body_of_another_size_is_doubted_and_asked_about():
+    body = body_of(1.5 * sample().vertices)
+    again = find_landmarks(body)
+    assert kinds(again) == ["size"]
+    assert again.hints[0].sentence in again.warnings
+    told = detection(body, again)
+    assert (told["sure"], told["hints"]) == (False, ["size"])
+
+
+def test_a_form_at_half_scale_in_cm_is_not_taken_for_one_in_inches():
+    again = find_landmarks(body_of(0.5 * 2.54 * sample().vertices, "inch"))
+    assert kinds(again) == ["size"]
+    assert "half scale" in again.hints[0].sentence
+
+
+@pytest.mark.parametrize("degrees", [17.0, -14.0])
+def test_a_lean_is_told_with_its_angle_and_the_up_that_corrects_it(degrees):
+    body = body_of(leant(degrees), name="mannequin")
+    hint = next(hint for hint in find_landmarks(body).hints if hint.kind == "lean")
+    told = hint.sentence.split("--up ")[1].split(" to ")[0]
+    up = np.array([float(number) for number in told.split(",")])
+    true = np.array([0.0, -np.sin(np.radians(degrees)), np.cos(np.radians(degrees))])
+    assert up @ true > np.cos(np.radians(6.0))
+    assert ("forward" in hint.sentence) == (degrees > 0.0)
+
+
+def flattened(share: float) -> Points:
+    """The person with breasts that stand out by this share of what they do."""
+    v, marks = sample().vertices.copy(), found()
+    for side in ("left", "right"):
+        bust, fold = marks.position(f"bust_point_{side}"), marks.position(f"fold_{side}")
+        away = np.hypot((v[:, 0] - bust[0]) / 95.0, (v[:, 2] - bust[2]) / 105.0)
+        near = (1.0 - smooth_step(away, 0.4, 1.0)) * (v[:, 1] < fold[1])
+        v[:, 1] += (1.0 - share) * near * (fold[1] - v[:, 1])
+    return v
+
+
+def test_hardly_a_breast_is_told_and_no_landmark_is_sure_there():
+    again = find_landmarks(body_of(flattened(0.45)))
+    assert "flat" in kinds(again)
+    bust = [mark for name, mark in again.points.items() if name.startswith(("bust_point", "fold", "lowest"))]
+    assert max(mark.confidence for mark in bust) < CERTAIN
+
+
+def test_breasts_that_stand_out_are_not_flat():
+    assert flat_hint(sample(), found()) == ()
+
+
+def test_wrinkles_of_a_loose_shirt_are_told():
+    v, marks = sample().vertices.copy(), found()
+    build = build_of(sample(), marks)
+    assert clothes_hint(build, marks) == ()
+    middle = np.array([v[:, 0].mean(), -90.0])
+    turn = np.arctan2(v[:, 0] - middle[0], middle[1] - v[:, 1])
+    below = 1.0 - smooth_step(v[:, 2], marks.underbust_level - 20.0, marks.underbust_level)
+    v[:, :2] += (below * 9.0 * np.sin(11.0 * turn))[:, None] * np.stack([np.sin(turn), -np.cos(turn)], axis=1)
+    shirt = build_of(sample().moved(v), marks)
+    assert [hint.kind for hint in clothes_hint(shirt, marks)] == ["clothes"]
+
+
+def test_an_angular_trunk_is_refused():
+    v, marks = sample().vertices.copy(), found()
+    refuse_angular(build_of(sample(), marks), marks)
+    middle, half = np.array([0.0, -90.0]), np.array([150.0, 100.0])
+    flat = (v[:, :2] - middle) / half
+    v[:, :2] = middle + flat / np.abs(flat).max(axis=1, keepdims=True).clip(1e-9) * half
+    with pytest.raises(LandmarkError, match="block"):
+        refuse_angular(build_of(sample().moved(v), marks), marks)
