@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from altered_bodies import smooth_step
 from core.body import Body
 from core.detect import detection
 from core.errors import LandmarkError
-from core.finding.likeness import build_of, clothes_hint, flat_hint, refuse_angular
+from core.finding.likeness import Build, build_of, clothes_hint, flat_hint, lean_hint, refuse_angular
 from core.landmark import CERTAIN, Landmarks
 from core.landmarks import find_landmarks
 from core.mesh import Mesh, Points
@@ -21,6 +22,8 @@ from core.standing.upright import Pose
 
 ROOT = Path(__file__).parents[1]
 FACTOR = {"mm": 1.0, "inch": 25.4}
+Y_UP = [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.1]]
+"""Takes a file with y up that faces +z to the canonical frame."""
 
 
 @cache
@@ -44,11 +47,14 @@ def found(name: str = "person") -> Landmarks:
     return find_landmarks(body_of(sample(name).vertices, name=name))
 
 
-def leant(degrees: float) -> Points:
-    """The mannequin turned stiffly forward."""
-    a = np.radians(degrees)
+def leant(degrees: float) -> Build:
+    """The mannequin turned stiffly forward, with its landmarks."""
+    a, marks = np.radians(degrees), found("mannequin")
     turn = np.array([[1.0, 0.0, 0.0], [0.0, np.cos(a), -np.sin(a)], [0.0, np.sin(a), np.cos(a)]])
-    return np.asarray(sample("mannequin").vertices @ turn.T)
+    points = {name: replace(mark, position=turn @ mark.position) for name, mark in marks.points.items()}
+    return build_of(
+        sample("mannequin").moved(sample("mannequin").vertices @ turn.T), replace(marks, points=points)
+    )
 
 
 @pytest.mark.parametrize("name", ["person", "mannequin"])
@@ -71,15 +77,20 @@ def test_a_form_at_half_scale_in_cm_is_not_taken_for_one_in_inches():
     assert "half scale" in again.hints[0].sentence
 
 
-@pytest.mark.parametrize("degrees", [17.0, -14.0])
+@pytest.mark.parametrize("degrees", [17.0, -17.0])
 def test_a_lean_is_told_with_its_angle_and_the_up_that_corrects_it(degrees):
-    body = body_of(leant(degrees), name="mannequin")
-    hint = next(hint for hint in find_landmarks(body).hints if hint.kind == "lean")
+    pose = Pose("cm", "+y", "+z", 10.0 * np.array(Y_UP), True, "", 1.0)
+    (hint,) = lean_hint(leant(degrees), pose)
     told = hint.sentence.split("--up ")[1].split(" to ")[0]
-    up = np.array([float(number) for number in told.split(",")])
-    true = np.array([0.0, -np.sin(np.radians(degrees)), np.cos(np.radians(degrees))])
-    assert up @ true > np.cos(np.radians(6.0))
+    x, y, z = (float(number) for number in told.split(","))
+    true = np.array([0.0, np.cos(np.radians(degrees)), np.sin(np.radians(degrees))])
+    assert np.array([x, y, z]) @ true > np.cos(np.radians(5.0))
     assert ("forward" in hint.sentence) == (degrees > 0.0)
+
+
+def test_a_lean_that_was_corrected_is_not_told():
+    pose = Pose("mm", "+z", "-y", np.eye(4), True, "", 1.0, tilt=17.0)
+    assert lean_hint(leant(17.0), pose) == ()
 
 
 def flattened(share: float) -> Points:

@@ -44,8 +44,9 @@ much more or less leans."""
 FLAT_GIRTH, FLAT_DEPTH = 0.11, 34.0
 """A bust that is wider than the trunk under it by less than this part and stands out by less [mm] is flat."""
 
-FLAT_SLOPE, FLAT_RUN, FAINT = 0.45, 42.0, 0.3
-"""So is one that stands out by less than this part of its drop to a fold that is hardly seen [1, mm, 1]."""
+FLAT_SLOPE, FLAT_RUN, FLAT_AROUND, FAINT = 0.45, 42.0, 0.17, 0.3
+"""So is one that stands out by less than this part of its drop to a fold that is hardly seen, and less than
+so far, and is wider than the trunk by less than this part [1, mm, 1, 1]."""
 
 WRINKLED, CREASED = 3.5, 2.4
 """Upright waves of the skin under the bust [mm, root of the mean square]: bodies have 3.3 at most. The lesser
@@ -102,7 +103,7 @@ def flat_hint(mesh: Mesh, landmarks: Landmarks) -> tuple[Hint, ...]:
     depth, drop = _breast(landmarks)
     seen = max(landmarks.points[f"fold_{side}"].confidence for side in SIDES)
     low = more < FLAT_GIRTH * under.tape and depth < FLAT_DEPTH
-    hung = depth < FLAT_SLOPE * drop and depth < FLAT_RUN and seen < FAINT
+    hung = depth < min(FLAT_SLOPE * drop, FLAT_RUN) and seen < FAINT and more < FLAT_AROUND * under.tape
     if not (low or hung):
         return ()
     sentence = (
