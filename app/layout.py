@@ -24,7 +24,7 @@ NARROW, WIDE = 340, 364
 KEPT_AFTER = 1000
 """Stillness after which the place of the window is remembered [ms]."""
 
-LOW, HIGH = 168, 172
+LOW, HIGH = 190, 184
 """First height of the strip in windows lower and higher than 850 pixels."""
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from app.presenting.assessment import assessment_view
+from app.presenting.bust import bust_girths
 from app.presenting.verdict import StripVerdict, strip_verdict
 from core.assessment import assessment_of
 from core.comparison import Comparison
@@ -51,3 +52,21 @@ def test_a_run_that_ran_away_has_no_figures(built: Callable[[str], Stages]) -> N
     assert verdict.numbers == []
     assert verdict.level == "bad"
     assert verdict.hint.startswith("The calculation diverges")
+
+
+def test_what_a_designer_asks_first_stands_first(built: Callable[[str], Stages]) -> None:
+    stages = build(built("mannequin").design.with_line("mid-bust", 0.97), built("mannequin"))
+    comparison = Comparison(stages.model, targets_of(stages.design, stages), stages.watch)
+    while not comparison.resting:
+        comparison.advance()
+    frame = make_frame(1, stages, comparison, 0.3)
+    pressed = press_list(stages, frame.control_points)
+    overall = assessment_view(assessment_of(frame, cut_list(stages, frame.control_points), pressed))
+    before, after = bust_girths(frame)
+    shown = strip_verdict(frame, overall, (before, after), pressed).numbers
+    assert [name for name, _ in shown] == ["Bust point", "Bust girth", "Highest pressure", "Volume error"]
+    assert shown[1][1] == f"{before:.1f} → {after:.1f} mm"
+    assert 700.0 < before < 1100.0
+    assert before != after
+    assert shown[2][1] == f"{max(row.max_kpa for row in pressed.rows if row.max_kpa):.1f} kPa"
+    assert [name for name, _ in strip_verdict(frame, overall).numbers][-1] == "Volume error"

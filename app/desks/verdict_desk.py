@@ -8,8 +8,9 @@ from weakref import WeakKeyDictionary
 from PySide6.QtCore import QObject, Signal
 
 from app.presenting.assessment import IDLE, AssessmentView, assessment_view
+from app.presenting.bust import bust_girths
 from app.presenting.faults import out_of_date
-from app.presenting.verdict import strip_verdict
+from app.presenting.verdict import StripVerdict, strip_verdict
 from core.assessment import BAD, CAUTION, GOOD, PENDING, assessment_of
 from core.cutting import CutList, cut_list
 from core.live import Frame
@@ -33,6 +34,7 @@ class VerdictDesk(QObject):
         self._window = window
         self._frame: Frame | None = None
         self._cuts: WeakKeyDictionary[Frame, CutList] = WeakKeyDictionary()
+        self._girths: WeakKeyDictionary[Frame, tuple[float, float]] = WeakKeyDictionary()
 
     def of(self, frame: Frame) -> AssessmentView:
         """Return the overall verdict of a frame, as far as it is known; pressures are computed in a job."""
@@ -46,6 +48,15 @@ class VerdictDesk(QObject):
             pressed = window.pressure_desk.of(frame)
         return assessment_view(assessment_of(frame, cuts, pressed, running=running), design)
 
+    def _strip_verdict(self, frame: Frame, view: AssessmentView) -> StripVerdict:
+        """Return the values of the strip; girth and pressure only once the body has come to rest."""
+        if not frame.verdict.sound or frame.at_work or not self._window.is_at_rest():
+            return strip_verdict(frame, view)
+        if frame not in self._girths:
+            self._girths[frame] = bust_girths(frame)
+        pressed = self._window.pressure_desk.of(frame) if frame.stages.design.worn() else None
+        return strip_verdict(frame, view, self._girths[frame], pressed)
+
     def show_frame(self, frame: Frame) -> None:
         """Show the verdict of a frame."""
         self._frame = frame
@@ -56,7 +67,7 @@ class VerdictDesk(QObject):
         if self._frame is None:
             return
         view, window = self.of(self._frame), self._window
-        verdict, failed = strip_verdict(self._frame, view), window.session.failure is not None
+        verdict, failed = self._strip_verdict(self._frame, view), window.session.failure is not None
         window.strip.set_verdict(out_of_date(verdict) if failed else verdict)
         looks = "available" if failed else _RAIL[view.level]
         count = len(view.reasons) if looks in ("bad", "look") else 0

@@ -10,6 +10,7 @@ from core.frame import Frame
 from core.measuring.plus_minus import LIFT, OUT, Spread
 from core.mesh import Floats
 from core.solver import Marks
+from core.watch import Tapes
 
 APART = 1.0
 """From so much on the moves of left and right are told apart [mm]."""
@@ -45,6 +46,17 @@ class BustMove:
 def bust_move(frame: Frame) -> BustMove:
     """Return how far the bust points of a frame are from where they are on the body before."""
     return move_between(frame.stages.rest_marks, frame.marks)
+
+
+def bust_girths(frame: Frame) -> tuple[float, float]:
+    """Return the girth at the level of the bust points on the original and on the reshaped body [mm]."""
+    stages, rest = frame.stages, frame.stages.rest_marks
+    binding, moving = stages.binding, stages.moving
+    height = 0.5 * (rest.nipple_left_z + rest.nipple_right_z)
+    places = binding.operator.added(binding.change(frame.control_points), moving.rest)
+    (before,) = Tapes(moving, [height])(moving.rest)
+    (after,) = Tapes(moving, [height + bust_move(frame).mean.up])(places)
+    return float(before), float(after)
 
 
 def move_between(rest: Marks, now: Marks) -> BustMove:

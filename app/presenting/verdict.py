@@ -11,6 +11,7 @@ from app.presenting.bust import bust_move, sides_words, step_words, ups
 from app.showing.verdict_chip import state_title
 from app.wording.words import number, tr
 from core.live import Frame
+from core.press_list import PressList
 from core.report import kept_volume
 from core.solving.condition import Condition
 
@@ -45,14 +46,22 @@ def is_result(frame: Frame) -> bool:
     return frame.verdict.sound
 
 
-def strip_verdict(frame: Frame, overall: AssessmentView) -> StripVerdict:
-    """Return how a frame stands under its ``overall`` verdict, with the figures that matter then."""
+def strip_verdict(
+    frame: Frame,
+    overall: AssessmentView,
+    girths: tuple[float, float] | None = None,
+    pressed: PressList | None = None,
+) -> StripVerdict:
+    """Return how a frame stands under its ``overall`` verdict, with the values that matter then.
+
+    ``girths`` at the bust points before and after [mm], and contact pressures, as far as they are known.
+    """
     state, seconds = state_of(frame), tr("{seconds} s").format(seconds=number(frame.seconds))
     return StripVerdict(
         overall.level,
         overall.headline,
         state,
-        _figures(frame),
+        _figures(frame, girths, pressed),
         overall.first,
         tr("{state} · {seconds}").format(state=state_title(state), seconds=seconds),
         _effort(frame),
@@ -102,7 +111,9 @@ def _effort(frame: Frame) -> str:
     return text.format(turns=number(turns, 0))
 
 
-def _figures(frame: Frame) -> list[tuple[str, str]]:
+def _figures(
+    frame: Frame, girths: tuple[float, float] | None, pressed: PressList | None
+) -> list[tuple[str, str]]:
     verdict, state = frame.verdict, state_of(frame)
     if state == "diverging":
         return []  # the figures would be those of the body shown, as it was before
@@ -115,8 +126,16 @@ def _figures(frame: Frame) -> list[tuple[str, str]]:
     if verdict.condition and state == "overstrained":
         return [kept, (tr("Skin"), _strain(verdict.condition))]
     move = bust_move(frame)
-    told = [kept, (tr("Bust point"), step_words(move.mean))]
-    return [*told, (tr("Left · right"), " · ".join(sides_words(move)))] if move.differs else told
+    told = [(tr("Bust point"), step_words(move.mean))]
+    if girths is not None:
+        change = tr("{before} → {after} mm").format(before=number(girths[0]), after=number(girths[1]))
+        told.append((tr("Bust girth"), change))
+    hardest = None if pressed is None else pressed.hardest
+    if hardest is not None and hardest.max_kpa is not None:
+        told.append((tr("Highest pressure"), f"{number(hardest.max_kpa)} kPa"))
+    elif move.differs:
+        told.append((tr("Left · right"), " · ".join(sides_words(move))))
+    return [*told, kept]
 
 
 def _swing_figures(frame: Frame) -> list[tuple[str, str]]:

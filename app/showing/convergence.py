@@ -23,7 +23,7 @@ from app.showing.tracks import Exact, Track, error_quantities, height_quantities
 from app.showing.verdict_chip import VerdictChip, VerdictLine
 from app.wording.words import tr
 
-_HIGH, _LOW, _FOLDED = 172, 150, 36
+_HIGH, _LOW, _FOLDED = 184, 150, 36
 
 
 class VerdictView(Protocol):
@@ -248,6 +248,7 @@ class Strip(QWidget):
         column.setSpacing(0)
         head = QHBoxLayout()
         head.addWidget(self.chip)
+        head.addSpacing(10)
         head.addStretch(1)
         head.addWidget(self._turns)
         column.addLayout(head)
