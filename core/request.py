@@ -14,10 +14,11 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from core.aims.answers import Look, exact_points
+from core.aims.conflicts import Conflict, conflicts_of
 from core.aims.figure import Goal
 from core.aims.reaching import LOOSEST, Bounds, Candidate, Search
 from core.aims.readings import Figures
-from core.aims.wanted import NEAR
+from core.aims.wanted import NEAR, weights_of
 from core.answer import NoBalanceError
 from core.cutting import goes_on
 from core.design import Design
@@ -39,7 +40,8 @@ _TOO_MUCH = 1.01  # over the limit of pressure, at which it counts as kept
 class Reply:
     """What can be done: the ``design`` with the lengths found, and what its exact answer ``reached`` [mm].
 
-    ``reachable`` tells whether that is what was asked for, ``miss`` [mm] what the worst figure lacks. If not,
+    ``reachable`` tells whether that is what was asked for, ``miss`` [mm] what the worst figure lacks,
+    ``deviation`` [mm] the root of the squares of all as they count: see ``weights_of``. If not,
     there is a reason: lines ``at_end`` are as short or as long as they may be, lines that are ``pressing`` do
     so as hard as they may, ``strained`` is a shape that would strain beyond what looks natural; without any
     the lines do not move it that way. ``agreed`` is False where lengths, elastics and pressures did not come
@@ -63,6 +65,7 @@ class Reply:
     tension: float
     answers: int
     longest: float = LOOSEST
+    deviation: float = 0.0
     points: Points = field(default_factory=lambda: np.zeros((0, 3)))
 
     def may_not_be_longer(self, name: str) -> bool:
@@ -127,6 +130,18 @@ class Asking:
         ``ask`` does.
         """
         return self._told(self._near_the_last, goals, progress)
+
+    def conflicts(
+        self, reply: Reply, goals: Sequence[Goal], progress: Progress = quiet
+    ) -> tuple[Conflict, ...]:
+        """Return which ``goals`` the last ``reply`` could not meet together. Raises UserError, Cancelled."""
+        if reply.reachable or len(goals) < 2:
+            return ()
+        with threadpool_limits(1):
+            stages = build(reply.design, self._stages)
+            self._goals, self._progress = goals, progress
+            search = self._begun(stages)
+            return conflicts_of(search, goals)
 
     def now(self, names: Collection[str]) -> tuple[dict[str, float], dict[str, float]]:
         """Return what the figures ``names`` are in the design as it is [mm], and what its lines press with.
@@ -258,8 +273,13 @@ class Asking:
             self._newtons * float(np.maximum(found.look.pulls, 0.0).sum()),
             sum(len(search) - before for search, before in self._used),
             self._bounds.longest,
+            self._deviation(found),
             found.look.points,
         )
+
+    def _deviation(self, found: Candidate) -> float:
+        lack = found.look.values - [goal.value for goal in self._goals]
+        return float(np.linalg.norm(weights_of(self._goals) * lack))
 
     def _miss(self, found: Candidate) -> float:
         return float(np.abs(found.look.values - [goal.value for goal in self._goals]).max())

@@ -15,7 +15,7 @@ def ask(options: argparse.Namespace) -> int:
     """Find the lengths of lines that bring the body to what is wished, and print them."""
     from app.commands.asked import AskWishes, asked_text, run_ask
 
-    bounds = options.lock or [], options.shortest or [], options.pressure
+    bounds = options.lock or [], options.shortest or [], options.pressure, options.optional or []
     wishes = AskWishes(options.want or [], options.profile or [], *bounds, options.out)
     design = design_of(options.input, options)
     asked = run_ask(options.input, design, options.line or [], options.elastic or [], wishes)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import math
 
-from app.commands.settings import PRESSURE_HELP, PROFILE_HELP, WANT_HELP
+from app.commands.settings import OPTIONAL_HELP, PRESSURE_HELP, PROFILE_HELP, WANT_HELP
 from core.standing.body_size import MILLIMETRES
 
 
@@ -48,11 +49,16 @@ def add_worn_scan(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", default="", metavar="FILE", help="save what was found as a project: .busk")
 
 
+def _limit(text: str) -> float:
+    return math.inf if text.strip().lower() == "off" else float(text)
+
+
 def add_wishes(parser: argparse.ArgumentParser) -> None:
     """Add what can be asked for, and what lines may do for it."""
     parser.add_argument("--want", action="append", metavar="NAME=VALUE", help=WANT_HELP)
     parser.add_argument("--profile", action="append", metavar="[SECTION=]FILE.csv", help=PROFILE_HELP)
-    parser.add_argument("--pressure", type=float, metavar="KPA", help=PRESSURE_HELP)
+    parser.add_argument("--pressure", type=_limit, metavar="KPA", help=PRESSURE_HELP)
+    parser.add_argument("--optional", action="append", metavar="LINE", help=OPTIONAL_HELP)
     parser.add_argument(
         "--lock", action="append", metavar="LINE", help="a worn line that is to stay as it is"
     )

@@ -56,24 +56,33 @@ def dressed(design: Design, lines: Sequence[Line], requests: Sequence[str]) -> D
 
 
 WANT_HELP = (
-    "what the body is to have, in mm (also cm, in); may be repeated. lift and out: how far the bust points "
-    "rise and come out from where they are at rest; apex: the same of whatever lies foremost; girth: the "
-    "tape round the body at the bust points' height; left higher and left further out: by how much the left "
-    "one is. The names are: lift, lift left, lift right, out, out left, out right, apex lift, "
-    "apex lift left, apex lift right, apex out, apex out left, apex out right, girth, left higher, "
-    "left further out"
+    "what the body is to have, in mm (also cm, in); may be repeated. Where targets conflict, @high or "
+    "@low behind the value (lift=12mm@high) gives one four times or a quarter of the weight. lift and "
+    "out: how far the bust points rise and come out from where they are at rest; apex: the same of "
+    "whatever lies foremost; girth: the tape round the body at the bust points' height; left higher and "
+    "left further out: by how much the left one is. The names are: lift, lift left, lift right, out, out "
+    "left, out right, apex lift, apex lift left, apex lift right, apex out, apex out left, apex out "
+    "right, girth, left higher, left further out"
 )
 """What a user has to know to ask for a result."""
 
 PROFILE_HELP = (
     "how far the skin is to stand out along a section, met as nearly as can be: a table with the columns "
     "height_mm and out_mm, or an exported section. SECTION is left (if not told) or right, through that bust "
-    "point, or its x in mm; may be repeated"
+    "point, or its x in mm; may be repeated, with a priority too: left@high=FILE.csv"
 )
 """What a user has to know to ask for a profile."""
 
-PRESSURE_HELP = "what lines made of elastic may press with at most, in kPa (if not told: where red begins)"
+PRESSURE_HELP = (
+    "what lines made of elastic may press with at most, in kPa (if not told: where red begins), or off"
+)
 """What a user has to know of the limit that is kept while asking."""
+
+OPTIONAL_HELP = (
+    "a line that is off and may be switched on where the others do not reach what is wanted, or all; may be "
+    "repeated"
+)
+"""What a user has to know of lines that may be switched on."""
 
 ELASTIC_HELP = (
     "what a worn line is made of: an elastic of the library, by its name or by words that only it has "

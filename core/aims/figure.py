@@ -14,12 +14,17 @@ SIDES = {"": np.array([0.5, 0.5]), " left": np.array([1.0, 0.0]), " right": np.a
 """What the left and the right count for [1], by the end of a figure's name."""
 
 
+PRIORITIES = {"high": 4.0, "normal": 1.0, "low": 0.25}
+"""By how much the tolerance of a target is divided where not all of them can be met [1]."""
+
+
 @dataclass(frozen=True)
 class Goal:
-    """A figure that is asked for, by its ``name`` in ``readings``, and the ``value`` it is to have [mm]."""
+    """A target: a quantity by its ``name`` in ``readings``, its ``value`` [mm], and one of PRIORITIES."""
 
     name: str
     value: float
+    priority: str = "normal"
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,12 +46,14 @@ ReadMany = Callable[[Points], tuple[Floats, Floats]]
 class Family:
     """Figures that are read alike: their ``names``, and what makes a ``read`` for one of them.
 
-    Names that begin with the word ``numbered`` go on with numbers, which ``read`` looks at itself.
+    Names that begin with the word ``numbered`` go on with numbers, which ``read`` looks at itself. Targets
+    that conflict are balanced by how many times their ``tolerance`` [mm] they are missed.
     """
 
     names: tuple[str, ...]
     read: Callable[[Stages, str], Read]
     numbered: str = ""
+    tolerance: float = 1.0
 
     def has(self, name: str) -> bool:
         """Tell whether a figure of that name is of this family."""

@@ -46,5 +46,6 @@ class _Girth:
 
 
 GIRTH = "girth"
-GIRTHS = Family((GIRTH,), lambda stages, _: _Girth(stages))
+_TOLERANCE = 5.0  # a girth grows by 2 pi times what its outline moves by [mm]
+GIRTHS = Family((GIRTH,), lambda stages, _: _Girth(stages), tolerance=_TOLERANCE)
 """The girth at the level of the bust points, as they are then [mm]."""

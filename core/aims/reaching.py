@@ -118,8 +118,9 @@ class Search:
         return len(self._answers)
 
     def want(self, goals: Sequence[Goal]) -> None:
-        """Look for other values of the same figures from now on."""
+        """Look for other values of the same figures, or with other priorities, from now on."""
         self._wanted.values = np.array([goal.value for goal in goals])
+        self._wanted.weights = weights_of(goals)
 
     def limit(self, hardest: Mapping[str, float]) -> None:
         """Let named lines pull no harder than so, in the model's unit, from now on."""
@@ -141,6 +142,18 @@ class Search:
             return lengths
         near = self.from_here(lengths)  # what rest leads to is mostly not far away, nor is the least tension
         return near if self._wanted.is_met(self.at(near)) >= met else self._least_tension(self._near_by())
+
+    def alone(self, chosen: Collection[int]) -> Look:
+        """Return the answer nearest to the ``chosen`` of the goals, by number, where the others are free.
+
+        Raises NoBalanceError, Cancelled.
+        """
+        every, nearer = self._wanted, self.nearer
+        self._wanted, self.nearer = every.of(chosen), lambda found: None
+        try:
+            return self.at(self._near_by())
+        finally:
+            self._wanted, self.nearer = every, nearer
 
     def _near_by(self) -> Floats:
         """Return the nearest from the start or, if that does not reach what is wanted, from elsewhere."""
@@ -177,13 +190,13 @@ class Search:
         """
         here, reach, most = start, _BOLD, len(self) + (_ELSEWHERE if known else _STEPS)
         look, wanted = self.at(here), self._wanted
-        amiss = wanted.amiss(look)
+        amiss, finest = wanted.amiss(look), self._wanted.finest
         bends = np.zeros((*wanted.rows(look)[1].shape, len(here)))
-        while reach > _LAST and len(self) < most and amiss > _EXACT:
+        while reach > _LAST and len(self) < most and amiss > _EXACT * finest**2:
             if (other := self._beside(here, amiss, known)) is not None:
                 return other
             there, left = wanted.towards(here, look, reach, bends)
-            step, little = there - here, max(_LITTLE, 2.0 * _TELLS * amiss**0.5)
+            step, little = there - here, max(_LITTLE * finest**2, 2.0 * _TELLS * finest * amiss**0.5)
             if np.abs(step).max() < _SHORTEST or amiss - left < little:
                 break
             seen = self._look(there, _QUICK)

@@ -31,6 +31,11 @@ def reading(stages: Stages, name: str) -> Read:
     raise UserError(f"'{name}' cannot be asked for.", f"Ask for one of: {', '.join(NAMES)}.")
 
 
+def tolerance(name: str) -> float:
+    """Return the tolerance [mm] of the quantity ``name``; 1 if there is none of that name."""
+    return next((family.tolerance for family in FAMILIES if family.has(name)), 1.0)
+
+
 class Figures:
     """The figures of one body, whatever its lines are; what was made for one question is kept."""
 

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from core.aims.answers import Look
 from core.aims.curved import Curved, amiss
-from core.aims.figure import Goal
+from core.aims.figure import PRIORITIES, Goal
 from core.aims.outline import section_of
+from core.aims.readings import tolerance
 from core.mesh import Floats
 
 NEAR = 0.05
@@ -26,8 +27,8 @@ _BROKEN = -1e-4  # room to a limit [1]
 class Wanted:
     """Figures that are to have ``values`` (m,) [mm], with ``low`` and ``high`` ends of lengths (p,) [%].
 
-    ``weights`` (m,) are what figures count for. ``lines`` names those of the model; ``hardest`` is the most
-    that some may pull with, in the model's unit.
+    ``weights`` (m,) are what figures count for; those of no weight are read and not wanted. ``lines`` names
+    those of the model; ``hardest`` is the most that some may pull with, in the model's unit.
     """
 
     values: Floats
@@ -55,7 +56,7 @@ class Wanted:
 
     def is_met(self, look: Look) -> bool:
         """Tell whether a look is what is wanted, with no limit broken."""
-        near = np.abs(look.values - self.values).max() < NEAR
+        near = np.abs(look.values - self.values)[self.weights > 0.0].max() < NEAR
         return bool(near and self.rooms(look)[0].min() > _BROKEN)
 
     def amiss(self, look: Look) -> float:
@@ -80,8 +81,25 @@ class Wanted:
         step, left = Curved(*self.rows(look), bends, len(self.values)).nearest(low, high)
         return np.clip(here + step, self.low, self.high), left
 
+    def of(self, chosen: Collection[int]) -> Wanted:
+        """Return these targets with those of the ``chosen`` rows alone wanted."""
+        weights = np.zeros_like(self.weights)
+        weights[list(chosen)] = self.weights[list(chosen)]
+        return replace(self, weights=weights / weights.max())
+
+    @property
+    def finest(self) -> float:
+        """What the figure counts for that counts least, over what the one counts for that counts most [1]."""
+        wanted = self.weights[self.weights > 0.0]
+        return float(wanted.min() / wanted.max())
+
 
 def weights_of(goals: Sequence[Goal]) -> Floats:
-    """Return what each figure counts for: all heights of one section together as much as another one."""
+    """Return what each figure counts for: its priority over its tolerance, that of the first being 1.
+
+    All heights of one section count together as much as another figure.
+    """
     sections = [section_of(goal.name) or goal.name for goal in goals]
-    return 1.0 / np.sqrt([float(sections.count(section)) for section in sections])
+    count = np.array([float(sections.count(section)) for section in sections])
+    scale = np.array([PRIORITIES[goal.priority] / tolerance(goal.name) for goal in goals])
+    return np.asarray(scale / scale.max() / np.sqrt(count))
