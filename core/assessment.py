@@ -27,8 +27,10 @@ TOPICS = ("convergence", "shape", "band", "pressure", "fit", "landmarks")
 PUSHES = 0.5
 """A line that would have to push with more than this carries part of the shape [N]; an estimate."""
 
-FIT_LIMITS = (20.0, 10.0)
-"""Largest and 95 % deviation of the skin from the control mesh from which a fit is doubtful [mm]; ours."""
+FIT_LIMITS = (20.0, 10.0, 20.0)
+"""Largest and 95 % deviation of the skin from the control mesh, and of its fold row from the landmark of the
+fold, beyond which a fit is doubtful [mm]; ours.
+"""
 
 
 @dataclass(frozen=True)
@@ -171,11 +173,20 @@ def _foundations(stages: Stages) -> Iterator[Finding]:
     """Yield what is doubtful about the scan, its landmarks and the control mesh."""
     for sentence in doubts(stages.body, stages.landmarks):
         yield Finding("landmarks", CAUTION, sentence)
-    quality = stages.control.quality
-    if quality is not None and (
-        quality.deviation_max > FIT_LIMITS[0] or quality.deviation_95 > FIT_LIMITS[1]
-    ):
-        message = f"The control mesh is up to {quality.deviation_max:.0f} mm off the skin."
-        yield Finding("fit", CAUTION, message, "Check the bust points and folds.")
+    yield from _fit(stages)
     for sentence in warnings(stages):
         yield Finding("fit", CAUTION, sentence)
+
+
+def _fit(stages: Stages) -> Iterator[Finding]:
+    """Yield how far the control mesh is off the body, where that is more than on any body that was tried."""
+    quality, action = stages.control.quality, "Check the bust points and folds."
+    if quality is None:
+        return
+    largest, most, fold = FIT_LIMITS
+    if quality.deviation_max > largest or quality.deviation_95 > most:
+        message = f"The control mesh is up to {quality.deviation_max:.0f} mm off the skin."
+        yield Finding("fit", CAUTION, message, action)
+    if quality.fold_off > fold:
+        message = f"The fold row of the control mesh is {quality.fold_off:.0f} mm off the fold."
+        yield Finding("fit", CAUTION, message, action)

@@ -110,16 +110,17 @@ def test_what_is_worst_stands_first_and_the_hardest_press_before_others(sure: So
     ]
 
 
+@pytest.mark.parametrize("what", ["deviation_max", "fold_off"])
 @pytest.mark.parametrize(("far", "level"), [(39.0, CAUTION), (13.8, GOOD)])
-def test_a_fit_far_off_the_skin_is_no_good_result(sure: Solution, far: float, level: str) -> None:
+def test_a_fit_far_off_the_body_is_no_good_result(sure: Solution, what: str, far: float, level: str) -> None:
     control = sure.stages.control
     assert control.quality is not None
-    quality = replace(control.quality, deviation_max=far)
+    quality = replace(control.quality, **{what: far})
     stages = replace(sure.stages, control=replace(control, quality=quality))
     found = assessment_of(replace(sure, stages=stages), cuts(), pressed(row(0.5)))
     assert found.level == level
     if level == CAUTION:
-        assert f"{far:.0f} mm off the skin" in found.findings[0].message
+        assert f"{far:.0f} mm off the " in found.findings[0].message
 
 
 def test_doubtful_landmarks_are_in_it(sure: Solution, built: Built) -> None:

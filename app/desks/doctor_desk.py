@@ -34,8 +34,8 @@ ABOUT = "doctor"
 PATIENCE = 1200
 """Milliseconds that a strained design rests before it is looked at: who is still at work hears nothing."""
 
-BUTTONS = 2
-"""Fixes that have a button; a narrow window has no room for more."""
+REASONS = 2
+"""Reasons of the verdict that a notice names; the others are in its details."""
 
 _BAD = ("vibrating", "diverging", "folded", "overstrained")
 _CURED = ("lines", "traits", "gain", "volume", "line_force", "line_hold")
@@ -179,11 +179,12 @@ class DoctorDesk(QObject):
         overall = self._window.verdict_desk.of(frame)
         if overall.reasons:
             tone = "warn" if overall.level == BAD else "info"
-            said = joined(message for message, _ in overall.reasons)
+            said = joined(message for message, _ in overall.reasons[:REASONS])
             actions = self._fixes(found)
             trouble = _Trouble("checked")
             hint = words.hint(found) if found.findings else joined(overall.reasons[0][1:])
-            self._show(tone, said, hint, actions, words.details(found), trouble, asked=True)
+            details = "\n".join((*map(joined, overall.reasons), words.details(found)))
+            self._show(tone, said, hint, actions, details, trouble, asked=True)
             return
         said = tr("Nothing is wrong: the calculation comes to rest, and the skin is calm.")
         self._show("ok", said, "", [], words.details(found), None)
@@ -239,13 +240,8 @@ class DoctorDesk(QObject):
 
     def _fixes(self, found: Diagnosis) -> list[Action]:
         """Return a button for each of the best fixes; the others are in the details."""
-        return [
-            (
-                words.button_words(found, cure),
-                partial(self._apply, words.change_words(found, cure.change), cure.change.design),
-            )
-            for cure in found.fixes[:BUTTONS]
-        ]
+        said = ((words.change_words(found, cure.change), cure) for cure in words.shown_fixes(found))
+        return [(text, partial(self._apply, text, cure.change.design)) for text, cure in said]
 
     def _apply(self, said: str, cured: Design) -> None:
         """Make the change as one step, whatever was only called otherwise since."""

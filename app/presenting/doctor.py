@@ -14,6 +14,10 @@ from core.advice.ways import Change
 from core.assessment import BAD, Assessment, Finding
 from core.doctor import Diagnosis
 
+BUTTONS = 2
+"""Fixes that have a button at most."""
+
+_ROOM = 54  # letters on the buttons of a notice in the narrowest window
 _SEEN = 0.05  # mm that a bust point swings by at least where its swing is worth a word
 _STEADY = 5e-4  # a swing that changes by less a turn stays as large as it is [1]
 
@@ -67,10 +71,9 @@ def _plain(found: Diagnosis, swing: float) -> str:
 
 
 def hint(found: Diagnosis) -> str:
-    """Return what leads to the button, or what there is to do where there is none."""
-    if found.cure is not None:
-        # Beside a second button there is no room for it at the smallest size: the details say it too.
-        return "" if found.verdict.motion in ("vibrating", "diverging") else tr("Tried, and it ends this:")
+    """Return what leads to the buttons, or what there is to do where there are none."""
+    if found.fixes:
+        return _leading(found)
     said = [tr("No change of one line, of the gain or of the model was found that ends it.")]
     if found.locked:
         titles = listed(line_title(name, found.stages.design) for name in found.locked)
@@ -78,11 +81,29 @@ def hint(found: Diagnosis) -> str:
     return joined(said)
 
 
-def button_words(found: Diagnosis, cure: Cure) -> str:
-    """Return what a fix does, and what it leaves to be checked, if it does."""
-    said = change_words(found, cure.change)
-    left = listed(dict.fromkeys(_topic(each) for each in cure.remains))
-    return tr("{change}, leaves {what}").format(change=said, what=left) if left else said
+def _leading(found: Diagnosis) -> str:
+    """Return what the changes on the buttons leave to be checked: all of them were tried."""
+    first, *others = (_left(cure) for cure in shown_fixes(found))
+    if others:
+        return tr("Tried: the first leaves {one}, the second {other}.").format(one=first, other=others[0])
+    if not found.fixes[0].remains:
+        return tr("Tried, and it ends this:")
+    return tr("Tried, it leaves {what}:").format(what=first)
+
+
+def shown_fixes(found: Diagnosis) -> tuple[Cure, ...]:
+    """Return the fixes that have a button: the best, and the next if a narrow window has room."""
+    best = found.fixes[:BUTTONS]
+    return best if sum(_wide(change_words(found, cure.change)) for cure in best) <= _ROOM else best[:1]
+
+
+def _wide(words: str) -> int:
+    """Return about how wide words are, in Latin letters."""
+    return sum(2 if letter > "\u2e80" else 1 for letter in words)
+
+
+def _left(cure: Cure) -> str:
+    return listed(dict.fromkeys(_topic(each) for each in cure.remains)) or tr("no problems")
 
 
 def _topic(finding: Finding) -> str:
