@@ -203,7 +203,7 @@ def test_the_pill_opens_what_the_button_ends_and_what_will_still_be_strained() -
         window.lines_desk.commit_length("mid-bust", 0.848)
         yield lambda: told(window)
         said = words(window)[1]
-        assert "the second strained skin, high pressure" in notice_of(window).hint, "it is told before"
+        assert "the second high pressure, strained skin" in notice_of(window).hint, "it is told before"
         assert said.startswith("Lengthen Mid-bust by ")
         window.notices._buttons[1].click()
         yield settled(window)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from app.presenting.garment import told
 from app.wording.words import colon, joined, say, tr
-from core.assessment import BAD, CAUTION, GOOD, PENDING, Assessment
+from core.assessment import BAD, CAUTION, GOOD, PENDING, Assessment, Finding
 from core.design import Design
 
 IDLE = "idle"
@@ -43,17 +44,29 @@ def headline(level: str) -> str:
     }[level]
 
 
-def assessment_view(assessment: Assessment, design: Design | None = None) -> AssessmentView:
-    """Return an assessment in words, with lines and elastics as they are called in a ``design``, if any."""
+def assessment_view(
+    assessment: Assessment, design: Design | None = None, titles: Mapping[str, str] | None = None
+) -> AssessmentView:
+    """Return an assessment in words, with lines and elastics as they are called in a ``design``, if any.
+
+    Where that is not known, ``titles`` are those of lines by name.
+    """
     level = IDLE if assessment.level == GOOD and not assessment.active else assessment.level
     reasons = tuple(
-        (told(each.message, design) if design else say(each.message), say(each.action))
+        (told(each.message, design) if design else say(_titled(each, titles or {})), say(each.action))
         for each in assessment.findings
     )
     waiting = {"convergence": tr("Converging…"), "pressure": tr("Computing contact pressure…")}
     return AssessmentView(
         level, headline(level), reasons, waiting.get(assessment.pending, "") if level == PENDING else ""
     )
+
+
+def _titled(finding: Finding, titles: Mapping[str, str]) -> str:
+    """Return the message of a finding with the title of its line in place of its name."""
+    name = finding.lines[0] if finding.lines else ""
+    starts = bool(name) and finding.message.startswith(f"{name} ")
+    return titles.get(name, name) + finding.message.removeprefix(name) if starts else finding.message
 
 
 def assessment_lines(assessment: Assessment, design: Design) -> list[str]:

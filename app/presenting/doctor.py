@@ -17,7 +17,7 @@ from core.doctor import Diagnosis
 BUTTONS = 2
 """Fixes that have a button at most."""
 
-_ROOM = 54  # letters on the buttons of a notice in the narrowest window
+_ROOM = 56  # letters on the buttons of a notice in the narrowest window
 _SEEN = 0.05  # mm that a bust point swings by at least where its swing is worth a word
 _STEADY = 5e-4  # a swing that changes by less a turn stays as large as it is [1]
 

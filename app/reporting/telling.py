@@ -54,7 +54,8 @@ def project_words(sheet: Sheet) -> str:
 
 def overall(sheet: Sheet) -> AssessmentView:
     """Return the overall verdict on a sheet in words."""
-    return assessment_view(sheet.assessment)
+    titles = {row.line: piece_title(row.line, row.title) for row in sheet.cuts.rows}
+    return assessment_view(sheet.assessment, titles=titles)
 
 
 def size_words(sheet: Sheet) -> str:
