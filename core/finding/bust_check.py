@@ -20,6 +20,10 @@ SLIMMEST, WIDEST = 550.0, 1600.0
 FLATTEST_BUST, FULLEST_BUST = 5.0, 500.0
 """A bust is by so much wider round than the trunk under it [mm]: wide bounds of our own, from no table."""
 
+FULL = 30.0
+"""Breasts that both stand out by more than this [mm] are breasts, though a belly under them be as wide and
+hide their creases."""
+
 ROUNDEST, FLATTEST = 1.0, 2.3
 """A trunk is so many times as wide as deep; chairs, bottles and things on a table are not."""
 
@@ -35,9 +39,9 @@ ASIDE = 40.0
 DEEPEST = 220.0
 """The under-bust level lies by less than this below that of the bust [mm]."""
 
-ONE_BUMP = 0.3
-"""What comes forward in the middle by more than this part of the sides is one bump; of the samples' busts
-the middle does not come forward at all."""
+ONE_BUMP = 0.58
+"""What comes forward in the middle by more than this part of the sides is one bump; bras bridge the middle
+up to half as far."""
 
 OPEN = 0.25
 """One straight line is no longer than this part of an outline: else a side of the trunk is missing."""
@@ -109,20 +113,21 @@ def _rules(
     wide, deep, _ = np.ptp(under.points, axis=0)
     busts = [landmarks.points[f"bust_point_{side}"] for side in SIDES if side not in missing]
     clear = all(mark.rule == NIPPLE or mark.by_hand for mark in busts)
+    full = min(pole.prominence for pole in poles) > FULL
     more, depth = bust.tape - under.tape, landmarks.bust_level - landmarks.underbust_level
     yield under.longest_straight > OPEN * under.tape, "the trunk is open, as if only a part of it was scanned"
     yield not SLIMMEST < under.tape < WIDEST, f"the girth under it would be {under.tape:.0f} mm"
     yield len(missing) > 0 and not clear, "only one side stands out of the chest"
-    yield not FLATTEST_BUST < more < FULLEST_BUST, "it would not be wider than the trunk under it"
+    slight = more <= FLATTEST_BUST and not full
+    yield slight or more >= FULLEST_BUST, "it would not be wider than the trunk under it"
     yield not ROUNDEST < wide / deep < FLATTEST, "the trunk is not as deep as a body"
     yield not APART[0] < across[0] < APART[1], f"its points would lie {across[0]:.0f} mm apart"
     yield abs(across[2]) > UNEVEN and not missing, "its points would lie at very different heights"
     yield abs(middle[0] - trunk.middle) > ASIDE and not missing, "it would lie beside the middle of the body"
     yield max(pole.prominence for pole in poles) < FLAT, "nothing stands out of the chest"
-    yield not any(pole.inside for pole in poles), "no highest place of a breast shows"
     yield not 0.0 < depth < DEEPEST, "no fold lies at a likely depth under it"
     rules = {landmarks.points[f"fold_{side}"].rule for side in SIDES}
-    yield rules == {NO_CREASE}, "there is no crease under it"
+    yield rules == {NO_CREASE} and not (full and clear), "there is no crease under it"
 
 
 def _warnings(side: str, rule: str, missing: bool) -> list[str]:

@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from core.finding.chest import Pole, smoothed
-from core.finding.relief import GRID, Nipple, Patch, breast_patch, find_nipples
+from core.finding.nipple import ALONE, Nipple, find_nipples
+from core.finding.relief import GRID, Patch, breast_patch
 from core.landmark import SIDES, Landmark
 from core.mesh import MIRROR, Floats, Mesh, Points
 
@@ -24,14 +25,27 @@ OUTWARD = 18.0
 RAISED = 3.0
 """And so far above it [mm]: nipples were found 0 to 6 mm above the foremost place."""
 
+FAR_OUT, FARTHER_OUT = 24.0, 8.0
+"""A pole so far outside of where the breast reaches forward [mm] is the side of a broad bust, no word
+of the nipple; from the second [mm] less on it tells all."""
+
 WIDE = 52.0
 """The foremost place is looked for so far from the pole [mm]."""
 
 ALIKE = 4.0
 """Two smooth breasts point alike if one point lies so near to the other's mirror image [mm]."""
 
-SAME = 4.0
-"""Nipples lie so near to the same place of both breasts [mm]; so much further off, a third of it is left."""
+SAME, OTHER = 4.0, 3.0
+"""Nipples lie so near to the same place of both breasts [mm]; each second [mm] more leaves a third of it."""
+
+BORNE = 1.0
+"""Two spots that bear each other out are nipples if the mean of their odds is greater than this."""
+
+LIKE, UNLIKE = 8.0, 16.0
+"""Bust points may lie so far from each other's mirror image [mm]; each second [mm] more divides by e."""
+
+BROAD, BROADER = 26.0, 12.0
+"""A pole may lie so far outside of where the breast reaches forward [mm]; each second more divides by e."""
 
 FLAT, FAR_FLATTER = 4.0, 0.3
 """A side that stands out less than this [mm], or than this part of the other, shows no breast."""
@@ -44,14 +58,20 @@ def bust_points(
 
     ``middle`` is x of the middle of the body [mm]; on sides ``missing`` there is no breast.
     """
-    left, right = patches = [breast_patch(mesh, pole.position) for pole in poles]
-    nipples = find_nipples(left, right, middle)
+    left, right = patches = [breast_patch(mesh, pole) for pole in poles]
+    shown = (left if SIDES[0] not in missing else None, right if SIDES[1] not in missing else None)
+    nipples = find_nipples(*shown, middle)
     marks = [
         _bust_point(f"bust_point_{side}", patch, own, other, None if missing else middle)
         for side, patch, own, other in zip(SIDES, patches, nipples, nipples[::-1], strict=True)
     ]
     if all(mark.rule == SMOOTH for mark in marks):
         marks = _evened(marks, patches, middle)
+        apart = _unlike(marks, middle) if not missing else 0.0
+        marks = [
+            replace(mark, confidence=by_shape(patch, apart))
+            for mark, patch in zip(marks, patches, strict=True)
+        ]
     if len(missing) != 1:
         return marks
     there = marks[1 - SIDES.index(missing[0])]
@@ -62,16 +82,21 @@ def bust_points(
 
 def _evened(marks: list[Landmark], patches: Sequence[Patch], middle: float) -> list[Landmark]:
     """Return the points of two smooth breasts that are alike as mirror images: halves what is chance."""
-    left, right = (mark.position for mark in marks)
-    over = np.array([2.0 * middle - right[0], right[1], right[2]])
-    if np.linalg.norm(over - left) > ALIKE:
+    if _unlike(marks, middle) > ALIKE:
         return marks
-    mean = 0.5 * (left + over)
+    left, right = (mark.position for mark in marks)
+    mean = 0.5 * (left + np.array([2.0 * middle - right[0], right[1], right[2]]))
     places = (mean, np.array([2.0 * middle - mean[0], mean[1], mean[2]]))
     return [
         replace(mark, position=patch.onto(place))
         for mark, patch, place in zip(marks, patches, places, strict=True)
     ]
+
+
+def _unlike(marks: Sequence[Landmark], middle: float) -> float:
+    """Return how far a point of the left side lies from the mirror image of that of the right one [mm]."""
+    left, right = (mark.position for mark in marks)
+    return float(np.linalg.norm(np.array([2.0 * middle - right[0], right[1], right[2]]) - left))
 
 
 def _across(mesh: Mesh, there: Points, middle: float) -> Points:
@@ -96,43 +121,69 @@ def _bust_point(
     name: str, patch: Patch, own: Nipple | None, other: Nipple | None, middle: float | None
 ) -> Landmark:
     """Return the bust point of one breast; without a ``middle`` [mm] it is the only breast."""
-    if own is not None and own.sure:
+    if own is not None:
         place, rule = own.position, NIPPLE
-        confidence = own.clear if middle is None else borne_out(own, other, middle)
-    elif other is not None and other.sure:
-        place = patch.nearest(patch.centre + 0.5 * MIRROR * other.way)
-        confidence, rule = 0.3, MIRRORED
+        confidence = likelihood(own) if middle is None else borne_out(own, other, middle)
+    elif other is not None:
+        place, rule = patch.nearest(patch.forward + MIRROR * other.out), MIRRORED
+        confidence = 0.4
     else:
-        place, confidence = smooth_point(patch)
-        rule = SMOOTH
+        place, rule = smooth_point(patch), SMOOTH
+        confidence = by_shape(patch, 0.0)
     return Landmark(name, place, confidence, rule, patch.ring(place, 12.0))
+
+
+def likelihood(spot: Nipple) -> float:
+    """Return how likely (0..1) a spot is a nipple, whatever the other breast shows."""
+    return float(1.0 / (1.0 + np.exp(-spot.odds)))
 
 
 def borne_out(own: Nipple, other: Nipple | None, middle: float) -> float:
     """Return how sure it is (0..1) that the spot is the nipple, by that of the other breast. Source: ours.
 
     Two spots at the same place of both breasts bear each other out, however the breasts differ. Of two that
-    do not, one at most is a nipple: rather the clearer one, near the pole.
+    do not, one at most is a nipple: rather the likelier one.
     """
-    # Spots that lie unlike share one nipple: a spot's own certainty, times its part of both squared.
-    rival = 0.0 if other is None else other.alone
-    alike = 0.0 if other is None else float(np.exp(-max(own.apart(other, middle) - SAME, 0.0) / SAME))
-    return alike * own.clear + (1.0 - alike) * own.alone**3 / max(own.alone**2 + rival**2, 1e-9)
+    if other is None:
+        return float(1.0 / (1.0 + np.exp(ALONE - own.odds)))
+    alike = float(np.exp(-max(own.apart(other, middle) - SAME, 0.0) / OTHER))
+    both = float(1.0 / (1.0 + np.exp(BORNE - 0.5 * (own.odds + other.odds))))
+    rivals = np.exp([0.0, own.odds, other.odds])
+    return alike * both + (1.0 - alike) * float(rivals[1] / rivals.sum())
 
 
-def smooth_point(patch: Patch) -> tuple[Points, float]:
-    """Return where a breast without a nipple points to, shape (3,) [mm], and how sure that is (0..1).
+def by_shape(patch: Patch, apart: float) -> float:
+    """Return how sure (0..1) the bust point of a breast without a nipple is.
 
-    The foremost place lies inside the nipple, the pole outside of it: the point lies between. Source: ours.
+    Breasts whose points lie ``apart`` [mm] from each other's mirror images are less sure, and so are those
+    whose pole says something else than where they reach forward. Measured on 250 such points of made bodies:
+    one lay more than 8 mm off.
     """
+    gap = _gap(patch)
+    doubt = max(apart - LIKE, 0.0) / UNLIKE + max(-gap, gap - BROAD, 0.0) / BROADER
+    return 0.6 * float(np.exp(-doubt))
+
+
+def _gap(patch: Patch) -> float:
+    """Return how far outside of the place that reaches furthest forward the pole lies [mm]."""
+    return patch.side * float((patch.centre - patch.forward)[0])
+
+
+def smooth_point(patch: Patch) -> Points:
+    """Return where a breast without a nipple points to, shape (3,) [mm].
+
+    The foremost place lies inside the nipple, the pole outside of it: the point lies between, unless the pole
+    is the side of a broad bust. Source: ours.
+    """
+    gap = _gap(patch)
+    near = float(np.clip((FAR_OUT - gap) / FARTHER_OUT, 0.0, 1.0))
     foremost, inner = _foremost(patch)
+    if near == 0.0 or not inner:
+        return patch.forward
     way = patch.centre - foremost
     apart = float(np.linalg.norm(way))
-    if not inner:
-        return patch.centre, 0.1
-    place = foremost + way * min(OUTWARD / max(apart, 1.0), 0.75) + (0.0, 0.0, RAISED)
-    # Where the nipple itself would be stays unknown: never sure, the less so the wider the choice.
-    return patch.onto(place), 0.45 * float(np.exp(-max(apart - 24.0, 0.0) / 25.0))
+    outside = foremost + way * min(OUTWARD / max(apart, 1.0), 0.75) + (0.0, 0.0, RAISED)
+    return patch.onto(patch.forward + near * (outside - patch.forward))
 
 
 def _foremost(patch: Patch) -> tuple[Points, bool]:

@@ -27,6 +27,13 @@ BELOW, ABOVE = 25.0, 130.0
 BESIDE = 0.17
 """And further from the middle than this part of the half width of the trunk: the breastbone is no breast."""
 
+OUTWARD, PAIRED = 8.0, 40.0
+"""A breast is where the body reaches furthest in a direction so far outward of the front [degrees]: the place
+lies between the foremost one and the nipple. That of each side lies so near to that of both together [mm]."""
+
+LOWEST = 10.0
+"""Breasts lie further above the anchor than this [mm]."""
+
 USUAL, STRAYING = (18.0, 52.0), 0.6
 """A pole usually lies so far round the trunk from the front [degrees]; a degree more must be paid by so much
 prominence [mm], as the side of the trunk and an arm stand out too."""
@@ -39,6 +46,9 @@ FARTHEST, HIGHEST = 66.0, 122.0
 
 TALL, TURN = 5.0, 3.0
 """Cell of the map of prominence: height [mm] and bearing [degrees]."""
+
+SUMMIT = 40.0
+"""A summit so far from where the breast reaches forward [mm] is not that of the breast."""
 
 TOP = 25.0
 """The pole is the middle of what stands out most so near to the summit [mm]."""
@@ -116,12 +126,47 @@ def find_anchor(survey: Survey) -> Anchor:
 class Pole:
     """The point of one breast that stands out most from the trunk under it, shape (3,) [mm].
 
-    ``prominence`` is how far [mm]; ``inside`` is False if the search ended at its border.
+    ``prominence`` is how far [mm]; ``inside`` is False if nothing stands out most near where the breast
+    reaches ``forward``, shape (3,) [mm]: then that is its pole. ``side`` is 1 left and -1 right.
     """
 
     position: Points
     prominence: float
     inside: bool
+    forward: Points
+    side: float
+
+    @property
+    def outward(self) -> Points:
+        """The direction in which the breast reaches furthest, shape (3,) [1]."""
+        turn = np.radians(OUTWARD)
+        return np.array([self.side * np.sin(turn), -np.cos(turn), 0.0])
+
+
+def forward_places(survey: Survey, anchor: Anchor) -> tuple[Points, Points]:
+    """Return where the left and the right breast reach furthest forward, each (3,) [mm].
+
+    They are looked for as a mirrored pair: first where both sides together reach furthest, then on each side
+    near there. Raises LandmarkError without a front of the chest. Source: ours.
+    """
+    reach, x = reach_map(survey, anchor.half_width)
+    high = survey.z - anchor.z
+    rows = np.flatnonzero((high > LOWEST) & (high < ABOVE))
+    columns = np.flatnonzero((x > BESIDE * anchor.half_width) & (x < anchor.half_width))
+    both = (columns, len(x) - 1 - columns)
+    turn, known = np.radians(OUTWARD), np.nan_to_num(reach, nan=-np.inf)
+    out = x[columns] * np.sin(turn) - RISING * np.maximum(high[rows] - HIGH, 0.0)[:, None]
+    left, right = (known[rows][:, side] * np.cos(turn) + out for side in both)
+    if not (left.size and np.isfinite(left + right).any()):
+        raise LandmarkError("The front of the chest is missing.", "Open a scan that shows the whole bust.")
+    row, column = np.unravel_index(np.argmax(left + right), left.shape)
+    away = np.hypot((high[rows] - high[rows][row])[:, None], x[columns] - x[columns][column])
+    places = []
+    for side, own in zip(both, (left, right), strict=True):
+        k, m = np.unravel_index(np.argmax(np.where(away < PAIRED, own, -np.inf)), own.shape)
+        at = rows[k], side[m]
+        places.append(np.array([survey.middle + x[at[1]], -known[at], survey.z[at[0]]]))
+    return places[0], places[1]
 
 
 def find_poles(survey: Survey, anchor: Anchor) -> tuple[Pole, Pole]:
@@ -143,8 +188,9 @@ def find_poles(survey: Survey, anchor: Anchor) -> tuple[Pole, Pole]:
     prominence = np.full(len(p), -np.inf)
     prominence[window] = _prominence(survey, anchor, p[window], row[window])
     left, right = (
-        _pole(p[part], azimuth[part], prominence[part], anchor)
-        for part in (window & (s * x > 0.0) for s in SIGNS)
+        _pole(p[part], azimuth[part], prominence[part], anchor, place, side)
+        for side, place in zip(SIGNS, forward_places(survey, anchor), strict=True)
+        for part in [window & (side * x > 0.0)]
     )
     return left, right
 
@@ -166,8 +212,10 @@ def _prominence(survey: Survey, anchor: Anchor, p: Points, row: Indices) -> Floa
     return np.asarray((hull[:, :2] @ flat.T + hull[:, 2:]).max(axis=0))
 
 
-def _pole(p: Points, azimuth: Floats, prominence: Floats, anchor: Anchor) -> Pole:
-    """Find the pole among the points of one side: the highest summit over azimuth and height, centred."""
+def _pole(
+    p: Points, azimuth: Floats, prominence: Floats, anchor: Anchor, forward: Points, side: float
+) -> Pole:
+    """Find the pole among the points of one side: the highest summit near the ``forward`` place, centred."""
     if len(p) < 200:
         raise LandmarkError("The front of the chest is missing.", "Open a scan that shows the whole bust.")
     high = p[:, 2] - anchor.z
@@ -181,9 +229,10 @@ def _pole(p: Points, azimuth: Floats, prominence: Floats, anchor: Anchor) -> Pol
     grid = smoothed(grid, (1.2, 0.9))
     grid = np.where(np.isnan(grid), -np.inf, grid)
     summit = grid == maximum_filter(grid, (9, 7), mode="nearest")
-    inner = summit[cells] & (azimuth < FARTHEST) & (high < HIGHEST)
-    allowed = inner if inner.any() else (azimuth < 60.0) & (high < 100.0)  # well away from the border
-    top = p[np.argmax(np.where(allowed, grid[cells], -np.inf))]
+    apart = np.linalg.norm(p - forward, axis=1)
+    inner = summit[cells] & (azimuth < FARTHEST) & (high < HIGHEST) & (apart < SUMMIT)
+    top = p[np.argmax(np.where(inner, grid[cells], -np.inf)) if inner.any() else np.argmin(apart)]
     near = np.flatnonzero(((p - top) ** 2).sum(axis=1) < TOP**2)
     best = near[np.argsort(prominence[near])[-len(near) // 2 :]]
-    return Pole(p[best].mean(axis=0), float(prominence[best].mean()), bool(inner.any()))
+    place = p[best].mean(axis=0) if inner.any() else top
+    return Pole(place, float(prominence[best].mean()), bool(inner.any()), forward, side)

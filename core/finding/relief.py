@@ -1,18 +1,18 @@
-"""The surface of one breast seen from in front of it: what stands out of it in small, and the nipples."""
+"""The surface of one breast seen from in front of it, and what stands out of it in small."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import correlate, maximum_filter
+from scipy import sparse
+from scipy.ndimage import binary_dilation, correlate, label, maximum_filter
+from scipy.sparse.linalg import spsolve
 from scipy.spatial import Delaunay, QhullError
 
 from core.errors import LandmarkError
-from core.mesh import MIRROR, Floats, Mesh, Points, quadric_terms, unit
-
-NEAR = 24.0
-"""A nipple is looked for so far from the pole [mm]."""
+from core.finding.chest import Pole, smoothed
+from core.mesh import Flags, Floats, Mesh, Points, quadric_terms, unit
 
 GRID = 2.0
 """Cell of the height map [mm]."""
@@ -20,18 +20,21 @@ GRID = 2.0
 RING = (9.0, 22.0)
 """Inner and outer radius of the ring that a relief is measured against [mm]."""
 
+WIDE = 24.0
+"""So far from the pole [mm] a patch shows the relief, and its rings lie wholly on it."""
 
-AT_POLE, ABOUT = 4.0, 8.0
-"""Nipples lie so near to the pole as a rule [mm]; each ``ABOUT`` [mm] further off makes one less likely."""
+HIDES, BEHIND = 5.0, 20.0
+"""Skin hides what lies so far behind it [mm], in cells of this edge and next to them [mm]."""
 
-LEAST, FARTHER = 0.9, 0.06
-"""A nipple stands out by more than this [mm], off the pole by so much more for each mm."""
+STEEP = 2.5
+"""Where a breast hangs over, the height falls to the skin behind it more steeply than this [1]."""
 
-OFF_POLE, RIVALLED = 6.0, 1.35
-"""More than this beyond ``AT_POLE`` [mm] it stands out so many times as much as the next best spot."""
+FINER, CALM = 25.0, 3.0
+"""The place that reaches furthest is taken from the patch so near to the coarse one [mm], smoothed by so many
+cells."""
 
-UNLIKE, APART = 6.0, 9.0
-"""A pair may lie so unlike on their breasts [mm]; each ``APART`` [mm] more makes it less likely."""
+BUMP = 3
+"""How round a bump is, is told by its relief so many cells about its summit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,18 +43,20 @@ class Patch:
 
     ``points`` are the surface points, shape (g, g, 3) [mm]; ``distance`` is how far they lie from the pole,
     seen along the normal, shape (g, g) [mm]; ``relief`` is how far a spot stands out of the smooth surface
-    round it, shape (g, g) [mm], NaN where that is unknown.
+    round it, shape (g, g) [mm], NaN where that is unknown. ``forward`` is where the breast reaches furthest
+    forward and a little outward, shape (3,) [mm]; ``side`` is 1 for the left breast and -1 for the right one.
     """
 
     points: Points
     distance: Floats
     relief: Floats
+    forward: Points
+    side: float
 
     @property
     def centre(self) -> Points:
-        """The surface point at the pole, or nearest to it, shape (3,) [mm]."""
-        shown = np.isfinite(self.points).all(axis=-1)
-        return np.asarray(self.points.reshape(-1, 3)[np.argmin(np.where(shown, self.distance, np.inf))])
+        """The surface point at the pole, shape (3,) [mm]."""
+        return np.asarray(self.points[len(self.points) // 2, len(self.points) // 2])
 
     def nearest(self, point: Points) -> Points:
         """Return the surface point of the grid nearest to ``point``, shape (3,) [mm]."""
@@ -75,6 +80,28 @@ class Patch:
         low, high = max(at - 1, 0), min(at + 1, len(line) - 1)
         return np.asarray((line[high] - line[low]) / (high - low))
 
+    def normal(self, row: int, column: int, cells: int) -> Points:
+        """Return which way the surface looks at a cell, over so many cells to each side, unit, shape (3,)."""
+        last = len(self.points) - 1
+        low, high = (np.clip([row + k, column + k], 0, last) for k in (-cells, cells))
+        across = self.points[row, high[1]] - self.points[row, low[1]]
+        along = self.points[high[0], column] - self.points[low[0], column]
+        return unit(np.cross(across, along))
+
+    def roundness(self, row: int, column: int) -> float:
+        """Return how round the bump at a cell is: 1 for a spot, 0 for an edge.
+
+        The less of its two principal curvatures over the greater; 0 too where they are unknown.
+        """
+        near = self.relief[row - BUMP : row + BUMP + 1 : BUMP, column - BUMP : column + BUMP + 1 : BUMP]
+        if near.shape != (3, 3) or np.isnan(near).any():
+            return 0.0
+        twice = near[1, 1] * 2.0
+        mixed = 0.25 * (near[2, 2] + near[0, 0] - near[0, 2] - near[2, 0])
+        bends = ((near[2, 1] + near[0, 1] - twice, mixed), (mixed, near[1, 2] + near[1, 0] - twice))
+        most, least = np.linalg.eigvalsh(np.array(bends))
+        return float(max(least / most, 0.0)) if most < 0.0 else 0.0
+
     def ring(self, place: Points, radius: float) -> Points:
         """Return a closed curve on the surface round ``place``, ``radius`` [mm] off, shape (k, 3) [mm]."""
         t = np.linspace(0.0, 2.0 * np.pi, 37)
@@ -88,19 +115,19 @@ class Patch:
         return np.asarray(ring[np.isfinite(ring).all(axis=1)])
 
 
-def breast_patch(mesh: Mesh, pole: Points) -> Patch:
-    """Lay a grid over the surface round ``pole``, shape (3,) [mm], and measure the relief on it.
+def breast_patch(mesh: Mesh, pole: Pole) -> Patch:
+    """Lay a grid over the surface round the ``pole`` of a breast, and measure the relief on it.
 
     Raises LandmarkError if there is no surface.
     """
-    near = ((mesh.vertices - pole) ** 2).sum(axis=1)
+    near = ((mesh.vertices - pole.position) ** 2).sum(axis=1)
     axis = unit(mesh.vertex_normals[near < 30.0**2].sum(axis=0))
     across = unit(np.cross([0.0, 0.0, 1.0], axis))
     frame = np.stack([across, np.cross(axis, across), axis])
-    reach = NEAR + RING[1] + 8.0
+    reach = WIDE + RING[1] + 8.0
     seen = (near < (2.0 * reach) ** 2) & (mesh.vertex_normals @ axis > 0.1)
-    local = (mesh.vertices[seen] - pole) @ frame.T
-    local = local[(np.abs(local[:, :2]) < reach + 10.0).all(axis=1)]
+    local = (mesh.vertices[seen] - pole.position) @ frame.T
+    local = _in_front(local[(np.abs(local[:, :2]) < reach + 10.0).all(axis=1)])
     t = np.arange(-np.ceil(reach / GRID), np.ceil(reach / GRID) + 1) * GRID
     u, v = np.meshgrid(t, t)
     height = _height(local, np.stack([u, v], axis=-1))
@@ -109,7 +136,59 @@ def breast_patch(mesh: Mesh, pole: Points) -> Patch:
             "The skin of a breast is missing, or its points are too far apart.",
             "Open a scan that shows the whole bust.",
         )
-    return Patch(pole + np.stack([u, v, height], axis=-1) @ frame, np.hypot(u, v), _relief(height))
+    own = _hanging_together(height)
+    points = pole.position + np.stack([u, v, np.where(own, height, np.nan)], axis=-1) @ frame
+    relief = np.where(own, _relief(_carried_on(height, own)), np.nan)
+    return Patch(points, np.hypot(u, v), relief, _furthest(points, pole), pole.side)
+
+
+def _in_front(surface: Points) -> Points:
+    """Return the points of ``surface``, shape (n, 3) [mm], that no other sheet of the skin hides."""
+    if not len(surface):
+        return surface
+    row, column = np.floor((surface[:, :2] - surface[:, :2].min(axis=0)) / HIDES).astype(np.int64).T
+    front = np.full((row.max() + 1, column.max() + 1), -np.inf)
+    np.maximum.at(front, (row, column), surface[:, 2])
+    return np.asarray(surface[surface[:, 2] > maximum_filter(front, 3)[row, column] - BEHIND])
+
+
+def _hanging_together(height: Floats) -> Flags:
+    """Tell which cells of a height map belong to the breast in its middle: no steep step lies between."""
+    slope = np.hypot(*np.gradient(np.nan_to_num(height, nan=0.0), GRID))
+    pieces, _ = label(slope < STEEP)
+    middle = len(height) // 2
+    own = pieces == pieces[middle, middle]
+    if not pieces[middle, middle]:
+        return np.ones(height.shape, dtype=bool)
+    return np.asarray(binary_dilation(own) | np.isnan(height))
+
+
+def _carried_on(height: Floats, own: Flags) -> Floats:
+    """Return a height map that goes on over cells that are not its ``own``, bent as little as can be."""
+    beyond = ~own
+    if not beyond.any():
+        return height
+    size = len(height)
+    line = sparse.diags_array([1.0, -2.0, 1.0], offsets=[0, 1, 2], shape=(size - 2, size))
+    whole = sparse.eye_array(size)
+    bends = sparse.vstack([sparse.kron(line, whole), sparse.kron(whole, line)]).tocsc()
+    free = np.flatnonzero(beyond)
+    known = np.where(beyond, 0.0, np.nan_to_num(height)).ravel()
+    part = bends[:, free]
+    known[free] = spsolve(part.T @ part, -(part.T @ (bends @ known)))
+    return np.asarray(np.where(np.isnan(height), np.nan, known.reshape(height.shape)))
+
+
+def _furthest(points: Points, pole: Pole) -> Points:
+    """Return the point of a grid that reaches furthest, near where the breast does, shape (3,) [mm]."""
+    calm = smoothed(np.nan_to_num(points @ pole.outward, nan=-np.inf), (CALM, CALM))
+    near = ((points - pole.forward) ** 2).sum(axis=-1) < FINER**2
+    near &= np.isfinite(calm) & np.isfinite(points[..., 0])
+    return np.asarray(
+        points[np.unravel_index(np.argmax(np.where(near, calm, -np.inf)), near.shape)]
+        if near.any()
+        else pole.forward
+    )
 
 
 def _height(surface: Points, places: Points) -> Floats:
@@ -153,96 +232,3 @@ def relief_kernels(cell: float, core: float = 3.0, ring: tuple[float, float] = R
     spot /= spot.sum()
     shape = (len(t), len(t))
     return tuple(kernel.reshape(shape) for kernel in (spot - (spot @ basis) @ fit, fit[1], fit[2]))
-
-
-@dataclass(frozen=True, eq=False)
-class Nipple:
-    """A spot that stands out of the breast: its centre, shape (3,) [mm], and how clearly.
-
-    ``way`` leads to it from the pole, shape (3,) [mm], and ``offset`` is its length seen along the normal
-    there [mm]; ``relief`` is how far it stands out [mm]; ``ratio`` is that over the next best spot of the
-    same breast; ``clarity`` is that over the roughness of the breast. How sure a spot is of its looks is our
-    judgement: its weights were not measured.
-    """
-
-    position: Points
-    way: Points
-    relief: float
-    ratio: float
-    clarity: float
-    offset: float
-
-    @property
-    def sure(self) -> bool:
-        """Whether the spot stands out enough for a nipple: the farther from the pole, the more it must."""
-        far = max(self.offset - AT_POLE, 0.0)
-        return self.relief > LEAST + FARTHER * far and self.ratio > (RIVALLED if far > OFF_POLE else 1.0)
-
-    @property
-    def clear(self) -> float:
-        """How sure (0..1) it is by its looks alone: clear of the roughness and of others, near the pole."""
-        single = float(np.clip((self.ratio - 0.9) / 1.2, 0.0, 1.0)) * min(self.clarity / 2.0, 1.0)
-        clear = 0.6 * min(self.clarity / 6.0, 1.0) + 0.4 * single
-        return clear * float(np.exp(-max(self.offset - 8.0, 0.0) / 15.0))
-
-    @property
-    def alone(self) -> float:
-        """How sure (0..1) it is without a partner: all else that stands out may lie anywhere."""
-        return 0.8 * self.clear * float(np.exp(-max(self.offset - AT_POLE, 0.0) / ABOUT))
-
-    def apart(self, other: Nipple, middle: float) -> float:
-        """Return how far it lies from the mirror image of that of the other breast [mm].
-
-        The less of two: pole laid over pole, as breasts differ, or at the ``middle`` of the body, x [mm].
-        """
-        across = self.position - MIRROR * other.position - (2.0 * middle, 0.0, 0.0)
-        return float(min(np.linalg.norm(self.way - MIRROR * other.way), np.linalg.norm(across)))
-
-
-def find_nipples(left: Patch, right: Patch, middle: float) -> tuple[Nipple | None, Nipple | None]:
-    """Return the spots that stand out most as a pair, near the poles and alike on both sides.
-
-    ``middle`` is x of the middle of the body [mm]. None where nothing stands out. Source: ours.
-    """
-    spots = [_spots(patch) for patch in (left, right)]
-    if not (spots[0] and spots[1]):
-        return (spots[0][0] if spots[0] else None, spots[1][0] if spots[1] else None)
-
-    def worth(a: Nipple, b: Nipple) -> float:
-        return _worth(a) + _worth(b) - 0.5 * (max(a.apart(b, middle) - UNLIKE, 0.0) / APART) ** 2
-
-    return max(((a, b) for a in spots[0] for b in spots[1]), key=lambda pair: worth(*pair))
-
-
-def _worth(spot: Nipple) -> float:
-    """Return how clear a spot is for its place [1]: beyond 3 mm more relief makes no better nipple."""
-    rough = max(spot.relief / spot.clarity, 0.3)
-    return min(spot.relief, 3.0) / rough - 0.5 * (max(spot.offset - AT_POLE, 0.0) / ABOUT) ** 2
-
-
-def _spots(patch: Patch) -> list[Nipple]:
-    """Return the summits of the relief near the pole, at least 14 mm apart, the best first."""
-    r = np.where(np.isnan(patch.relief), -np.inf, patch.relief)
-    summits = (r == maximum_filter(r, 2 * round(14.0 / GRID) + 1)) & (patch.distance < NEAR) & (r > 0.0)
-    near = r[(patch.distance < NEAR) & np.isfinite(r)]
-    rough = 1.48 * float(np.median(np.abs(near - np.median(near)))) + 0.12 if len(near) else np.inf
-    spots = []
-    for row, column in np.argwhere(summits):
-        others = summits.copy()
-        others[row, column] = False
-        top = r[row, column]
-        ratio = top / max(r[others].max(initial=0.0), 0.1)
-        place = _centre(patch, row, column)
-        way, offset = place - patch.centre, patch.distance[row, column]
-        spots.append(Nipple(place, way, top, ratio, top / rough, offset))
-    return sorted(spots, key=_worth, reverse=True)
-
-
-def _centre(patch: Patch, row: int, column: int) -> Points:
-    """Return the centre of the upper half of a summit, on the surface, shape (3,) [mm]."""
-    rows, columns = np.indices(patch.relief.shape)
-    close = np.hypot(rows - row, columns - column) * GRID <= 9.0
-    weight = np.where(
-        close, np.maximum(np.nan_to_num(patch.relief) - 0.5 * patch.relief[row, column], 0.0), 0.0
-    )
-    return np.asarray(np.average(patch.points[weight > 0.0], axis=0, weights=weight[weight > 0.0]))
