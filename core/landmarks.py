@@ -50,7 +50,7 @@ def find_landmarks(body: Body, placed: Mapping[str, Points] = NOTHING) -> Landma
         busts = [held_against(by_hand.get(mark.name), mark) for mark in seen]
         marks = busts + folds_and_lowest(calm, busts, anchor.z, by_hand)
         found = _levels(calm, marks, by_hand, missing)
-        warnings = check(calm, trunk, poles, missing, found)
+        warnings = check(calm, trunk, anchor, poles, missing, found)
     further = {
         mark.name: mark if mark.name.startswith("front_centre") else _less(mark, UNMEASURED)
         for mark in (*trunk_marks(calm, found), *root_marks(calm, found))

@@ -170,10 +170,11 @@ def test_what_cannot_be_a_bust_is_refused_for_its_reason(shift: tuple[float, ...
         mark = points[f"bust_point_{side}"]
         points[mark.name] = replace(mark, position=mark.position + np.array([shift[k], 0.0, shift[k + 2]]))
     moved = replace(before, points=points, bust_level=before.bust_level + 0.5 * (shift[2] + shift[3]))
-    poles = find_poles(trunk, find_anchor(trunk))
-    assert check(mesh, trunk, poles, (), before) == ()
+    anchor = find_anchor(trunk)
+    poles = find_poles(trunk, anchor)
+    assert check(mesh, trunk, anchor, poles, (), before) == ()
     with pytest.raises(LandmarkError, match=why):
-        check(mesh, trunk, poles, (), moved)
+        check(mesh, trunk, anchor, poles, (), moved)
 
 
 def test_a_fold_is_no_surer_than_the_place_of_its_profile() -> None:

@@ -21,8 +21,8 @@ FLATTEST_BUST, FULLEST_BUST = 5.0, 500.0
 """A bust is by so much wider round than the trunk under it [mm]: wide bounds of our own, from no table."""
 
 FULL = 30.0
-"""Breasts that both stand out by more than this [mm] are breasts, though a belly under them be as wide and
-hide their creases."""
+"""Breasts that both stand out by more than this [mm], and as far forward of what is under them, are breasts:
+though a belly under them be as wide and they hide their creases."""
 
 ROUNDEST, FLATTEST = 1.0, 2.3
 """A trunk is so many times as wide as deep; chairs, bottles and things on a table are not."""
@@ -84,14 +84,20 @@ def _placed(landmarks: Landmarks) -> bool:
 
 
 def check(
-    mesh: Mesh, trunk: Survey, poles: tuple[Pole, Pole], missing: Sequence[str], landmarks: Landmarks
+    mesh: Mesh,
+    trunk: Survey,
+    anchor: Anchor,
+    poles: tuple[Pole, Pole],
+    missing: Sequence[str],
+    landmarks: Landmarks,
 ) -> tuple[str, ...]:
     """Return warnings, one sentence each; on sides ``missing`` there is no breast.
 
     Raises LandmarkError where this cannot be a bust.
     """
     check_placed(landmarks)
-    for wrong, why in _rules(mesh, trunk, poles, missing, landmarks):
+    full = min(anchor.kink, *(pole.prominence for pole in poles)) > FULL
+    for wrong, why in _rules(mesh, trunk, poles, missing, landmarks, full):
         if wrong:
             raise refusal(why, _placed(landmarks))
     rules = [landmarks.points[f"fold_{side}"].rule for side in SIDES]
@@ -103,7 +109,12 @@ def check(
 
 
 def _rules(
-    mesh: Mesh, trunk: Survey, poles: tuple[Pole, Pole], missing: Sequence[str], landmarks: Landmarks
+    mesh: Mesh,
+    trunk: Survey,
+    poles: tuple[Pole, Pole],
+    missing: Sequence[str],
+    landmarks: Landmarks,
+    full: bool,
 ) -> Iterator[tuple[bool, str]]:
     """Give what a bust must not be, whether it is so, and why it is refused then; the first is told."""
     under, bust = stable_level(mesh, landmarks.underbust_level), trunk_levels(mesh, landmarks.bust_level)[0]
@@ -113,7 +124,6 @@ def _rules(
     wide, deep, _ = np.ptp(under.points, axis=0)
     busts = [landmarks.points[f"bust_point_{side}"] for side in SIDES if side not in missing]
     clear = all(mark.rule == NIPPLE or mark.by_hand for mark in busts)
-    full = min(pole.prominence for pole in poles) > FULL
     more, depth = bust.tape - under.tape, landmarks.bust_level - landmarks.underbust_level
     yield under.longest_straight > OPEN * under.tape, "the trunk is open, as if only a part of it was scanned"
     yield not SLIMMEST < under.tape < WIDEST, f"the girth under it would be {under.tape:.0f} mm"

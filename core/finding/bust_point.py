@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from core.finding.chest import Pole, smoothed
-from core.finding.nipple import ALONE, Nipple, find_nipples
+from core.finding.nipple import ALONE, BORNE, Nipple, find_nipples
 from core.finding.relief import GRID, Patch, breast_patch
 from core.landmark import SIDES, Landmark
 from core.mesh import MIRROR, Floats, Mesh, Points
@@ -37,9 +37,6 @@ ALIKE = 4.0
 
 SAME, OTHER = 4.0, 3.0
 """Nipples lie so near to the same place of both breasts [mm]; each second [mm] more leaves a third of it."""
-
-BORNE = 1.0
-"""Two spots that bear each other out are nipples if the mean of their odds is greater than this."""
 
 LIKE, UNLIKE = 8.0, 16.0
 """Bust points may lie so far from each other's mirror image [mm]; each second [mm] more divides by e."""

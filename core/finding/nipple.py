@@ -31,8 +31,8 @@ LEAST = 0.9
 UNLIKE, UNLIKELY = 6.0, 9.0
 """A pair may lie so unlike on their breasts [mm]; each ``UNLIKELY`` [mm] more makes it less likely."""
 
-ALONE = 2.0
-"""The odds of a spot must be so much better if none of the other breast bears it out."""
+BORNE, ALONE = 1.0, 2.0
+"""The odds of nipples are greater than the first, in the mean of both; than the second if only one shows."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,13 +84,13 @@ def find_nipples(
     spots = [
         [spot for spot in spots_of(patch) if spot.relief > LEAST] if patch else [] for patch in (left, right)
     ]
-    alone = ALONE if left and right else 0.0
+    alone = ALONE if left and right else BORNE
 
     def worth(a: Nipple | None, b: Nipple | None) -> float:
         if a is None or b is None:
             only = a or b
             return only.odds - alone if only else 0.0
-        return a.odds + b.odds - 0.5 * (max(a.apart(b, middle) - UNLIKE, 0.0) / UNLIKELY) ** 2
+        return a.odds + b.odds - 2.0 * BORNE - 0.5 * (max(a.apart(b, middle) - UNLIKE, 0.0) / UNLIKELY) ** 2
 
     pairs = ((a, b) for a in (None, *spots[0]) for b in (None, *spots[1]))
     return max(pairs, key=lambda pair: worth(*pair))

@@ -127,7 +127,7 @@ def breast_patch(mesh: Mesh, pole: Pole) -> Patch:
     reach = WIDE + RING[1] + 8.0
     seen = (near < (2.0 * reach) ** 2) & (mesh.vertex_normals @ axis > 0.1)
     local = (mesh.vertices[seen] - pole.position) @ frame.T
-    local = _in_front(local[(np.abs(local[:, :2]) < reach + 10.0).all(axis=1)])
+    local = in_front(local[(np.abs(local[:, :2]) < reach + 10.0).all(axis=1)])
     t = np.arange(-np.ceil(reach / GRID), np.ceil(reach / GRID) + 1) * GRID
     u, v = np.meshgrid(t, t)
     height = _height(local, np.stack([u, v], axis=-1))
@@ -142,7 +142,7 @@ def breast_patch(mesh: Mesh, pole: Pole) -> Patch:
     return Patch(points, np.hypot(u, v), relief, _furthest(points, pole), pole.side)
 
 
-def _in_front(surface: Points) -> Points:
+def in_front(surface: Points) -> Points:
     """Return the points of ``surface``, shape (n, 3) [mm], that no other sheet of the skin hides."""
     if not len(surface):
         return surface
