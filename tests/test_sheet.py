@@ -128,8 +128,12 @@ def test_a_body_at_rest_has_an_empty_cut_list(built: Built) -> None:
     assert sheet.lift.up == pytest.approx(0.0, abs=1e-9)
 
 
-def test_doubts_are_told_apart_from_what_else_is_warned_of(built: Built, sheet: Sheet) -> None:
+def test_doubts_are_told_apart_from_what_else_is_warned_of(built: Built) -> None:
     stages = built("mannequin")
+    marks = {name: replace(mark, confidence=0.3) for name, mark in stages.landmarks.points.items()}
+    stages = replace(stages, landmarks=replace(stages.landmarks, points=marks))
+    solution = run(stages)
+    sheet = sheet_of(solution, solution.records, HEADING)
     assert sheet.doubts == tuple(doubts(stages.body, stages.landmarks)) != ()
     assert not set(sheet.doubts) & set(sheet.warnings)
     rows = csv.DictReader(io.StringIO(sheet_csv(sheet)))

@@ -9,6 +9,7 @@ from functools import cache
 from importlib import resources
 
 from core.errors import UserError
+from core.finding.bust_point import SMOOTH
 from core.landmark import CERTAIN, Landmark
 from core.measuring.plus_minus import SOURCES
 from core.sizing.table import Words
@@ -46,7 +47,9 @@ class Assumed:
 
     def of_landmark(self, mark: Landmark) -> float:
         """Return the standard deviation of a landmark in each direction along the skin [mm]."""
-        return self.landmark_mm if mark.confidence >= CERTAIN else self.unsure_landmark_mm
+        # A smooth breast tells where it points to, but its nipple lies somewhere about there.
+        sure = mark.confidence >= CERTAIN and mark.rule != SMOOTH
+        return self.landmark_mm if sure else self.unsure_landmark_mm
 
 
 NUMBERS = tuple(field.name for field in fields(Assumed))
