@@ -7,6 +7,7 @@ import random
 import tempfile
 import zipfile
 from collections.abc import Iterator
+from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -102,7 +103,7 @@ def _changed(changes: list[list[Any]]) -> bytes:
 
 
 def _change(holder: Any, key: Any, how: str, value: int) -> None:
-    new = VALUES[value] if value < len(VALUES) else float(("nan", "inf")[value - len(VALUES)])
+    new = deepcopy(VALUES[value]) if value < len(VALUES) else float(("nan", "inf")[value - len(VALUES)])
     if how == "drop":
         del holder[key]
     elif how == "add" and isinstance(holder, dict):
