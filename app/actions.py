@@ -94,7 +94,7 @@ class Actions(Menus):
         }
         self.add_lines = {name: self.add("lines", title, of_document=True) for name, title in titles.items()}
         self.rule("lines")
-        said = tr("Click on the body from place to place; the line snaps to the control mesh")
+        said = tr("Click points on the body to draw a line; it keeps the curve or snaps to control points")
         self.draw_line = self.add("lines", tr("Draw a line on the body"), "N", said, of_document=True)
         self.own_line = self.add("lines", tr("Line through control points…"), of_document=True)
 

@@ -30,7 +30,7 @@ from threadpoolctl import threadpool_limits
 
 from core.advice.limits import Limits, limits_of
 from core.comparison import shape_of
-from core.cutting import goes_on
+from core.cutting import is_strap
 from core.design import Design
 from core.design_lines import WornLine
 from core.elastics import find_elastic
@@ -111,7 +111,8 @@ class Slider:
         lines = [line for line in model.lines if line.name in self._names]
         if min(line.length(points) / line.rest_length - ratio for line in lines) < -1e-9:
             shown.add("slack")
-        made = {line.name for line in lines if not goes_on(stages, line)} & set(stages.design.worn_elastics())
+        made = {line.name for line in lines if not is_strap(stages, line)}
+        made &= set(stages.design.worn_elastics())
         worn = pressures(stages, points) if made else {}
         if any(worn[name].largest > comfort().red_kpa for name in made):
             shown.add("pressing")

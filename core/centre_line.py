@@ -10,6 +10,7 @@ from scipy.ndimage import convolve1d
 from scipy.spatial import cKDTree
 
 from core.mesh import Floats, Indices, Mesh, Points, unit
+from core.routes import NO_BACK
 from core.sections import arc_length, resample
 
 STEP = 4.0
@@ -18,7 +19,6 @@ STEP = 4.0
 USUAL_WIDTH = 12.0
 """Width of a band of which nothing else is said [mm]."""
 
-NO_BACK = np.empty((0, 3))
 _ASIDE = 0.4  # how far the middle of a taut band may leave its path, in widths: it still lies over it
 _PULLS = 12  # how often it is pulled straighter at most
 _TOUCH = 1.5  # a taut band that stands off the skin by less than this lies on it [mm]
@@ -70,11 +70,14 @@ class CentreLine:
     closed: bool
 
 
-def centre_line(path: Points, surface: Surface, back: Points = NO_BACK, width: float = 0.0) -> CentreLine:
+def centre_line(
+    path: Points, surface: Surface, back: Points = NO_BACK, width: float = 0.0, *, drawn: bool = False
+) -> CentreLine:
     """Return a smooth curve every ``STEP`` along ``path`` and, if it is given, round the ``back`` of it.
 
-    Both have shape (k, 3) [mm]; the back goes from the end of the path to its beginning. A band of some
-    ``width`` [mm] is laid as straight as it can lie on the skin with the path still under it.
+    Both have shape (k, 3) [mm]; the back goes on from the end of the path, to its beginning or elsewhere. A
+    band of some ``width`` [mm] is laid as straight as it can lie on the skin with the path still under it;
+    one that was ``drawn`` there is kept where it is.
     """
     from scipy.interpolate import CubicSpline  # noqa: PLC0415 (a fifth of a second that no start needs)
 
@@ -84,17 +87,21 @@ def centre_line(path: Points, surface: Surface, back: Points = NO_BACK, width: f
     s = arc_length(whole)
     if closed:
         whole[-1] = whole[0]
-    spline = CubicSpline(s, whole, bc_type="periodic" if closed else "not-a-knot")
     at = np.linspace(0.0, s[-1], max(2, round(s[-1]) + 1))
-    laid, _ = surface.lay(evenly(spline(at), closed))
-    points, normals = _pulled(laid, surface, closed, _ASIDE * width)
-    normals = unit(smooth(normals, 4, closed))
     taut = np.stack([np.interp(at, s, axis) for axis in whole.T], axis=1)
+    if drawn:
+        points, normals = surface.lay(evenly(taut, closed))
+    else:
+        spline = CubicSpline(s, whole, bc_type="periodic" if closed else "not-a-knot")
+        laid, _ = surface.lay(evenly(spline(at), closed))
+        points, normals = _pulled(laid, surface, closed, _ASIDE * width)
+    normals = unit(smooth(normals, 4, closed))
     nearest = np.asarray(cKDTree(taut).query(points)[1])
     off = np.einsum("kx,kx->k", taut[nearest] - points, normals)
     lift = smooth(np.maximum(off - _TOUCH, 0.0), 6, closed)
     part = np.searchsorted(s, at[nearest], side="right") - 1
-    part = np.where(part < len(path) - 1, part, -1 if len(back) else len(path) - 2)
+    # A strap pulls over the shoulder as its last segment does; a back has a pull of its own.
+    part = np.where(part < len(path) - 1, part, -1 if len(back) and closed else len(path) - 2)
     return CentreLine(points, normals, lift, part, closed)
 
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from core.body import Body
+from core.embedding import Embedded, Grid
 from core.errors import FitError
 from core.fitting.creases import Crease, find_creases
 from core.fitting.easing import eased
@@ -16,7 +17,7 @@ from core.fitting.fit_quality import FitQuality, measure_fit
 from core.fitting.ground import Ground, survey_ground
 from core.fitting.laying import lay_line, lay_outline, lay_rest
 from core.landmark import Landmarks
-from core.mesh import Flags, Indices, Mesh, Points
+from core.mesh import Flags, Floats, Indices, Mesh, Points
 from core.template import Template
 
 MOST_HOLES = 0.5
@@ -32,8 +33,9 @@ class ControlMesh:
 
     ``fixed`` (n,) tells the points that do not move; ``row`` and ``column`` (n,) are their places in the
     template, column 0 the centre, positive the subject's left. ``paths`` are the control points of each named
-    line from right (-x) to left; ``bust_points`` those at the bust points, (left, right). ``border`` (b,) is
-    the border loop in order, ``warnings`` what the user should know of the fit, ``quality`` its figures.
+    line from right (-x) to left, ``embedded`` the vertices of lines that run between control points;
+    ``bust_points`` those at the bust points, (left, right). ``border`` (b,) is the border loop in order,
+    ``warnings`` what the user should know of the fit, ``quality`` its figures.
     """
 
     mesh: Mesh
@@ -45,6 +47,23 @@ class ControlMesh:
     border: Indices
     warnings: tuple[str, ...]
     quality: FitQuality | None = None
+    embedded: Mapping[str, Embedded] = field(default_factory=dict)
+
+    @property
+    def grid(self) -> Grid:
+        """Rows, columns and triangles of its points."""
+        return Grid(self.row, self.column, self.mesh.faces)
+
+    def upper_end(self, name: str) -> Floats:
+        """Return the weights of the control points, (n,), of the last vertex of a line."""
+        if name in self.embedded:
+            return np.asarray(self.embedded[name].weights[[-1]].toarray()[0])
+        return np.asarray(np.arange(len(self.row)) == self.paths[name][-1], dtype=np.float64)
+
+    @property
+    def line_names(self) -> tuple[str, ...]:
+        """The names of all lines, those through control points first."""
+        return *self.paths, *self.embedded
 
 
 def fit_control_mesh(

@@ -14,6 +14,7 @@ from core.mesh import Points
 from core.pipeline import Stages
 from core.sections import arc_length
 from core.sewing.tensions import LineTension, line_tensions
+from core.snapping import off_by
 from core.solving.newtons import newtons_per_unit
 
 FAR = 0.8
@@ -27,6 +28,9 @@ SLACK = "Slack: it is longer than the body needs there, and a band cannot push. 
 
 UNCHOSEN = "No elastic is chosen for it: choose one to get its length to cut."
 """What is said of a line that is made of nothing in particular."""
+
+SEWN_ON = 3.0
+"""A line that ends nearer than this to a band is sewn to it [mm]."""
 
 FRONT_ONLY = (
     "Front part only, up to the edge of the control mesh: what goes on over shoulder or back is not in it."
@@ -98,7 +102,7 @@ def cut_list(stages: Stages, control_points: Points) -> CutList:
     rows = tuple(
         replace(
             _row(stages, line, line.length(control_points), tensions),
-            height_mm=_middle(control_points[line.path]) - bust,
+            height_mm=_middle(line.places(control_points)) - bust,
         )
         for line in stages.model.lines
         if line.name in design.worn()
@@ -121,12 +125,20 @@ def _row(stages: Stages, line: Line, reached: float, tensions: Mapping[str, Line
         traits.title or line.name,
         elastic.name if elastic else "",
         elastic.width_mm if elastic else traits.width,
-        line.back_length > 0.0 or bool(line.path[0] == line.path[-1]),
+        line.back_length > 0.0 or line.closed,
         reached,
         reached + line.back_length,
     )
-    if goes_on(stages, line):
-        row = replace(row, front_only=True, notes=(FRONT_ONLY,))
+    tail = stages.tails.get(line.name)
+    if tail is not None and tail.length > 0.0:
+        row = _noted(
+            row,
+            "From its lower end over the shoulder to the under-bust band at the back: "
+            f"{tail.length:.0f} mm of it lie where the body is fixed.",
+        )
+    elif goes_on(stages, line):
+        why = (tail.problem,) if tail is not None and tail.problem else ()
+        row = replace(row, front_only=True, notes=(*why, FRONT_ONLY))
     tension = tensions.get(line.name)
     if tension is not None:
         slack = tension.push > 0.0
@@ -141,13 +153,22 @@ def _row(stages: Stages, line: Line, reached: float, tensions: Mapping[str, Line
 
 
 def goes_on(stages: Stages, line: Line) -> bool:
-    """Return whether an open line has an end where nothing moves any more, and no band to be sewn to."""
-    first, last = int(line.path[0]), int(line.path[-1])
-    if line.back_length > 0.0 or first == last:
+    """Return whether an open line has an end where nothing moves any more, and no band to be sewn to.
+
+    A strap that is led over the shoulder has a band at the back.
+    """
+    if line.back_length > 0.0 or line.closed or line.tail_length > 0.0:
         return False
-    control = stages.control
-    inside = {point for each in stages.model.lines if each.back_length > 0.0 for point in each.path[1:-1]}
-    return any(bool(control.fixed[end]) and end not in inside for end in (first, last))
+    rest, fixed = stages.control.mesh.vertices, line.weights @ stages.control.fixed > 1.0 - 1e-9
+    bands = [each.places(rest)[1:-1] for each in stages.model.lines if each.back_length > 0.0]
+    ends = line.places(rest)[[0, -1]]
+    sewn = [any(off_by(end[None], band) < SEWN_ON for band in bands) for end in ends]
+    return any(held and not sewed for held, sewed in zip(fixed[[0, -1]], sewn, strict=True))
+
+
+def is_strap(stages: Stages, line: Line) -> bool:
+    """Return whether a line goes on over the shoulder, or would if the body were modelled there."""
+    return line.tail_length > 0.0 or goes_on(stages, line)
 
 
 def _held(row: CutRow, elastic: Elastic) -> CutRow:

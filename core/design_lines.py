@@ -5,7 +5,9 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from math import isfinite
 
+from core.embedding import Cell
 from core.errors import LineError
 from core.mechanics import RANGES
 from core.printable_name import check_line_name, is_blank, is_printable
@@ -33,29 +35,52 @@ class WornLine:
 
 @dataclass(frozen=True)
 class OwnLine:
-    """A line of the designer's own through control points of the template, by number; "closed" goes round.
+    """A line of the designer's own; "closed" goes round.
 
-    Raises LineError if it has no name or does not go from point to point.
+    It runs through control points of the template, by number, or is a free line through ``places`` between
+    them, by row and column of the template (``core.embedding``). One that goes ``over_shoulder`` runs on from
+    its upper end down the back to the under-bust band. Raises LineError if it has no name, does not go from
+    point to point, or is closed and goes over the shoulder.
     """
 
     name: str
-    points: tuple[int, ...]
+    points: tuple[int, ...] = ()
     closed: bool = False
+    places: tuple[Cell, ...] = ()
+    over_shoulder: bool = False
 
     def __post_init__(self) -> None:
         if is_blank(self.name):
             raise LineError("A line has no name.", "Give each line a name of its own.")
         check_line_name(self.name)
-        if len(self.points) < (3 if self.closed else 2) or any(a == b for a, b in pairwise(self.path)):
+        stops: tuple[object, ...] = self.places or self.points
+        following = stops + stops[:1] if self.closed else stops
+        if len(stops) < (3 if self.closed else 2) or any(a == b for a, b in pairwise(following)):
             raise LineError(
                 f"The line {self.name} does not go from point to point.",
                 "Name two control points at least, three if it is closed, and none twice in a row.",
             )
+        if not all(isfinite(number) for place in self.places for number in place):
+            raise LineError(f"The line {self.name} has a point without a place.", "Draw it anew.")
+        if self.closed and self.over_shoulder:
+            raise LineError(
+                f"The line {self.name} is closed and cannot go over the shoulder.", "Leave its ends open."
+            )
+
+    @property
+    def free(self) -> bool:
+        """Whether it runs between control points."""
+        return bool(self.places)
 
     @property
     def path(self) -> tuple[int, ...]:
         """The control points in order; a closed line ends with the one that it begins with."""
         return self.points + self.points[:1] if self.closed else self.points
+
+    @property
+    def course(self) -> tuple[Cell, ...]:
+        """The places of a free line in order; a closed line ends with the one that it begins with."""
+        return self.places + self.places[:1] if self.closed else self.places
 
 
 @dataclass(frozen=True)

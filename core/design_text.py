@@ -13,10 +13,11 @@ from core.document_limits import LARGEST_UNKNOWN, check_nesting, check_values
 from core.errors import ProjectError
 from core.json_values import field_of, parsed, whole_number
 
-FORMAT = 3
-"""The newest format that is read: 2 has variants beside the design, 3 elastics; all else is written as 1."""
+FORMAT = 4
+"""The newest format that is read: 2 has variants beside the design, 3 elastics, 4 free lines and straps."""
 
-WITH_VARIANTS, WITH_ELASTICS = 2, 3
+WITH_VARIANTS, WITH_ELASTICS, WITH_FREE_LINES = 2, 3, 4
+"""All else is written as 1."""
 
 _KNOWN = frozenset(field.name for field in fields(Design)) - {"unknown"}
 
@@ -34,6 +35,12 @@ def to_values(design: Design, written: int = 1) -> dict[str, Any]:
     for traits in values["traits"]:
         if not traits["elastic"]:
             del traits["elastic"]
+    for line in values["own_lines"]:
+        for key in ("places", "over_shoulder"):
+            if not line[key]:
+                del line[key]
+    if any(line.free or line.over_shoulder for line in design.own_lines):
+        written = max(written, WITH_FREE_LINES)  # an older program would lay them elsewhere
     if design.elastics:
         # An older program would drop the elastics of lines at its next save: it must not read this.
         written = max(written, WITH_ELASTICS)

@@ -1,13 +1,20 @@
-"""Constraining lines: polylines through control points whose segments obey Hooke's law (paper section 3)."""
+"""Constraining lines: polylines on the control mesh whose segments obey Hooke's law (paper section 3).
+
+The paper's lines run through control points. A free line runs between them: each of its vertices is embedded
+in a triangle of the control mesh, so that it is a fixed mean of control points, and its force is spread to
+them by the same weights (ours).
+"""
 
 from __future__ import annotations
 
 import re
 import unicodedata
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
+from scipy import sparse
 
 from core.errors import LineError
 from core.mesh import Floats, Indices, Points, frozen
@@ -20,49 +27,74 @@ RATIO_LIMITS = (0.5, 1.3)
 class Line:
     """A band of the garment that lies on the body.
 
-    ``path`` (k,) control points from the subject's right to the left; ``rest_lengths`` (k - 1,) [mm] of its
-    segments in the self-balanced rest state; ``back_length`` [mm] completes the front part to the whole
-    closed band round the body, and does not change. ``constrains`` is False when no point of the path can
-    move.
+    ``weights`` (k, n) make its vertices of the n control points, from the subject's right to the left: a
+    single 1 in each row of a line through control points. ``rest_lengths`` (k - 1,) [mm] are those of its
+    segments in the self-balanced rest state. ``spacing`` [mm] is the length at rest over the number of steps
+    from control point to control point: line stiffness refers to it, however finely a line is divided.
+    ``back_length`` [mm] completes the front part to the whole closed band round the body, and does not
+    change. ``tail_length`` [mm] runs on over the shoulder on the fixed body, and is part of the length that
+    is set. ``constrains`` is False when no vertex can move.
     """
 
     name: str
-    path: Indices
+    weights: sparse.csr_array
     rest_lengths: Floats
+    spacing: float
     back_length: float
     constrains: bool
+    tail_length: float = 0.0
 
     @property
     def rest_length(self) -> float:
-        """Length of the front part at rest, side to side [mm]."""
-        return float(self.rest_lengths.sum())
+        """Length at rest of what is set [mm]: the front part, side to side; of a strap all of it."""
+        return float(self.rest_lengths.sum()) + self.tail_length
 
     @property
     def whole_length(self) -> float:
         """Length of the whole closed band at rest [mm]."""
         return self.rest_length + self.back_length
 
-    @property
-    def pairs(self) -> Indices:
-        """The ends of the segments, shape (k - 1, 2)."""
-        return np.stack([self.path[:-1], self.path[1:]], axis=1)
+    @cached_property
+    def across(self) -> sparse.csr_array:
+        """What makes the vectors of its segments of the control points, shape (k - 1, n)."""
+        return sparse.csr_array(self.weights[:-1] - self.weights[1:])
+
+    @cached_property
+    def closed(self) -> bool:
+        """Whether it ends where it begins."""
+        return bool(abs(self.weights[[0]] - self.weights[[-1]]).sum() < 1e-9)
+
+    def places(self, points: Points) -> Points:
+        """Return its vertices on control points, shapes (k, 3) and (n, 3) [mm]."""
+        return np.asarray(self.weights @ points)
 
     def length(self, points: Points) -> float:
-        """Return the length of the front part on control points, shape (n, 3) [mm]."""
-        return float(segment_lengths(points, self.path).sum())
-
-
-def segment_lengths(points: Points, path: Indices) -> Floats:
-    """Return the lengths of the segments of ``path``, shape (k - 1,) [mm]."""
-    return np.asarray(np.linalg.norm(np.diff(points[path], axis=0), axis=1))
+        """Return the length of what is set on control points, shape (n, 3) [mm]."""
+        return float(np.linalg.norm(self.across @ points, axis=1).sum()) + self.tail_length
 
 
 def line_on(name: str, path: npt.ArrayLike, points: Points, free: Indices, back_length: float = 0.0) -> Line:
     """Lay a line over control points at rest; its natural length is read there (paper section 3)."""
     nodes = np.asarray(path, dtype=np.int64)
-    nodes.setflags(write=False)
-    constrains = bool(np.isin(nodes, free).any())
-    return Line(name, nodes, frozen(segment_lengths(points, nodes)), back_length, constrains)
+    where = np.arange(len(nodes)), nodes
+    weights = sparse.csr_array((np.ones(len(nodes)), where), shape=(len(nodes), len(points)))
+    return free_line(name, weights, points, free, len(nodes) - 1, back_length)
+
+
+def free_line(
+    name: str,
+    weights: sparse.csr_array,
+    points: Points,
+    free: Indices,
+    steps: float,
+    back_length: float = 0.0,
+    tail_length: float = 0.0,
+) -> Line:
+    """Lay a line at rest whose vertices have ``weights`` (k, n) and that is so many ``steps`` long (ours)."""
+    lengths = np.linalg.norm(np.diff(weights @ points, axis=0), axis=1)
+    constrains = bool((abs(weights[:, free]).sum(axis=1) > 1e-9).any())
+    spacing = float(lengths.sum()) / steps
+    return Line(name, weights, frozen(lengths), spacing, back_length, constrains, tail_length)
 
 
 _LENGTH = re.compile(r"^\s*=?\s*([+-]?)\s*(\d+(?:[.,]\d+)?)\s*(%|mm|cm|in)?\s*$")

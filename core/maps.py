@@ -89,8 +89,7 @@ def pulls(model: ConstrainedModel, points: Points, ratios: tuple[float, ...]) ->
     """
     if model.mechanics.line_hold == "held" or not len(model.owner):
         return {}
-    first, second = model.segments.pairs.T
-    longer = np.linalg.norm(points[first] - points[second], axis=1) - model.natural_lengths(ratios)
+    longer = model.segments.lengths(points) - model.natural_lengths(ratios)
     force = model.segments.stiffness * longer
     share = force / max(float(np.abs(force).max()), 1e-9)
     return {

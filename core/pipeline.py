@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, partial
-from types import MappingProxyType
 from typing import Any, Literal, TypeVar
 
 import numpy as np
@@ -14,7 +13,6 @@ import numpy as np
 from core.body import Body, RefusedError, body_of
 from core.control_mesh import ControlMesh, fit_control_mesh
 from core.design import Design, ScanSource
-from core.design_lines import OwnLine
 from core.elastic_model import elastic_model
 from core.errors import FitError, LandmarkError, LineError, UserError
 from core.fitting.back_length import Back, back_of
@@ -24,12 +22,15 @@ from core.mechanics import Mechanics
 from core.mesh import Floats, Mesh, Points
 from core.model import ConstrainedModel, constrained_model
 from core.moving import MovingFaces, moving_faces
+from core.own_lines import with_own_lines
 from core.patch import Patch, patch_fade
 from core.placing import PLACED, PlacedMark, in_mm
 from core.progress import Progress, quiet
 from core.project import ScanFile, read_scan_file
+from core.routes import Route, routes_of, tails_of
 from core.solver import Marks, Targets
 from core.solving.gain import gain_limit
+from core.straps import Tail
 from core.template import read_template
 from core.tffd import Binding, Weights, bind, uncollared
 from core.watch import BodyWatch
@@ -45,7 +46,8 @@ Memo = Mapping[str, tuple[tuple[Any, ...], Any]]
 class Stages:
     """The results that a design leads to before any turn is made.
 
-    ``backs`` complete the lines of the template to whole bands. ``gain`` is the conventional gain in force,
+    ``backs`` complete the lines of the template to whole bands, ``tails`` own lines to straps; ``routes`` are
+    where all of them run at rest. ``gain`` is the conventional gain in force,
     ``gain_limit`` the one at which it begins to vibrate at rest (probe units [1]); ``seconds`` what each
     stage took when it was last made; ``memo`` holds each stage's inputs and result for reuse.
     """
@@ -60,6 +62,8 @@ class Stages:
     moving: MovingFaces
     watch: BodyWatch
     backs: Mapping[str, Back]
+    tails: Mapping[str, Tail]
+    routes: Mapping[str, Route]
     model: ConstrainedModel
     gain_limit: float
     seconds: Mapping[str, float]
@@ -211,15 +215,19 @@ def _stages(stage: _Stager, design: Design, scan: ScanFile, body: Body) -> Stage
     watch = stage("watch body", BodyWatch, binding, control, landmarks)
     backs = stage("measure bands", _backs, body, control)
     laid = stage("lay own lines", with_own_lines, control, design.own_lines)
-    model = stage("build model", _model, laid, backs, design.worn(), design.mechanics, design.own_stiffness())
+    tails = stage("lead straps", tails_of, body.mesh, laid, design.own_lines, backs)
+    routes = stage("trace lines", routes_of, body.mesh, laid, backs, tails)
+    lengths = (*({name: part.length for name, part in each.items()} for each in (backs, tails)),)
+    chosen = design.worn(), design.mechanics, design.own_stiffness()
+    model = stage("build model", _model, laid, *lengths, *chosen)
     elastics = design.worn_elastics()
     if elastics and design.line_hold == "spring":  # a held line has its length, whatever it is made of
         change = stage("follow body", BodyFollows, binding, moving) if design.dense_volume else None
         made = design.lines, elastics, design.tissue_stiffness, design.own_stiffness()
         model = stage("fit elastics", elastic_model, model, *made, change)
     limit = stage("probe gain", gain_limit, model)
-    results = scan, body, landmarks, control, patch, binding, moving, watch, backs, model, limit
-    return Stages(design, *results, stage.seconds, stage.memo)
+    fitted = scan, body, landmarks, control, patch, binding, moving, watch
+    return Stages(design, *fitted, backs, tails, routes, model, limit, stage.seconds, stage.memo)
 
 
 def targets_of(design: Design, stages: Stages) -> Targets:
@@ -260,40 +268,28 @@ def _bind(body: Mesh, control: ControlMesh, fade: Floats, weights: Weights, scal
     )
 
 
-def with_own_lines(control: ControlMesh, own: tuple[OwnLine, ...]) -> ControlMesh:
-    """Return the control mesh with the paths of ``own`` lines beside those of the template.
-
-    Raises LineError if a line cannot be laid.
-    """
-    paths = dict(control.paths)
-    count = len(control.mesh.vertices)
-    for line in own:
-        if line.name in paths:
-            raise LineError(f"There are two lines '{line.name}'.", "Give each line a name of its own.")
-        if not all(0 <= point < count for point in line.points):
-            raise LineError(
-                f"The line {line.name} names a control point that there is not.",
-                f"The control mesh has the points 0 to {count - 1}.",
-            )
-        paths[line.name] = line.path
-    return replace(control, paths=MappingProxyType(paths))
-
-
 def _backs(body: Body, control: ControlMesh) -> dict[str, Back]:
     return {name: back_of(body.calm, control, name) for name in control.paths}
 
 
 def _model(
     control: ControlMesh,
-    backs: Mapping[str, Back],
+    backs: Mapping[str, float],
+    tails: Mapping[str, float],
     worn: frozenset[str],
     mechanics: Mechanics,
     own_stiffness: Mapping[str, float],
 ) -> ConstrainedModel:
-    unknown = sorted(worn - set(control.paths))
+    unknown = sorted(worn - set(control.line_names))
     if unknown:
-        raise LineError(f"There is no line '{unknown[0]}'.", f"The lines are: {', '.join(control.paths)}.")
-    lengths = {name: back.length for name, back in backs.items()}
+        raise LineError(
+            f"There is no line '{unknown[0]}'.", f"The lines are: {', '.join(control.line_names)}."
+        )
     return constrained_model(
-        control, worn=worn, back_lengths=lengths, mechanics=mechanics, own_stiffness=own_stiffness
+        control,
+        worn=worn,
+        back_lengths=backs,
+        tail_lengths=tails,
+        mechanics=mechanics,
+        own_stiffness=own_stiffness,
     )

@@ -15,7 +15,7 @@ import platformdirs
 from core.design import Design, ScanSource
 from core.design_lines import LONGEST_TITLE, LineTraits, OwnLine
 from core.errors import LineError, UserError
-from core.own_lines import own_line, place_of, ready_made
+from core.own_lines import own_line, ready_made, text_of
 from core.printable_name import is_blank, is_printable
 from core.project import safe_name
 from core.regular_file import read_text
@@ -178,10 +178,7 @@ def preset_from(design: Design, title: str) -> Preset:
 
 def _as_preset(name: str, design: Design, line: OwnLine | None, template: Template) -> PresetLine:
     traits = design.traits_of(name)
-    places = ""
-    if line is not None:
-        words = [place_of(point, template) for point in line.points]
-        places = ",".join([*words, *["closed"] * line.closed])
+    places = "" if line is None else text_of(line, template)
     length = design.ratio(name) if name in design.worn() else None
     dress = (traits.width, traits.title, traits.colour, traits.stiffness, traits.linked)
     return PresetLine(name, places, length, *dress)
@@ -216,12 +213,12 @@ def with_preset(design: Design, preset: Preset) -> Design:
 
 def is_worn(design: Design, preset: Preset) -> bool:
     """Return whether a design wears the lines of a preset and no others, whatever their lengths are now."""
-    paths = {line.name: line.points for line in design.own_lines}
+    courses = {line.name: line for line in design.own_lines}
     wanted: set[str] = set()
     for line, own in preset.laid(read_template(design.template)):
-        there = [paths.get(each.name) for each in own]
+        there = [courses.get(each.name) for each in own]
         # Ready-made lines may have been led elsewhere: they are the same lines.
-        if None in there or (line.places and there != [each.points for each in own]):
+        if None in there or (line.places and there != list(own)):
             return False
         if line.length is not None:
             wanted.update([each.name for each in own] or [line.line])

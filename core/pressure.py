@@ -14,7 +14,7 @@ from types import MappingProxyType
 import numpy as np
 
 from core.centre_line import USUAL_WIDTH
-from core.cutting import goes_on
+from core.cutting import is_strap
 from core.mesh import Flags, Floats, Points
 from core.pipeline import Stages
 from core.sewing.comfort import comfort
@@ -201,6 +201,6 @@ def _told(stages: Stages, name: str, tension: LineTension) -> tuple[str, ...]:
         said.append("Its tension follows from the stiffness of tissue alone, an estimate.")
     if not stages.design.traits_of(name).width:
         said.append(f"It is taken to be {USUAL_WIDTH:g} mm wide: no width was told.")
-    if any(line.name == name and goes_on(stages, line) for line in stages.model.lines):
+    if any(line.name == name and is_strap(stages, line) for line in stages.model.lines):
         said.append(NOT_FOR_STRAPS)
     return tuple(said)

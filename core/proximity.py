@@ -95,12 +95,14 @@ def nearest_on(corners: Points, points: Points) -> Points:
     return np.asarray(np.where(within[:, None], points - height[:, None] * normal, nearest))
 
 
-def nearest_faces(mesh: Mesh, points: Points) -> tuple[Indices, Points]:
+def nearest_faces(mesh: Mesh, points: Points, tree: cKDTree | None = None) -> tuple[Indices, Points]:
     """Return the face of ``mesh`` nearest to each of ``points`` (k, 3) [mm], and the place on it, (k, 3).
 
-    It is the nearest of those twelve whose middles lie nearest: on an even skin of body, of all.
+    It is the nearest of those twelve whose middles lie nearest: on an even skin of body, of all. A ``tree``
+    that is there finds the middles.
     """
-    near = cKDTree(centroids(mesh)).query(points, min(12, len(mesh.faces)))[1].reshape(len(points), -1)
+    tree = cKDTree(centroids(mesh)) if tree is None else tree
+    near = tree.query(points, min(12, len(mesh.faces)))[1].reshape(len(points), -1)
     corners = mesh.vertices[mesh.faces[near]].reshape(-1, 3, 3)
     places = nearest_on(corners, np.repeat(points, near.shape[1], axis=0)).reshape(*near.shape, 3)
     best = np.argmin(((places - points[:, None]) ** 2).sum(axis=2), axis=1)

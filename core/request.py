@@ -20,7 +20,7 @@ from core.aims.reaching import LOOSEST, Bounds, Candidate, Search
 from core.aims.readings import Figures
 from core.aims.wanted import NEAR, weights_of
 from core.answer import NoBalanceError
-from core.cutting import goes_on
+from core.cutting import is_strap
 from core.design import Design
 from core.errors import LineError
 from core.mesh import Floats, Points
@@ -246,7 +246,7 @@ class Asking:
         if not self._made:
             return {}
         tensions, worn = line_tensions(stages, points), pressures(stages, points)
-        lines = [line for line in stages.model.lines if straps or not goes_on(stages, line)]
+        lines = [line for line in stages.model.lines if straps or not is_strap(stages, line)]
         seen = {line.name for line in lines} & set(self._made)
         return {name: worn[name].largest for name in sorted(seen) if not tensions[name].estimate}
 

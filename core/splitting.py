@@ -7,7 +7,9 @@ from dataclasses import replace
 
 from core.design import Design
 from core.design_lines import OwnLine
+from core.embedding import embed
 from core.errors import LineError
+from core.own_lines import DECIMALS
 from core.template import Template
 
 _HALVES = ("{name} left", "{name} right")
@@ -27,13 +29,38 @@ def halves(name: str, path: Sequence[int], template: Template) -> tuple[OwnLine,
     if at <= 0 or not (
         (_beside(before, -1) and _beside(after, 1)) or (_beside(before, 1) and _beside(after, -1))
     ):
-        raise LineError(
-            f"The line {name} does not go across the front centre from one side to the other.",
-            "Split one that does, such as the mid-bust line.",
-        )
+        raise _crosses_not(name)
     inward, outward = tuple(path[at::-1]), tuple(path[at:])
     left, right = (outward, inward) if after[0] > 0 else (inward, outward)
     return OwnLine(_HALVES[0].format(name=name), left), OwnLine(_HALVES[1].format(name=name), right)
+
+
+def free_halves(line: OwnLine) -> tuple[OwnLine, OwnLine]:
+    """Return the left and the right half of a free line; see ``halves``."""
+    if line.closed:
+        raise LineError(f"The line {line.name} goes round and has no two halves.", "Draw two lines instead.")
+    side = 1.0 if line.places[0][1] < 0.0 else -1.0
+    before = [place for place in line.places if side * place[1] < 0.0]
+    after = [place for place in line.places if side * place[1] > 0.0]
+    crossing = line.places[len(before) : len(line.places) - len(after)]
+    apart = (*before, *crossing, *after) == line.places and len(crossing) < 2
+    if not before or not after or not apart:
+        raise _crosses_not(line.name)
+    (row, column), (next_row, next_column) = before[-1], after[0]
+    middle = crossing[0] if crossing else (row - column / (next_column - column) * (next_row - row), 0.0)
+    middle = round(middle[0], DECIMALS), 0.0
+    inward, outward = (middle, *before[::-1]), (middle, *after)
+    left, right = (outward, inward) if side > 0.0 else (inward, outward)
+    pair = zip(_HALVES, (left, right), strict=True)
+    first, second = (OwnLine(half.format(name=line.name), places=places) for half, places in pair)
+    return first, second
+
+
+def _crosses_not(name: str) -> LineError:
+    return LineError(
+        f"The line {name} does not go across the front centre from one side to the other.",
+        "Split one that does, such as the mid-bust line.",
+    )
 
 
 def _beside(columns: list[int], side: int) -> bool:
@@ -62,11 +89,8 @@ def split(design: Design, template: Template, name: str, *, linked: bool = False
     itself. It is taken off; one of the designer's own is no more. Raises LineError if it cannot be split,
     moves nothing, is locked, or other lines have these names.
     """
-    path = _path(design, template, name)
-    if not template.free[list(path)].any():
-        raise LineError(f"The line {name} lies where nothing moves.", "Split one that moves the body.")
-    pair = halves(name, path, template)
     there = {line.name: line for line in design.own_lines}
+    pair = _halves_of(design, template, name)
     for half in pair:
         if half.name in there and there[half.name] != half:
             raise LineError(f"There is another line {half.name}.", "Rename or remove that one first.")
@@ -83,10 +107,17 @@ def split(design: Design, template: Template, name: str, *, linked: bool = False
     return after.with_line(name, None)
 
 
-def _path(design: Design, template: Template, name: str) -> tuple[int, ...]:
-    own = {line.name: line.path for line in design.own_lines}
-    if name in own:
-        return own[name]
-    if name in template.paths:
-        return template.paths[name]
-    raise LineError(f"There is no line '{name}'.", "Name one of the design's.")
+def _halves_of(design: Design, template: Template, name: str) -> tuple[OwnLine, OwnLine]:
+    """Return both halves of a line of the design. Raises LineError if there are none, or nothing moves."""
+    own = {line.name: line for line in design.own_lines}
+    if name in own and own[name].free:
+        touched = embed(template.grid, own[name].course).weights.nonzero()[1].tolist()
+    elif name in own:
+        touched = list(own[name].path)
+    elif name in template.paths:
+        touched = list(template.paths[name])
+    else:
+        raise LineError(f"There is no line '{name}'.", "Name one of the design's.")
+    if not template.free[touched].any():
+        raise LineError(f"The line {name} lies where nothing moves.", "Split one that moves the body.")
+    return free_halves(own[name]) if name in own and own[name].free else halves(name, touched, template)

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from core.embedding import Grid
 from core.errors import FitError
 from core.mesh import Faces, Flags, Indices, frozen
 
@@ -125,6 +126,11 @@ class Template:
         return MappingProxyType(
             {name: tuple(self.point(row, column) for column in inner) for name, row in self.lines.items()}
         )
+
+    @property
+    def grid(self) -> Grid:
+        """Rows, columns and triangles of its points."""
+        return Grid(self.row, self.column, self.faces)
 
     def point(self, row: int, column: int) -> int:
         """Return the number of the point at a place."""

@@ -58,7 +58,7 @@ def bra() -> Design:
     """Return the lines of a bra on a customer's scan, the straps shorter than the preset has them."""
     design = with_preset(own_scan(), next(each for each in built_in() if each.title == "Bra"))
     for name in ("strap left", "strap right"):
-        design = design.with_line(name, 0.94)
+        design = design.with_line(name, 0.98)
     return design
 
 

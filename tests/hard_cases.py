@@ -14,7 +14,8 @@ from core.design_lines import OwnLine
 from core.exact import solve_exact
 from core.mechanics import CONTACTS, HOLDS, LAWS, VOLUMES, Mechanics
 from core.model import ConstrainedModel, constrained_model
-from core.pipeline import GAIN_SHARE, with_own_lines
+from core.own_lines import with_own_lines
+from core.pipeline import GAIN_SHARE
 from core.solver import Targets, iterate
 from core.solving.gain import gain_limit
 from core.verdict import Verdict, judge

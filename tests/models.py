@@ -6,8 +6,10 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
+from scipy import sparse
 from shapes import torso
 
+from core.lines import Line
 from core.mechanics import Mechanics
 from core.model import ConstrainedModel, constrained_model
 from core.solver import State, Targets, iterate
@@ -51,10 +53,23 @@ def cable_force(model: ConstrainedModel, points: np.ndarray) -> np.ndarray:
     return force
 
 
+def pairs_of(across: sparse.csr_array) -> list[tuple[int, int]]:
+    """The first and the second point of each segment of lines through control points."""
+    dense = across.toarray()
+    assert set(np.unique(dense)) <= {-1.0, 0.0, 1.0}
+    return [(int(np.argmax(row)), int(np.argmin(row))) for row in dense]
+
+
+def path_of(line: Line) -> list[int]:
+    """The control points that a line runs through."""
+    return [int(np.argmax(row)) for row in line.weights.toarray()]
+
+
 def line_force(model: ConstrainedModel, points: np.ndarray, ratios: tuple[float, ...]) -> np.ndarray:
     """The force of the worn lines on all points, segment by segment, after Hooke."""
     force = np.zeros_like(points)
-    for (i, j), k, line in zip(model.segments.pairs, model.segments.stiffness, model.owner, strict=True):
+    pairs = pairs_of(model.segments.across)
+    for (i, j), k, line in zip(pairs, model.segments.stiffness, model.owner, strict=True):
         rest = np.linalg.norm(model.tensegric.rest[i] - model.tensegric.rest[j])
         span = points[i] - points[j]
         length = np.linalg.norm(span)

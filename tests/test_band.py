@@ -8,7 +8,7 @@ from shapes import mid_bust, torso
 
 from core.exact import solve_exact
 from core.mechanics import Mechanics
-from core.members.band import Band, Entries, band_of, compact, joined, pair_entries
+from core.members.band import Band, Entries, band_of, compact, joined, member_entries
 from core.model import constrained_model
 from core.solving.layout import sliding_entries
 
@@ -24,6 +24,14 @@ def scattered(seed, count=14, pairs=24):
     return rng, first, second, band_of(count, first, second)
 
 
+def signs_of(first, second, count=14):
+    """What makes the members' vectors of the free points: +1 at the first end, -1 at the second."""
+    signs = np.zeros((len(first), count))
+    for end, sign in ((first, 1.0), (second, -1.0)):
+        signs[np.flatnonzero(end >= 0), end[end >= 0]] = sign
+    return signs
+
+
 def symmetric(rng, first, second, band):
     """A random symmetric matrix with blocks at the pairs, full and as lower band."""
     blocks = rng.normal(size=(len(first), 3, 3))
@@ -33,7 +41,7 @@ def symmetric(rng, first, second, band):
         for a, b, sign in ((i, i, 1.0), (j, j, 1.0), (i, j, -1.0), (j, i, -1.0)):
             if a >= 0 and b >= 0:
                 full[3 * a : 3 * a + 3, 3 * b : 3 * b + 3] += sign * block
-    lower = band.lower(pair_entries(first, second)) @ blocks.ravel()
+    lower = band.lower(member_entries(signs_of(first, second))) @ blocks.ravel()
     return full, lower
 
 
@@ -66,13 +74,15 @@ def test_cholesky_solves_and_tells_what_is_not_positive(seed):
 @SEEDS
 def test_a_general_matrix_is_solved_with_pivots(seed):
     rng, first, second, band = scattered(seed)
-    blocks = rng.normal(size=(len(first), 2, 3, 3))
+    segment, point, _ = sparse.find(sparse.csr_array(signs_of(first, second)))
+    blocks = rng.normal(size=(len(point), 3, 3))
     full = np.zeros((band.size, band.size))
-    for i, j, (one, two) in zip(first, second, blocks, strict=True):
-        for a, b, block in ((i, i, one), (i, j, -one), (j, j, two), (j, i, -two)):
-            if a >= 0 and b >= 0:
-                full[3 * a : 3 * a + 3, 3 * b : 3 * b + 3] += block
-    general = band.general(sliding_entries(first, second)) @ blocks.ravel()
+    for s, i, block in zip(segment, point, blocks, strict=True):
+        for j, sign in ((first[s], 1.0), (second[s], -1.0)):
+            if j >= 0:
+                own = 1.0 if i == first[s] else -1.0
+                full[3 * i : 3 * i + 3, 3 * j : 3 * j + 3] += own * sign * block
+    general = band.general(sliding_entries(signs_of(first, second))) @ blocks.ravel()
     general = general + band.spread(shifted(band, 1e-3))  # small on the diagonal: pivots are needed
     full = full + 1e-3 * np.eye(band.size)
     right = rng.normal(size=(band.size, 2))

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from app.wording.samples import sample_design
-from core.centre_line import NO_BACK, USUAL_WIDTH, Surface
+from core.centre_line import USUAL_WIDTH, Surface
 from core.pipeline import build
 from core.sewing.course import course_of, courses
 from core.sewing.tensions import line_tensions
@@ -25,9 +25,9 @@ def test_a_course_that_was_laid_before_is_that_of_the_shape_that_is_asked_for() 
         lines = {line.name: line for line in each.model.lines}
         surface, moved = Surface(each.body.mesh), deform(each.binding, points)
         for name, course, width in courses(each, points, tensions):
-            path = each.control.mesh.vertices[lines[name].path]
-            back = each.backs[name].path if name in each.backs else NO_BACK
-            anew = course_of(path, tensions[name], surface, moved, USUAL_WIDTH, back)
+            route = each.routes[name]
+            assert np.array_equal(route.path, lines[name].places(each.control.mesh.vertices))
+            anew = course_of(route.path, tensions[name], surface, moved, USUAL_WIDTH, route.back)
             assert width == USUAL_WIDTH
             assert np.allclose(course.points, anew.points, atol=1e-9)
             assert np.allclose(course.normals, anew.normals, atol=1e-9)

@@ -162,7 +162,7 @@ def test_a_held_line_on_the_rib_cage_is_not_refused_and_has_no_known_tension(bui
 
 
 def test_an_open_line_is_its_own_whole_and_a_ring_is_closed(built):
-    path = line_of(built("mannequin"), "mid-bust").path.tolist()
+    path = built("mannequin").control.paths["mid-bust"]
     own = (OwnLine("arc", tuple(path[2:-2])),)
     stages = stages_of(built("mannequin"), [("arc", 0.8)], own_lines=own)
     stages = stages_of(stages, [("arc", 0.8)], [("arc", EDGE)])
@@ -178,7 +178,8 @@ def test_a_piece_that_goes_on_beyond_the_control_mesh_is_told_from_a_whole_one(b
     template = read_template("168")
     ready = ready_made(template)
     upright = OwnLine("upright", tuple(template.point(row, 3) for row in range(1, 4)))  # from the under-bust
-    own = (*ready["straps"], *ready["rings"], upright)
+    chest = tuple(replace(strap, over_shoulder=False) for strap in ready["straps"])
+    own = (*chest, *ready["rings"], upright)
     worn = [(line.name, 0.98) for line in own]
     stages = stages_of(stages, [("mid-bust", 0.97), *worn], [("strap left", EDGE)], own_lines=own)
     _, rows, points, _ = listed(stages)
@@ -186,6 +187,23 @@ def test_a_piece_that_goes_on_beyond_the_control_mesh_is_told_from_a_whole_one(b
     pressed = {row.line for row in press_list(stages, points).rows if NOT_FOR_STRAPS in row.notes}
     assert pressed == {"strap left", "strap right"}  # the light was not made for them
     assert {name for name, row in rows.items() if FRONT_ONLY in row.notes} == {"strap left", "strap right"}
+
+
+def test_a_strap_is_cut_as_long_as_it_is_over_the_shoulder(built):
+    own = ready_made(read_template("168"))["straps"]
+    stages = stages_of(built("mannequin"), [("strap left", 0.9)], [("strap left", EDGE)], own_lines=own)
+    _, rows, points, _ = listed(stages)
+    row, line, tail = rows["strap left"], line_of(stages, "strap left"), stages.tails["strap left"]
+    assert 350.0 < tail.length < 600.0
+    front = np.linalg.norm(np.diff(line.places(points), axis=0), axis=1).sum()
+    assert row.reached_whole_mm == pytest.approx(front + tail.length, rel=1e-12)
+    # All of it is stretched: as long unstretched as the slider tells, wherever the body lets it go.
+    rest = np.linalg.norm(np.diff(line.places(stages.control.mesh.vertices), axis=0), axis=1).sum()
+    assert row.cut_mm == pytest.approx(0.9 * (rest + tail.length) + 15.0, rel=1e-12)
+    assert not row.front_only
+    assert any("over the shoulder" in note for note in row.notes)
+    [pressed] = [each for each in press_list(stages, points).rows if each.line == "strap left"]
+    assert NOT_FOR_STRAPS in pressed.notes
 
 
 def test_a_slack_elastic_is_listed_as_slack(built):

@@ -200,11 +200,11 @@ def test_linked_lines_go_together() -> None:
     pair = ready_made(read_template("168"))["straps"]
     design = replace(body().design, own_lines=pair)
     for line in pair:
-        design = design.with_line(line.name, 0.7)
+        design = design.with_line(line.name, 0.8)
     found = diagnose(build(design, body()))
     assert found.complaint in ("strained", "overstrained", "folded")
     after = cured(found)
-    assert after.ratio("strap left") == after.ratio("strap right") > 0.7
+    assert after.ratio("strap left") == after.ratio("strap right") > 0.8
     assert [pull.lines for pull in found.fight.pulls] == [("strap left", "strap right"), ()]
 
 

@@ -133,19 +133,31 @@ def test_a_strip_of_elastic_is_as_long_as_it_is_to_be_cut(solution):
 
 
 def test_the_ends_of_a_strap_are_told_apart(solution):
-    own = ready_made(read_template("168"))["straps"]
+    whole = ready_made(read_template("168"))["straps"]
+    own = tuple(replace(strap, over_shoulder=False) for strap in whole)
     stages = solution.stages
     stages = build(replace(stages.design, own_lines=own).with_line("strap left", 0.98), stages)
     lines = {line.name: line for line in stages.model.lines}
     points = stages.control.mesh.vertices
     strap = next(each for each in strips(stages, points, {}, {}) if each.name == "strap left")
-    first, last = (points[lines["strap left"].path[at], 2] for at in (0, -1))
+    first, last = lines["strap left"].places(points)[[0, -1], 2]
     assert abs(first - last) > 50.0
     names = ["upper end", "lower end"] if first > last else ["lower end", "upper end"]
     assert [strap.marks[0], strap.marks[-1]] == list(zip((0.0, strap.length), names, strict=True))
+    stages = build(replace(stages.design, own_lines=whole), stages)
+    worn = next(each for each in strips(stages, points, {}, {}) if each.name == "strap left")
+    tail = stages.tails["strap left"]
+    assert worn.length == pytest.approx(strap.length + tail.length)
+    at = {name: place for place, name in worn.marks}
+    assert at["shoulder"] == pytest.approx(strap.length + tail.top)
+    assert at["back, at the under-bust band"] == pytest.approx(worn.length)
+    curve = next(each for each in worn_curves(stages, points, {}, {}) if each.name == "strap left")
+    assert len(curve.parts) == 1, "one band from end to end"
+    assert curve.front[-1, 1] > curve.front[0, 1] + 100.0
+    assert curve.length == pytest.approx(worn.length, rel=0.05)
     stages = build(stages.design.with_elastic("strap left", find_elastic("strap 15")), stages)
     strap = next(each for each in strips(stages, points, {}, {}) if each.name == "strap left")
-    assert strap.note.startswith("front part only, to cut from Strap")
+    assert strap.note.startswith("to cut from Strap")
 
 
 def test_an_svg_is_at_its_size_in_millimetres(tmp_path, flat):

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from models import pairs_of
 
 from core.design_elastics import Elastic
 from core.design_lines import LineTraits, WornLine
@@ -43,7 +44,7 @@ def worn_so(stages, name, points):
     at = [line.name for line in model.lines].index(name)
     here = model.owner == at
     natural = model.natural_lengths(targets_of(stages.design, stages).ratios)[here]
-    first, second = model.segments.pairs[here].T
+    first, second = np.array(pairs_of(model.segments.across))[here].T
     lengths = np.linalg.norm(points[first] - points[second], axis=1)
     newtons = newtons_per_unit(model, stages.design.tissue_stiffness)
     tensions = newtons * model.segments.stiffness[here] * (lengths - natural)

@@ -96,9 +96,9 @@ def dressed(window: MainWindow) -> Script:
     assert set(window.session.design.worn()) == {"mid-bust", "strap left", "strap right"}
     assert window.session.frame is not None
     lift = bust_move(window.session.frame).mean.up
-    drag(window, "strap left", -30)
+    drag(window, "strap left", -9)
     yield settled(window)
-    assert window.session.design.ratio("strap left") == window.session.design.ratio("strap right") < 0.96
+    assert window.session.design.ratio("strap left") == window.session.design.ratio("strap right") < 0.985
     assert bust_move(window.session.frame).mean.up > lift + 1.0
     # The word stands a while before another takes its place.
     yield lambda: window.strip.chip.state() != "pending"
@@ -169,7 +169,7 @@ def test_the_figures_of_the_guide_are_those_of_its_steps(person: Path) -> None:
         Design(ScanSource(str(person))), next(each for each in built_in() if each.title == "Bra")
     )
     for name in bands[1:]:
-        design = design.with_line(name, 0.94)
+        design = design.with_line(name, 0.98)
     worn = build(design)
     made = made_as_worn(worn, dict.fromkeys(bands, strap))
     cut = build(made, worn)
@@ -182,7 +182,6 @@ def test_the_figures_of_the_guide_are_those_of_its_steps(person: Path) -> None:
         *(f"{100.0 * made.ratio(name):.0f}" for name in bands[:2]),
         *(f"{lift(each):.1f} mm" for each in (worn, cut, eased)),
     ]
-    assert rows["strap left"].far
     for page in ("first.md", "ja/first.md"):
         text = (DOCS / page).read_text("utf-8")
         assert [each for each in figures if each not in text] == []

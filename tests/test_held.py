@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from models import LAWS, energy_of, law_of, settled, small
+from models import LAWS, energy_of, law_of, pairs_of, path_of, settled, small
 from scipy.optimize import brentq
 from shapes import fitted, mid_bust, run, tent, torso
 
@@ -150,7 +150,7 @@ def test_closed_held_lines_on_the_sphere():
 
 def shortest_way(line, points):
     """Where both ends of a line are fixed, it cannot become shorter than the way between them."""
-    return float(np.linalg.norm(points[line.path[0]] - points[line.path[-1]]))
+    return float(np.linalg.norm(points[path_of(line)[0]] - points[path_of(line)[-1]]))
 
 
 @pytest.mark.parametrize("contact", ["glued", "sliding"])
@@ -183,7 +183,7 @@ def test_under_one_tension_all_segments_pull_alike():
     balance = solve_exact(model, (1.0, 0.93, 1.0))
     points = model.tensegric.expand(balance.state.moved)
     rope = np.zeros_like(points)
-    for i, j in model.segments.pairs:
+    for i, j in pairs_of(model.segments.across):
         way = (points[j] - points[i]) / np.linalg.norm(points[j] - points[i])
         rope[i] += balance.tensions[1] * way
         rope[j] -= balance.tensions[1] * way

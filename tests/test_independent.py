@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 import trimesh
-from models import LAWS, cable_force, law_of, line_force, settled, small, volume_slopes
+from models import LAWS, cable_force, law_of, line_force, pairs_of, settled, small, volume_slopes
 from scipy.optimize import BFGS, NonlinearConstraint, minimize, root
 from scipy.spatial import ConvexHull
 from shapes import fitted, mid_bust, torso
@@ -38,7 +38,8 @@ def plain_energy(model: ConstrainedModel, points: np.ndarray, ratios: tuple[floa
         total = float(q @ (0.5 * (here - natural) ** 2 - 0.5 * (there - natural) ** 2 - pull))
     else:
         total = cells_energy(model, points)
-    for (a, b), k, line in zip(model.segments.pairs, model.segments.stiffness, model.owner, strict=True):
+    pairs = pairs_of(model.segments.across)
+    for (a, b), k, line in zip(pairs, model.segments.stiffness, model.owner, strict=True):
         natural = ratios[line] * np.linalg.norm(tensegric.rest[a] - tensegric.rest[b])
         total += 0.5 * k * (np.linalg.norm(points[a] - points[b]) - natural) ** 2
     return total
@@ -121,13 +122,13 @@ def test_a_sequential_optimiser_finds_the_same_place_with_a_held_line(law):
 
     def missing(flat):
         points = placed(model, flat)
-        length = sum(np.linalg.norm(points[a] - points[b]) for a, b in line.pairs)
+        length = sum(np.linalg.norm(points[a] - points[b]) for a, b in pairs_of(line.across))
         return np.append(plain_sides(model, points) - wanted, length / line.rest_length - 0.93)
 
     def slopes(flat):
         points = placed(model, flat)
         rope = np.zeros_like(points)
-        for a, b in line.pairs:
+        for a, b in pairs_of(line.across):
             way = (points[a] - points[b]) / np.linalg.norm(points[a] - points[b])
             rope[a] += way
             rope[b] -= way

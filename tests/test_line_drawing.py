@@ -11,7 +11,9 @@ from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled, undrawn
 
 from app.main_window import MainWindow
-from core.own_lines import mirrored
+from core.free_curves import FreeCurve
+from core.own_lines import mirror_image, mirrored
+from core.sections import resample
 from core.snapping import Snapped
 from core.template import read_template
 
@@ -57,7 +59,7 @@ def test_a_line_is_drawn_by_clicks_and_snaps_to_the_control_mesh_on_both_sides()
         click(window, path[0])  # before the skin is ready the first points are joined straight
         yield lambda: drawing._ways is not None
         press(window, Qt.Key.Key_Return)
-        assert drawing._snapped is None, "one point is no line"
+        assert drawing._found is None, "one point is no line"
         click(window, at(4, 4))
         press(window, Qt.Key.Key_Backspace)
         click(window, path[2], path[-1])
@@ -67,8 +69,11 @@ def test_a_line_is_drawn_by_clicks_and_snaps_to_the_control_mesh_on_both_sides()
         assert np.abs(curve - skin.vertices.mean(axis=0)).max() < 400.0
         window.view.viewport.setFocus()
         press(window, Qt.Key.Key_Return)
-        assert drawing._snapped.path == path
-        assert drawing._snapped.off < 15.0
+        assert isinstance(drawing._found, FreeCurve), "as it was drawn, unless that is chosen otherwise"
+        assert drawing._found.off < 1.0
+        card.snap.click()
+        assert drawing._found.path == path
+        assert drawing._found.off < 15.0
         card.both.setChecked(True)
         press(window, Qt.Key.Key_Return)
         assert not card.isVisible()
@@ -91,16 +96,19 @@ def test_a_line_on_the_rib_cage_is_said_to_measure_only_and_can_move_to_where_it
         window.view.viewport.set_view("front")
         drawing, card = window.line_drawing, window.line_drawing._sketching.card
         window.actions_.draw_line.trigger()
+        card.snap.setChecked(False)
         yield lambda: drawing._ways is not None
         fixed = window.session.frame.stages.control.fixed
         row = [point for point in window.session.frame.stages.control.paths["under-bust"] if fixed[point]]
         click(window, row[2], row[4])
         window.view.viewport.setFocus()
         press(window, Qt.Key.Key_Return)
-        assert not drawing._snapped.pulls
+        assert not drawing._found.pulls
         assert "only measured" in card._what.text()
+        assert isinstance(drawing._found, FreeCurve)
         card.move_.click()
-        assert drawing._snapped.pulls
+        assert card.snap.isChecked()
+        assert drawing._found.pulls
         assert "only measured" not in card._what.text()
         assert card.move_.isHidden()
         press(window, Qt.Key.Key_Return)
@@ -108,6 +116,54 @@ def test_a_line_on_the_rib_cage_is_said_to_measure_only_and_can_move_to_where_it
         assert window.lines.rows["line 1"].view.constrained
 
     run_main([], script)
+
+
+def test_a_diagonal_stays_what_was_drawn_and_can_be_drawn_anew() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        window.view.viewport.set_view("front")
+        drawing, card = window.line_drawing, window.line_drawing._sketching.card
+        window.actions_.draw_line.trigger()
+        yield lambda: drawing._ways is not None
+        click(window, at(2, 1), at(5, 4))
+        window.view.viewport.setFocus()
+        press(window, Qt.Key.Key_Return)
+        drawn, found = np.concatenate(drawing._curve), drawing._found
+        card.both.setChecked(True)
+        press(window, Qt.Key.Key_Return)
+        yield lambda: "line 1 left" in window.lines.rows and window.is_settled()
+        left, right = window.session.design.own_lines
+        assert left.free
+        assert right == mirror_image(left, TEMPLATE, "line 1 right")
+        shown = window.view.viewport.scene.bands.ribbon("line 1 left")
+        middle = shown.mesh.vertices.reshape(shown.rows, shown.columns, 3)[3:-3].mean(axis=1)
+        away = np.linalg.norm(middle[:, None] - resample(drawn, 0.5), axis=2).min(axis=1)
+        assert away.max() < 3.0, "its middle on the skin, a few mm under its cloth"
+        assert found.off < 1.0
+        window.session.commit_line("line 1 left", "Line 1", 0.95)
+        yield settled(window)
+        assert window.session.frame.lengths["line 1 left"] < 0.99 * found_length(window, "line 1 left")
+        window.lines.rows["line 1 left"].details.asked.emit("path")
+        assert drawing.at_work
+        click(window, at(2, 2), at(5, 2))
+        window.view.viewport.setFocus()
+        press(window, Qt.Key.Key_Return)
+        press(window, Qt.Key.Key_Return)
+        yield settled(window)
+        again, other = window.session.design.own_lines
+        assert again.name == "line 1 left"
+        assert again != left
+        assert other == mirror_image(again, TEMPLATE, "line 1 right")
+        assert window.session.design.ratio("line 1 left") == 0.95
+
+    run_main([], script)
+
+
+def found_length(window: MainWindow, name: str) -> float:
+    """The length of a line at rest."""
+    lines = {line.name: line for line in window.session.frame.stages.model.lines}
+    return lines[name].rest_length
 
 
 def led_elsewhere(window: MainWindow, path: tuple[int, ...]) -> Script:
@@ -177,8 +233,13 @@ def a_ring(window: MainWindow) -> Script:
     click(window, *ring)
     assert len(drawing._places) == len(ring)
     click(window, ring[0])
-    assert drawing._snapped.closed
-    assert set(ring) <= set(drawing._snapped.path)
+    assert drawing._found.closed
+    card = drawing._sketching.card
+    assert isinstance(drawing._found, Snapped) == card.snap.isChecked()
+    card.snap.setChecked(True)
+    assert set(ring) <= set(drawing._found.path)
+    card.snap.setChecked(False)
+    assert drawing._found.off < 1.0
     press(window, Qt.Key.Key_Escape)
     assert not drawing._sketching.at_work
     assert window.session.design.own_lines == ()

@@ -11,7 +11,7 @@ from core.design_lines import OwnLine
 from core.exact import solve_exact
 from core.mechanics import CONTACTS, HOLDS, LAWS, VOLUMES, Mechanics
 from core.model import constrained_model
-from core.pipeline import with_own_lines
+from core.own_lines import with_own_lines
 from core.solver import Targets
 
 

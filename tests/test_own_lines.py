@@ -13,8 +13,8 @@ from core.design_lines import OwnLine
 from core.design_text import from_json, to_json
 from core.errors import LineError
 from core.exact import solve_exact
-from core.own_lines import own_line, place_of
-from core.pipeline import Stages, build, with_own_lines
+from core.own_lines import own_line, place_of, with_own_lines
+from core.pipeline import Stages, build
 from core.report import still_lines
 from core.template import read_template
 

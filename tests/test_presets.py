@@ -10,7 +10,7 @@ from core.design_lines import LineTraits, OwnLine
 from core.elastics import find_elastic
 from core.errors import LineError
 from core.exact import solve_exact
-from core.own_lines import place_of, ready_made
+from core.own_lines import ready_made, text_of
 from core.pipeline import build, targets_of
 from core.presets import (
     FORMAT,
@@ -73,7 +73,7 @@ def test_a_ready_made_line_stays_as_it_was_led_and_one_through_places_goes_throu
     after = with_preset(design, Preset("X", (PresetLine("straps", length=0.95),)))
     assert after.own_lines == design.own_lines
     assert after.ratio("strap left") == 0.95
-    through = PresetLine("strap left", ",".join(place_of(point, template) for point in left.points))
+    through = PresetLine("strap left", text_of(left, template))
     assert with_preset(design, Preset("X", (through,), template="168")).own_lines == (left, right)
 
 

@@ -248,8 +248,8 @@ def test_noise_hardly_changes_the_mean_on_a_real_body(name: str) -> None:
     stages, points = solution().stages, solution().control_points
     mesh, moved = stages.body.mesh, deform(stages.binding, points)
     line = next(each for each in stages.model.lines if each.name == name)
-    even = LineTension(np.full(len(line.pairs), NEWTONS), NEWTONS, estimate=False)
-    path, back = stages.control.mesh.vertices[line.path], stages.backs[name].path
+    even = LineTension(np.full(len(line.rest_lengths), NEWTONS), NEWTONS, estimate=False)
+    path, back = line.places(stages.control.mesh.vertices), stages.backs[name].path
 
     def worn(noise: np.ndarray) -> LinePressure:
         skin = Surface(mesh.moved(mesh.vertices + noise))

@@ -15,10 +15,11 @@ from app.seeing.band import OFF_WIDTH, Band, band_width
 from app.seeing.bands import Bands, RibbonActor
 from app.seeing.ribbon import CASING, Ribbon, Surface, build_casing, build_ribbon
 from app.seeing.sight import Sight
-from core.centre_line import NO_BACK, centre_line
+from core.centre_line import centre_line
 from core.design import Design, ScanSource
 from core.mesh import Mesh, unit
 from core.pipeline import Stages, build
+from core.routes import Route
 from core.sections import arc_length
 from core.solution import run
 
@@ -45,7 +46,7 @@ def arc(start: float, end: float, step: float, radius: float = RADIUS) -> np.nda
 def test_a_band_with_a_back_closes_round_the_body() -> None:
     front, back = arc(-80.0, 80.0, 20.0), arc(80.0, 280.0, 4.0)
     surface = Surface(tube(lambda turn: np.full_like(turn, RADIUS)))
-    ribbon = build_ribbon(front, surface, 12.0, back)
+    ribbon = build_ribbon(Route(front, back), surface, 12.0)
     middle = ribbon.mesh.vertices.reshape(ribbon.rows, 8, 3)[:, 3:5].mean(axis=1)
     steps = np.linalg.norm(np.roll(middle, -1, axis=0) - middle, axis=1)
     assert steps.max() < 5.0  # no gap, not even where the rows begin
@@ -57,12 +58,12 @@ def test_a_band_with_a_back_closes_round_the_body() -> None:
     assert (np.abs(bearing[ribbon.part < 0]) > 78.0).all()
     inside = np.abs(bearing + 70.0) < 8.0
     assert set(ribbon.part[inside].tolist()) == {0}  # the first segment, from -80 to -60 degrees
-    assert len(build_casing(front, surface, 12.0, back).mesh.boundary_loops) == 2
+    assert len(build_casing(Route(front, back), surface, 12.0).mesh.boundary_loops) == 2
 
 
 def test_a_line_without_a_back_ends_where_it_ends() -> None:
     surface = Surface(tube(lambda turn: np.full_like(turn, RADIUS)))
-    ribbon = build_ribbon(arc(-40.0, 40.0, 20.0), surface, 12.0)
+    ribbon = build_ribbon(Route(arc(-40.0, 40.0, 20.0)), surface, 12.0)
     assert len(ribbon.mesh.boundary_loops) == 1
     assert (ribbon.part >= 0).all()
     ends = ribbon.mesh.vertices.reshape(ribbon.rows, 8, 3)[[0, -1]]
@@ -84,7 +85,7 @@ def test_a_taut_band_bridges_a_hollow_and_lies_on_the_rest() -> None:
 
     surface = Surface(tube(cleft))
     places = arc(-72.0, 72.0, 24.0)
-    line = centre_line(places[np.abs(places[:, 0]) > 1.0], surface, NO_BACK)
+    line = centre_line(places[np.abs(places[:, 0]) > 1.0], surface)
     middle = np.abs(line.points[:, 0]) < 3.0
     taut = RADIUS * np.cos(np.radians(24.0))  # the chord between the two points beside the cleft
     stands = -(line.points + line.lift[:, None] * line.normals)[middle, 1]
@@ -151,7 +152,7 @@ def test_what_can_pull_and_is_off_is_thin_and_dashed_and_nothing_else() -> None:
 
 
 def test_a_band_covers_a_nipple() -> None:
-    ribbon = build_ribbon(arc(-80.0, 80.0, 20.0), Surface(breast()), 12.0, arc(80.0, 280.0, 4.0))
+    ribbon = build_ribbon(Route(arc(-80.0, 80.0, 20.0), arc(80.0, 280.0, 4.0)), Surface(breast()), 12.0)
     met = Sight(drawn(ribbon)).hit(np.array([0.0, -300.0, 100.0]), np.array([0.0, 0.0, 100.0]))
     assert met is not None
     assert met[1] < -RADIUS - 6.0
@@ -169,7 +170,7 @@ def test_no_skin_stands_through_a_band_however_wide_it_is(name: str, built: Call
     assert np.abs(reshaped - rest.vertices).max() > 5.0
     for band in bands(stages, ()):
         for width in (10.0, 25.0, 40.0, 60.0):
-            ribbon = build_ribbon(band.path, Surface(rest), width, band.back)
+            ribbon = build_ribbon(band.route, Surface(rest), width)
             for skin in (rest, rest.moved(reshaped)):
                 cloth = ribbon.mesh.vertices + ribbon.follow @ (skin.vertices - rest.vertices)
                 assert bare(skin, cloth.reshape(ribbon.rows, -1, 3)) == 0.0, (band.name, width)
@@ -203,7 +204,7 @@ def test_bands_of_the_template_go_round_a_body(
     shown = bands(stages, ())
     assert {band.name for band in shown} == {"full-bust", "mid-bust", "under-bust"}
     for band in shown:
-        ribbon = build_ribbon(band.path, surface, band.width, band.back)
+        ribbon = build_ribbon(band.route, surface, band.width)
         rows = ribbon.mesh.vertices.reshape(ribbon.rows, 8, 3)
         middle = rows[:, 3:5].mean(axis=1)
         steps = np.linalg.norm(np.roll(middle, -1, axis=0) - middle, axis=1)
@@ -234,7 +235,7 @@ def test_an_open_ribbon_ends_round() -> None:
     surface = Surface(tube(lambda turn: np.full_like(turn, RADIUS)))
     path = arc(-40.0, 40.0, 20.0)
     for laid, radius in ((build_ribbon, 10.0), (build_casing, 0.5 * (20.0 + CASING))):
-        ribbon = laid(path, surface, 20.0)
+        ribbon = laid(Route(path), surface, 20.0)
         rows = ribbon.mesh.vertices.reshape(ribbon.rows, -1, 3)
         along = RADIUS * np.arctan2(rows[..., 0], -rows[..., 1])
         end = along[:, 1:-1].max()
@@ -246,7 +247,7 @@ def test_an_open_ribbon_ends_round() -> None:
 
 def test_a_ribbon_forgets_nothing_that_moved_once() -> None:
     surface = Surface(tube(lambda turn: np.full_like(turn, RADIUS)))
-    ribbon = build_ribbon(arc(-80.0, 80.0, 20.0), surface, 12.0, arc(80.0, 280.0, 4.0))
+    ribbon = build_ribbon(Route(arc(-80.0, 80.0, 20.0), arc(80.0, 280.0, 4.0)), surface, 12.0)
     plotter = pv.Plotter(off_screen=True)
     actor = RibbonActor(plotter, ribbon, "ribbon")
     skin = surface.mesh.vertices

@@ -18,6 +18,7 @@ from app.seeing.sight import Sight
 from app.seeing.skin import split_plates
 from core.centre_line import centre_line
 from core.mesh import Mesh
+from core.routes import Route
 
 ROOT = Path(__file__).parents[1]
 WIDTH, HEIGHT = 450, 300
@@ -93,7 +94,7 @@ def test_a_ribbon_lies_on_the_skin(name: str, request: pytest.FixtureRequest) ->
     for z in (UNDERBUST, BUST, BUST + 50.0):
         path = across_front(body, z)
         line = centre_line(path, surface, width=12.0)
-        for ribbon in (build_ribbon(path, surface, 12.0), build_casing(path, surface, 12.0)):
+        for ribbon in (build_ribbon(Route(path), surface, 12.0), build_casing(Route(path), surface, 12.0)):
             middle = ribbon.mesh.vertices.reshape(ribbon.rows, 8, 3).mean(axis=1)
             nearest = np.linalg.norm(middle[:, None] - line.points, axis=2).argmin(axis=1)
             bridged = line.lift[nearest]  # there it stands off, as a taut band does
@@ -101,7 +102,7 @@ def test_a_ribbon_lies_on_the_skin(name: str, request: pytest.FixtureRequest) ->
 
 
 def test_a_ribbon_has_its_width_and_looks_outward(mannequin: Mesh) -> None:
-    ribbon = build_ribbon(across_front(mannequin, BUST), Surface(mannequin), 12.0)
+    ribbon = build_ribbon(Route(across_front(mannequin, BUST)), Surface(mannequin), 12.0)
     rows = ribbon.mesh.vertices.reshape(ribbon.rows, 8, 3)
     width = np.linalg.norm(rows[6:-6, 1] - rows[6:-6, -2], axis=1)  # its ends are round
     assert width == pytest.approx(12.0, abs=0.8)
@@ -111,7 +112,7 @@ def test_a_ribbon_has_its_width_and_looks_outward(mannequin: Mesh) -> None:
 
 def test_a_ribbon_passes_through_its_control_points(mannequin: Mesh) -> None:
     path = across_front(mannequin, BUST)
-    ribbon = build_ribbon(path, Surface(mannequin), 12.0)
+    ribbon = build_ribbon(Route(path), Surface(mannequin), 12.0)
     apart = np.linalg.norm(ribbon.mesh.vertices[None] - path[:, None], axis=2).min(axis=1)
     assert apart.max() < 5.0
 

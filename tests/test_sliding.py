@@ -6,14 +6,14 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from hard_cases import hard_case
-from models import LAWS, cable_force, law_of, line_force, settled, small, volume_slopes
+from models import LAWS, cable_force, law_of, line_force, pairs_of, settled, small, volume_slopes
 from shapes import central_difference, fitted, mid_bust, mirrored, torso
 
 from core.design_lines import OwnLine
 from core.exact import NEWTON_LIMIT, newton, solve_exact
 from core.mechanics import HOLDS, Mechanics
 from core.model import constrained_model
-from core.pipeline import with_own_lines
+from core.own_lines import with_own_lines
 from core.solver import State, Targets, at_rest, turn
 from core.solving.potential import Potential
 from core.solving.sliding import Skin
@@ -48,7 +48,7 @@ def test_what_the_garment_carries_is_exactly_the_part_along_the_skin(law, volume
     for i in model.tensegric.free:
         # All that is left unbalanced is what the line pulls along the skin: the garment holds against it.
         np.testing.assert_allclose(body[i] + line[i], along[i], atol=1e-9 * scale)
-    on_line = np.unique(model.segments.pairs)
+    on_line = np.unique(pairs_of(model.segments.across))
     assert np.linalg.norm(along[on_line], axis=1).max() > 0.1 * scale
     np.testing.assert_allclose(np.delete(line, on_line, axis=0), 0.0)
 
@@ -68,7 +68,8 @@ def plain_sliding_sweep(model, targets, state):
                 b += q * (now[j] + tensegric.rest[i] - tensegric.rest[j])
                 stiffness += q
         tape, q_line = 0.0, np.zeros(3)
-        for (a, c), k, line in zip(model.segments.pairs, model.segments.stiffness, model.owner, strict=True):
+        pairs = pairs_of(model.segments.across)
+        for (a, c), k, line in zip(pairs, model.segments.stiffness, model.owner, strict=True):
             if i in (a, c):
                 j = c if i == a else a
                 way = old[i] - old[j]

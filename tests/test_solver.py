@@ -5,6 +5,7 @@ from itertools import islice
 
 import numpy as np
 import pytest
+from models import pairs_of
 from shapes import mid_bust, run, tent_model, torso
 
 from core.lines import line_on
@@ -71,7 +72,7 @@ def test_hooke_force_equals_the_tension_of_every_segment():
     force = np.zeros_like(points)
     for index, line in enumerate(SKEW.lines):
         for (i, j), k, natural in zip(
-            line.pairs,
+            pairs_of(line.across),
             SKEW.segments.stiffness[SKEW.owner == index],
             ratios[index] * line.rest_lengths,
             strict=line.constrains,
@@ -121,7 +122,8 @@ def plain_sweep(model, targets, state):
                 j = b if i == a else a
                 total = total + q * (now[j] + tensegric.rest[i] - tensegric.rest[j])
                 stiffness += q
-        for (a, b), k, length in zip(model.segments.pairs, model.segments.stiffness, natural, strict=True):
+        pairs = pairs_of(model.segments.across)
+        for (a, b), k, length in zip(pairs, model.segments.stiffness, natural, strict=True):
             if i in (a, b):
                 j = b if i == a else a
                 way = old[i] - old[j]

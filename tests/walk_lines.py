@@ -188,7 +188,7 @@ class LinesWalk(WindowWalk):
             before = self.design
             self.check()
         drawing.go_on()
-        if drawing._snapped is not None:
+        if drawing._found is not None:
             drawing.go_on()
             assert self.session.design is not None
             new = [line for line in self.session.design.own_lines if line not in before.own_lines]

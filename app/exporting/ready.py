@@ -26,7 +26,20 @@ from core.writing_out.measures_file import (
     seamly_names,
     write_measures,
 )
-from core.writing_out.worn import BACK, CENTRE, LEFT, LOWER, SEAM, SIDE_SEAM, UPPER, strips, worn_curves
+from core.writing_out.worn import (
+    BACK,
+    CENTRE,
+    EDGE,
+    LEFT,
+    LOWER,
+    SEAM,
+    SEWN,
+    SHOULDER,
+    SIDE_SEAM,
+    UPPER,
+    strips,
+    worn_curves,
+)
 
 if TYPE_CHECKING:
     from app.printing.studio import Studio
@@ -152,6 +165,9 @@ def _strip_words(text: str) -> str:
         SEAM: tr("seam"),
         UPPER: tr("upper end"),
         LOWER: tr("lower end"),
+        EDGE: tr("upper edge"),
+        SHOULDER: tr("shoulder"),
+        SEWN: tr("back, at the under-bust band"),
     }
     return marks.get(text) or say(text)
 

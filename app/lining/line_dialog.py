@@ -22,8 +22,9 @@ from app.dress.theme import font, tokens_of
 from app.presenting.lines import OWN_COLOURS
 from app.wording.words import say, tr
 from core.design_lines import OwnLine
+from core.embedding import Cell
 from core.errors import UserError
-from core.own_lines import own_line, place_of
+from core.own_lines import cells_of, own_line, place_of
 from core.template import Template
 
 _STEP, _EDGE, _REACH = 34, 30, 15
@@ -37,7 +38,7 @@ class PointMap(QWidget):
     def __init__(self, template: Template) -> None:
         super().__init__()
         self._template = template
-        self._path: tuple[int, ...] = ()
+        self._path: tuple[Cell, ...] = ()
         self.setFixedSize(self.sizeHint())
         self.setCursor(Qt.CursorShape.PointingHandCursor)
 
@@ -46,14 +47,16 @@ class PointMap(QWidget):
             2 * _EDGE + 2 * self._template.half * _STEP, 2 * _EDGE + (len(self._template.rows) - 1) * _STEP
         )
 
-    def show_path(self, path: tuple[int, ...]) -> None:
-        """Draw a line through these points."""
+    def show_path(self, path: tuple[Cell, ...]) -> None:
+        """Draw a line through these places."""
         self._path = path
         self.update()
 
     def place(self, point: int) -> QPointF:
         """Return where a control point is drawn."""
-        column, row = int(self._template.column[point]), int(self._template.row[point])
+        return self._at(int(self._template.row[point]), int(self._template.column[point]))
+
+    def _at(self, row: float, column: float) -> QPointF:
         return QPointF(
             _EDGE + (column + self._template.half) * _STEP,
             _EDGE + (len(self._template.rows) - 1 - row) * _STEP,
@@ -78,7 +81,7 @@ class PointMap(QWidget):
                 painter.drawLine(self.place(one), self.place(other))
         painter.setPen(QPen(QColor(OWN_COLOURS[0]), 4))
         for one, other in pairwise(self._path):
-            painter.drawLine(self.place(one), self.place(other))
+            painter.drawLine(self._at(*one), self._at(*other))
         self._paint_points(painter)
         painter.setFont(font("axis"))
         painter.setPen(QColor(tokens.text_caption))
@@ -174,11 +177,11 @@ class LineDialog(QDialog):
         self.line = line
         self._said.setText(say(said))
         self._add.setEnabled(line is not None)
-        self.map.show_path(line.path if line else self._so_far(text))
+        self.map.show_path(cells_of(line, self._template) if line else self._so_far(text))
 
-    def _so_far(self, text: str) -> tuple[int, ...]:
+    def _so_far(self, text: str) -> tuple[Cell, ...]:
         try:
-            return own_line(f"x={text}", self._template).path
+            return cells_of(own_line(f"x={text}", self._template), self._template)
         except UserError:
             return ()
 

@@ -1,22 +1,25 @@
-"""A line is drawn on the body: from click to click over the skin, then it snaps to the control mesh."""
+"""A line is drawn on the body, from click to click over the skin; it keeps its curve or snaps to points."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import QObject, QPointF
+from PySide6.QtCore import QObject, QPointF, QSignalBlocker
 
 from app.asking.jobs import Job
+from app.lining.line_routing import led
 from app.lining.sketching import Sketching
-from app.presenting.lines import LINE_COLOURS, kind_of, line_colours
+from app.presenting.lines import LINE_COLOURS, kind_of, line_colours, row_title
 from app.wording.words import number, tr
 from core.body import Body
 from core.design_lines import OwnLine
 from core.errors import UserError
+from core.free_curves import FreeCurve, free_curve
 from core.geodesic import SkinWays
 from core.mesh import Points
-from core.own_lines import mirrored
+from core.own_lines import cells_of, mirror_image
 from core.snapping import Snapped, snap
 from core.template import read_template
 
@@ -28,7 +31,7 @@ _WIDE = 25.0  # a line further off than this is told to lie outside the control 
 
 
 class LineDrawing(QObject):
-    """Draws own lines: ``begin``, clicks, Enter, and Enter again to keep what it snapped to."""
+    """Draws own lines: ``begin``, clicks, Enter, and Enter again to keep the line that is proposed."""
 
     def __init__(self, window: MainWindow) -> None:
         super().__init__(window)
@@ -39,8 +42,9 @@ class LineDrawing(QObject):
         self._job_body: Body | None = None
         self._places: list[Points] = []
         self._curve: list[Points] = []
-        self._snapped: Snapped | None = None
-        self._wanted: tuple[Points, bool] = (np.empty((0, 3)), False)
+        self._found: Snapped | FreeCurve | None = None
+        self._wanted: tuple[list[Points], bool] = ([], False)
+        self._again: OwnLine | None = None
         hand, card = self._sketching.hand, self._sketching.card
         hand.clicked.connect(self._click)
         hand.hovered.connect(self._hover)
@@ -49,6 +53,7 @@ class LineDrawing(QObject):
         card.back.connect(self.back)
         card.left.connect(self.leave)
         card.moved.connect(self._move)
+        card.snap.toggled.connect(self._choose)
         self._sketching.lost.connect(self.leave)
 
     @property
@@ -58,19 +63,26 @@ class LineDrawing(QObject):
 
     def begin(self) -> None:
         """Let a line be drawn; until the skin is ready for it clicks are joined straight."""
+        self._begin(None)
+
+    def begin_again(self, line: OwnLine) -> None:
+        """Let the course of a line be drawn anew; it keeps all else."""
+        self._begin(line)
+
+    def _begin(self, again: OwnLine | None) -> None:
         frame = self._sketching.frame
         if frame is None:
             return
         self._window.desk.go_to("lines")
-        self._places, self._curve, self._snapped = [], [], None
+        self._places, self._curve, self._found, self._again = [], [], None, again
         self._prepare(frame.stages.body)
         self._sketching.begin(frame)
         self._show()
 
     def back(self) -> None:
-        """Take the last step back: what it snapped to, or the last point."""
-        if self._snapped is not None:
-            self._snapped = None
+        """Take the last step back: the line that is proposed, or the last point."""
+        if self._found is not None:
+            self._found = None
         elif self._places:
             self._places.pop()
             del self._curve[max(len(self._places) - 1, 0) :]
@@ -78,15 +90,15 @@ class LineDrawing(QObject):
 
     def leave(self) -> None:
         """Draw no longer; nothing is kept."""
-        self._places, self._curve, self._snapped = [], [], None
+        self._places, self._curve, self._found, self._again = [], [], None, None
         self._sketching.end()
 
     def go_on(self) -> None:
-        """Let the line snap to the control mesh, or keep what it has snapped to."""
-        if self._snapped is None:
-            self._snap(closed=False)
+        """Propose the line that was drawn, or keep the one that is proposed."""
+        if self._found is None:
+            self._propose(closed=False)
         else:
-            self._keep(self._snapped)
+            self._keep(self._found)
 
     def _prepare(self, body: Body) -> None:
         """Make the skin of a body ready, unless it is or a job is at it that nobody cancelled."""
@@ -114,10 +126,10 @@ class LineDrawing(QObject):
             self._show()
 
     def _click(self, at: QPointF) -> None:
-        if self._snapped is not None:
+        if self._found is not None:
             return
         if self._closes(at):
-            self._snap(closed=True)
+            self._propose(closed=True)
             return
         place = self._window.view.viewport.skin_at(at)
         if place is None:
@@ -129,7 +141,7 @@ class LineDrawing(QObject):
 
     def _hover(self, at: QPointF) -> None:
         """Show how the line would go on to the pointer."""
-        if self._snapped is not None or not self._places:
+        if self._found is not None or not self._places:
             return
         place = self._places[0] if self._closes(at) else self._window.view.viewport.skin_at(at)
         if place is not None:
@@ -147,66 +159,90 @@ class LineDrawing(QObject):
             self._window.session.failed.emit(problem)
             return np.stack([start, end])
 
-    def _snap(self, closed: bool) -> None:
-        frame = self._window.session.frame
-        if frame is None or not self._curve:
+    def _propose(self, closed: bool) -> None:
+        """Propose the line that was drawn; nothing changes if there is none."""
+        if not self._curve:
             return
         last = [self._way(self._places[-1], self._places[0])] if closed else []
-        curve = np.concatenate([*self._curve, *last])
-        self._wanted = curve[:-1] if closed else curve, closed
-        try:
-            self._snapped = snap(frame.stages.control, *self._wanted)
-        except UserError as problem:
-            self._window.session.failed.emit(problem)
-        else:
+        self._wanted = [*self._curve, *last], closed
+        if self._fit():
             self._curve += last
         self._show()
 
-    def _move(self) -> None:
-        """Let what was drawn snap to the nearest path that can pull."""
+    def _fit(self, pulling: bool = False) -> bool:
+        """Fit a line to what was drawn, as it is or to control points, and tell whether there is one.
+
+        ``pulling`` wants one through control points that can move.
+        """
         frame = self._window.session.frame
-        if frame is None or self._snapped is None:
-            return
+        if frame is None:
+            return False
+        control, (pieces, closed) = frame.stages.control, self._wanted
         try:
-            self._snapped = snap(frame.stages.control, *self._wanted, pulling=True)
+            if self._sketching.card.snap.isChecked():
+                curve = np.concatenate(pieces)
+                self._found = snap(control, curve[:-1] if closed else curve, closed, pulling=pulling)
+            else:
+                self._found = free_curve(frame.stages.body.mesh, control, pieces, closed)
         except UserError as problem:
             self._window.session.failed.emit(problem)
+            return False
+        return True
+
+    def _move(self) -> None:
+        """Let what was drawn snap to the nearest control points that can pull."""
+        if self._found is not None:
+            with QSignalBlocker(self._sketching.card.snap):
+                self._sketching.card.snap.setChecked(True)
+            self._fit(pulling=True)
+            self._show()
+
+    def _choose(self) -> None:
+        """Fit what was drawn anew, as it was chosen."""
+        if self._found is not None:
+            self._fit()
         self._show()
 
-    def _keep(self, snapped: Snapped) -> None:
-        """Add the line, and its mirror image if that is wished and another line."""
-        session, card = self._window.session, self._sketching.card
+    def _keep(self, found: Snapped | FreeCurve) -> None:
+        """Add the line, and its mirror image if that is wished and another line; or give one its course."""
+        session, card, again = self._window.session, self._sketching.card, self._again
         design = session.design
         if design is None:
             return
+        points, places = (found.path, ()) if isinstance(found, Snapped) else ((), found.places)
+        if again is not None:
+            over = again.over_shoulder and not found.closed
+            after = OwnLine(again.name, points, found.closed, places, over)
+            self.leave()
+            text = tr("{line} led elsewhere").format(line=row_title(again.name, design))
+            session.edit(lambda before: led(before, again, after), text)
+            return
         template = read_template(design.template)
-        other = mirrored(snapped.path, template)
         taken = {*LINE_COLOURS, *(kind_of(line.name) for line in design.own_lines)}
         name = next(f"line {count}" for count in range(1, 1000) if f"line {count}" not in taken)
-        lines: tuple[OwnLine, ...] = (OwnLine(name, snapped.path, snapped.closed),)
-        if card.both.isChecked() and set(other) != set(snapped.path):
-            sides = (
-                (snapped.path, other)
-                if template.column[list(snapped.path)].mean() > 0
-                else (other, snapped.path)
-            )
-            lines = tuple(
-                OwnLine(f"{name} {side}", path, snapped.closed)
-                for side, path in zip(("left", "right"), sides, strict=True)
-            )
+        lines: tuple[OwnLine, ...] = (OwnLine(name, points, found.closed, places),)
+        other = mirror_image(lines[0], template, name)
+        if card.both.isChecked() and set(other.points + other.places) != set(points + places):
+            left = sum(column for _, column in cells_of(lines[0], template)) > 0.0
+            pair = (lines[0], other) if left else (other, lines[0])
+            sides = zip(("left", "right"), pair, strict=True)
+            lines = tuple(replace(line, name=f"{name} {side}") for side, line in sides)
         self.leave()
         self._window.line_maker.take(lines)
 
     # -- what is seen
 
     def _show(self) -> None:
-        card, snapped = self._sketching.card, self._snapped
-        card.both.setVisible(snapped is not None)
-        card.keep.setText(tr("Keep line") if snapped else tr("Done"))
-        card.keep.setEnabled(snapped is not None or len(self._places) > 1)
+        card, found, design = self._sketching.card, self._found, self._window.session.design
+        card.both.setVisible(found is not None and self._again is None)
+        card.keep.setText(tr("Keep line") if found else tr("Done"))
+        card.keep.setEnabled(found is not None or len(self._places) > 1)
         card.undo.setEnabled(bool(self._places))
-        card.move_.setVisible(snapped is not None and not snapped.pulls)
-        if snapped is None:
+        card.move_.setVisible(found is not None and not found.pulls)
+        if found is not None:
+            keys = tr("Enter: keep · Backspace: draw on · Esc: leave")
+            card.say(tr("Keep this line?"), "\n".join(_fit_words(found)), keys)
+        else:
             what = tr(
                 "Click on the body: the line follows the skin from click to click. A drag turns the body."
                 " Off the breasts a line is only measured."
@@ -214,29 +250,44 @@ class LineDrawing(QObject):
             keys = tr(
                 "Enter or double click: done · first point: close it · Backspace: one back · Esc: leave"
             )
-            card.say(tr("Draw a line"), what, keys)
-        else:
-            what = tr("It follows the control mesh, off what you drew by up to {mm} mm.")
-            if snapped.off > _WIDE:
-                what = tr("It can follow the control mesh only: off what you drew by up to {mm} mm.")
-            off = what.format(mm=number(snapped.off, 0))
-            if not snapped.pulls:
-                off += "\n" + tr("No point of it can move, so it is only measured and pulls nothing.")
-            card.say(tr("Keep this line?"), off, tr("Enter: keep · Backspace: draw on · Esc: leave"))
+            title = tr("Draw a line")
+            if self._again is not None and design is not None:
+                title = tr("Path of {line}").format(line=row_title(self._again.name, design))
+            card.say(title, what, keys)
         self._draw(self._curve)
 
-    def _next_colour(self) -> str:
-        """Return the colour that a new line will have."""
+    def _colour(self) -> str:
+        """Return the colour that the line has or will have."""
         design = self._window.session.design
         names = [line.name for line in design.own_lines] if design is not None else []
+        if self._again is not None:
+            return line_colours(names, design)[self._again.name]
         return line_colours([*names, "new"])["new"]
 
     def _draw(self, curve: list[Points]) -> None:
-        frame, snapped = self._window.session.frame, self._snapped
+        frame, found = self._window.session.frame, self._found
         path = np.empty((0, 3))
-        if snapped is not None and frame is not None:
-            corners = [*snapped.path, *snapped.path[:1] * snapped.closed]
+        if isinstance(found, FreeCurve):
+            path = found.shown
+        elif found is not None and frame is not None:
+            corners = [*found.path, *found.path[:1] * found.closed]
             path = self._sketching.laid(frame.stages.control.mesh.vertices[corners])
         drawn = np.concatenate(curve) if curve else np.empty((0, 3))
-        points = np.array(self._places).reshape(-1, 3) if snapped is None else np.empty((0, 3))
-        self._sketching.draw(drawn, path, points, self._next_colour())
+        points = np.array(self._places).reshape(-1, 3) if found is None else np.empty((0, 3))
+        self._sketching.draw(drawn, path, points, self._colour())
+
+
+def _fit_words(found: Snapped | FreeCurve) -> list[str]:
+    """Return how a line lies to what was drawn, and what it does not do."""
+    if isinstance(found, FreeCurve):
+        said = [tr("Deviation from the drawn curve: up to {mm} mm.").format(mm=number(found.off, 1))]
+        if found.cut:
+            said.append(tr("The part outside the control mesh was left out: the body is fixed there."))
+    else:
+        what = tr("It follows the control mesh, off what you drew by up to {mm} mm.")
+        if found.off > _WIDE:
+            what = tr("It can follow the control mesh only: off what you drew by up to {mm} mm.")
+        said = [what.format(mm=number(found.off, 0))]
+    if not found.pulls:
+        said.append(tr("No point of it can move, so it is only measured and pulls nothing."))
+    return said

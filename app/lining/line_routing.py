@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,13 +15,23 @@ from core.design import Design
 from core.design_lines import OwnLine, partner_of
 from core.errors import UserError
 from core.mesh import Points
-from core.own_lines import mirrored
+from core.own_lines import mirror_image
 from core.template import read_template
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
 
 _REACH = 16.0  # how near to a control point a click means it [px]
+
+
+def led(design: Design, line: OwnLine, after: OwnLine) -> Design:
+    """Return the design with an own line led elsewhere, and a linked partner that mirrors it likewise."""
+    template, partner = read_template(design.template), partner_of(line.name)
+    changed = design.with_own_line(after)
+    mirrors = mirror_image(line, template, partner) in design.own_lines if partner else False
+    if mirrors and len(design.linked(line.name)) > 1:
+        changed = changed.with_own_line(mirror_image(after, template, partner))
+    return changed
 
 
 class LineRouting(QObject):
@@ -56,6 +67,9 @@ class LineRouting(QObject):
         own = {line.name: line for line in design.own_lines} if design is not None else {}
         if name not in own or frame is None:
             return
+        if own[name].free:  # it has no control points to be led through
+            self._window.line_drawing.begin_again(own[name])
+            return
         self._line, self._steps = own[name], [own[name].points]
         self._window.desk.go_to("lines")
         self._window.desk.select_line(name)
@@ -86,16 +100,7 @@ class LineRouting(QObject):
         self.leave()
         if path != line.points:
             text = tr("{line} led elsewhere").format(line=row_title(line.name, design))
-            session.edit(lambda before: self._led(before, line, path), text)
-
-    def _led(self, design: Design, line: OwnLine, path: tuple[int, ...]) -> Design:
-        template = read_template(design.template)
-        after = design.with_own_line(OwnLine(line.name, path, line.closed))
-        partner = next((each for each in design.own_lines if each.name == partner_of(line.name)), None)
-        linked = len(design.linked(line.name)) > 1
-        if partner is not None and linked and partner.points == mirrored(line.points, template):
-            after = after.with_own_line(OwnLine(partner.name, mirrored(path, template), line.closed))
-        return after
+            session.edit(lambda before: led(before, line, replace(line, points=path)), text)
 
     def _check(self, design: Design) -> None:
         """Leave the line once it is no longer the one that was begun with: it was undone, or removed."""

@@ -135,6 +135,6 @@ def _goes(preset: Preset, design: Design) -> bool:
 
 def _led_anew(before: Design, after: Design) -> str:
     """Return the titles of the lines that were led by hand and are led otherwise now."""
-    paths = {line.name: line.points for line in before.own_lines}
-    names = [line.name for line in after.own_lines if paths.get(line.name, line.points) != line.points]
+    courses = {line.name: line for line in before.own_lines}
+    names = [line.name for line in after.own_lines if courses.get(line.name, line) != line]
     return listed(dict.fromkeys(row_title(name, after) for name in names))

@@ -7,6 +7,7 @@ from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.dress.parts import FloatingPanel, ToolButton, button, sentence
 from app.dress.theme import font, label
+from app.dress.tip import set_tip
 from app.wording.words import tr
 
 WIDTH = 232
@@ -34,7 +35,11 @@ class DrawCard(FloatingPanel):
         self._what, self._keys = sentence(""), sentence("", "caption")
         self._what.setFixedWidth(WIDTH)
         self.both = QCheckBox(tr("Mirror to the other side, linked"))
-        self.both.setFont(font("body"))
+        self.snap = QCheckBox(tr("Snap to control points"))
+        set_tip(self.snap, tr("Move the line onto the nearest control points instead of keeping the curve"))
+        for choice in (self.both, self.snap):
+            choice.setFont(font("body"))
+            choice.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.move_ = button(tr("Move it where it can pull"))
         self.move_.hide()
         self.move_.clicked.connect(self.moved)
@@ -49,7 +54,7 @@ class DrawCard(FloatingPanel):
         foot.addWidget(self.undo)
         foot.addWidget(self.keep)
         column.addLayout(head)
-        for part in (self._what, self.move_, self._keys, self.both):
+        for part in (self._what, self.move_, self._keys, self.snap, self.both):
             column.addWidget(part)
         column.addSpacing(4)
         column.addLayout(foot)

@@ -180,7 +180,10 @@ class LineDetails(QWidget):
     def _show_whole(self, view: LineView, ratio: float) -> None:
         whole_mm = view.whole_mm - view.rest_mm + ratio * view.rest_mm
         # Of an elastic the back is stretched as the front: what is cut stands in the cut list.
-        self._whole.setVisible(view.whole_mm > view.rest_mm and not view.elastic)
+        self._whole.setVisible(bool(view.strap) or (view.whole_mm > view.rest_mm and not view.elastic))
+        if view.strap:
+            self._whole.setText(view.strap)
+            return
         whole = tr("Whole band: {set} of {rest} mm ({percent} %)")
         percent = number(whole_mm / view.whole_mm * 100)
         self._whole.setText(whole.format(set=number(whole_mm), rest=number(view.whole_mm), percent=percent))
@@ -191,7 +194,7 @@ def _tools() -> Sequence[tuple[str, str, str]]:
         ("rename", "rename", tr("Give the line a name of your own (F2)")),
         ("colour", "palette", tr("Choose the colour of this line")),
         ("link", "link", tr("Link with the other side (L)")),
-        ("path", "edit-path", tr("Lead this line through other control points")),
+        ("path", "edit-path", tr("Change the course of this line")),
         ("reset", "arrow-counter-clockwise", tr("Set this line back to its length at rest (Backspace)")),
         ("remove", "trash", tr("Remove this line (Del)")),
     )

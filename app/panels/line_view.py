@@ -33,6 +33,7 @@ class LineView:
     ``pressed`` is what the line presses with and what that means, in the ``tone`` of its light; empty
     while it is not known.
     ``leeway`` is how far it can go, None while that is not known; ``stale`` that of the design before.
+    ``strap`` is where it goes on over the shoulder, as words; its lengths are then those of all of it.
     ``width_mm`` is that of its band; ``stiffness`` [1] its own, or None for the ``usual_stiffness``.
     """
 
@@ -63,6 +64,7 @@ class LineView:
     splits: bool = False
     tried: bool = False
     parted: bool = False
+    strap: str = ""
 
     @property
     def names(self) -> tuple[str, ...]:

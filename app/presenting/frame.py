@@ -9,7 +9,6 @@ from app.presenting.lines import line_colours, line_title
 from app.seeing.band import OFF_WIDTH, Band, band_width
 from app.showing.verdict_chip import state_title
 from app.wording.words import number, tr
-from core.centre_line import NO_BACK
 from core.design import Design
 from core.live import Frame
 from core.pipeline import Stages
@@ -20,7 +19,7 @@ class _Drawn:
     """How a line is drawn; as long as all are the same, nothing has to be laid on the body anew."""
 
     name: str
-    path: tuple[int, ...]
+    course: bytes
     colour: str
     width: float
     off: bool
@@ -28,38 +27,30 @@ class _Drawn:
 
 def drawn(stages: Stages) -> tuple[_Drawn, ...]:
     """Return how the lines of a body are drawn, in the order of the list."""
-    paths, design = {line.name: line.path for line in stages.model.lines}, stages.design
+    names, design = [line.name for line in stages.model.lines], stages.design
     # What cannot pull is not put on and taken off: it measures, and is drawn as it lies.
     off = {line.name for line in stages.model.lines if line.constrains} - design.worn()
     return tuple(
         _Drawn(
             name,
-            tuple(paths[name].tolist()),
+            stages.routes[name].path.tobytes() + stages.routes[name].back.tobytes(),
             colour,
             OFF_WIDTH if name in off else band_width(name, design),
             name in off,
         )
-        for name, colour in line_colours(paths, design).items()
+        for name, colour in line_colours(names, design).items()
     )
 
 
 def bands(stages: Stages, hidden: Collection[str]) -> list[Band]:
     """Return what is drawn of the lines that are not ``hidden``.
 
-    Those with a back are drawn as whole bands; the others end where they end.
+    Those with a back are drawn as whole bands and straps over the shoulder; the others end where they end.
     """
-    rest, backs = stages.control.mesh.vertices, stages.backs
+    shown = [(line, stages.routes[line.name]) for line in drawn(stages) if line.name not in hidden]
     return [
-        Band(
-            line.name,
-            rest[list(line.path)],
-            line.colour,
-            line.width,
-            backs[line.name].path if line.name in backs else NO_BACK,
-            line.off,
-        )
-        for line in drawn(stages)
-        if line.name not in hidden
+        Band(line.name, route.path, line.colour, line.width, route.back, line.off, route.drawn)
+        for line, route in shown
     ]
 
 

@@ -10,13 +10,14 @@ from functools import cache
 from app.panels.line_view import LineView, SideView
 from app.seeing.band import band_width
 from app.wording.tokens import LINE_COLORS
-from app.wording.words import listed, say, tr
+from app.wording.words import listed, number, say, tr
 from core.design import Design
 from core.design_lines import partner_of
 from core.leeway import Leeway
 from core.lines import Line
 from core.live import Frame
 from core.splitting import can_split, is_split
+from core.straps import Tail
 from core.template import Template, read_template
 
 LINE_COLOURS = {"full-bust": "#0A5F73", "mid-bust": "#E5536B", "under-bust": "#5A3F94"}
@@ -73,6 +74,8 @@ def pair_title(name: str, design: Design) -> str:
         "ring": tr("Rings"),
         **({kind: line_title(kind)} if kind in LINE_COLOURS else {}),
     }
+    if kind == "strap" and not all(each.over_shoulder for each in design.own_lines if each.name == name):
+        titles[kind] = tr("Upper-chest straps")
     return design.traits_of(name).title or titles.get(kind, kind[:1].upper() + kind[1:])
 
 
@@ -155,6 +158,7 @@ def line_views(
 def _view(design: Design, frame: Frame, lines: list[Line], colour: str) -> LineView:
     """Return the row of a line, or of a linked pair whose lengths are the mean of both."""
     name, traits = lines[0].name, design.traits_of(lines[0].name)
+    tail = frame.stages.tails.get(name)
     own = {each.name for each in design.own_lines}
     sides = [SideView(_side(line.name), line.rest_length, frame.lengths[line.name]) for line in lines]
     partner = partner_of(name) if partner_of(name) in own else ""
@@ -181,7 +185,16 @@ def _view(design: Design, frame: Frame, lines: list[Line], colour: str) -> LineV
         elastic=say(traits.elastic),
         splits=not partner and can_split(design, _template(design.template), name),
         parted=is_split(design, name),
+        strap="" if tail is None else _strap_words(tail),
     )
+
+
+def _strap_words(tail: Tail) -> str:
+    """Return where a strap goes on from its upper end, or why it does not."""
+    if tail.problem:
+        return tr("{why} It ends on the upper chest.").format(why=say(tail.problem))
+    words = tr("Over the shoulder to the under-bust band at the back; {mm} mm of it on the fixed body")
+    return words.format(mm=number(tail.length, 0))
 
 
 @cache

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from core.centre_line import NO_BACK
 from core.design import Design
 from core.mesh import Floats, Points
+from core.routes import NO_BACK, Route
 
 Rise = Callable[[Floats], Points]
 """Returns how far a band is off the skin, (rows, 3) [mm], at places along its line, (rows,) 0 to 1."""
@@ -30,10 +30,10 @@ def band_width(name: str, design: Design | None = None) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Band:
-    """What is drawn of one line: its path over the control points, (k, 3) [mm], colour and width [mm].
+    """What is drawn of one line: its path on the body at rest, (k, 3) [mm], colour and width [mm].
 
-    ``back``, shape (b, 3) [mm], goes on round the back to where the path begins; without it the band ends.
-    One that is ``off`` is dashed.
+    ``back``, shape (b, 3) [mm], goes on round the back to where the path begins, or over the shoulder;
+    without it the band ends. One that is ``off`` is dashed; a path that was ``drawn`` is kept as it is.
     """
 
     name: str
@@ -42,3 +42,9 @@ class Band:
     width: float = 12.0
     back: Points = field(default_factory=lambda: NO_BACK)
     off: bool = False
+    drawn: bool = False
+
+    @property
+    def route(self) -> Route:
+        """Where it runs."""
+        return Route(self.path, self.back, self.drawn)

@@ -126,7 +126,7 @@ class Bands:
         self._displacement = np.zeros(surface.mesh.vertices.shape)
         self._bands = {band.name: band for band in bands}
         for name, band in self._bands.items():
-            ribbon = surface.ribbon(band.path, band.width, band.back)
+            ribbon = surface.ribbon(band.route, band.width)
             # A wider one under it bulges further round a nipple: it would stand through.
             wider = [
                 drawn.ribbon for each, drawn in self._ribbons.items() if self._bands[each].width > band.width
@@ -234,7 +234,7 @@ class Bands:
         if name not in self._casings:
             band = self._bands[name]
             assert self._surface is not None
-            ribbon = self._surface.ribbon(band.path, band.width, band.back, cased=True)
+            ribbon = self._surface.ribbon(band.route, band.width, cased=True)
             casing = RibbonActor(self._plotter, ribbon.under(self.ribbon(name)), f"casing {name}")
             casing.actor.prop.lighting = False
             casing.raise_to(self._rises.get(name))

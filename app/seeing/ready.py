@@ -6,7 +6,6 @@ from app.seeing.band import OFF_WIDTH, band_width
 from app.seeing.piece import NONE, pieces_of
 from app.seeing.ribbon import Surface
 from app.seeing.skin import PREPARING, skin_of
-from core.centre_line import NO_BACK
 from core.pipeline import Stages, StuckError
 from core.progress import Progress, quiet
 
@@ -19,9 +18,8 @@ def make_ready(built: Stages | StuckError, progress: Progress = quiet) -> None:
     pieces_of(skin, NONE if stages is None else stages.moving.vertices)
     if stages is None:
         return
-    surface, rest = Surface(mesh), stages.control.mesh.vertices
+    surface = Surface(mesh)
     for done, line in enumerate(stages.model.lines):
         progress(PREPARING, 0.9 + 0.1 * done / len(stages.model.lines))
-        back = stages.backs[line.name].path if line.name in stages.backs else NO_BACK
         for width in (band_width(line.name, stages.design), OFF_WIDTH):
-            surface.lay_ready(rest[list(line.path)], width, back)
+            surface.lay_ready(stages.routes[line.name], width)

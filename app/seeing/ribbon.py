@@ -13,9 +13,10 @@ from scipy.ndimage import maximum_filter
 from scipy.spatial import cKDTree
 
 from app.seeing.skin import Skin, skin_of
-from core.centre_line import NO_BACK, CentreLine, centre_line, smooth
+from core.centre_line import CentreLine, centre_line, smooth
 from core.centre_line import Surface as SkinSurface
 from core.mesh import Faces, Floats, Indices, Mesh, Points, unit
+from core.routes import Route
 from core.sections import arc_length
 
 CASING = 7.0
@@ -106,15 +107,15 @@ class Surface(SkinSurface):
         super().__init__(mesh, skin_of(mesh).tree)
         self._laid = _LAID.setdefault(skin_of(mesh), {})
 
-    def ribbon(self, path: Points, width: float, back: Points = NO_BACK, cased: bool = False) -> Ribbon:
+    def ribbon(self, route: Route, width: float, cased: bool = False) -> Ribbon:
         """Return what ``build_ribbon`` gives, or ``build_casing`` if it is ``cased``; at once if laid."""
-        laid = self._laid.get(_key(path, width, back, cased))
-        return laid or (build_casing if cased else build_ribbon)(path, self, width, back)
+        laid = self._laid.get(_key(route, width, cased))
+        return laid or (build_casing if cased else build_ribbon)(route, self, width)
 
-    def lay_ready(self, path: Points, width: float, back: Points = NO_BACK) -> None:
+    def lay_ready(self, route: Route, width: float) -> None:
         """Lay ribbon and casing and keep them for all surfaces of the mesh; runs in any thread."""
         for cased in (False, True):
-            self._laid[_key(path, width, back, cased)] = self.ribbon(path, width, back, cased)
+            self._laid[_key(route, width, cased)] = self.ribbon(route, width, cased)
 
     def bumps(self, rows: Points, up: Points) -> Floats:
         """Return how far skin such as a nipple stands up at each of ``rows`` of places, (k, c, 3) [mm]."""
@@ -136,18 +137,22 @@ def _across(width: float) -> Floats:
     return np.concatenate([[-1.0, -1.0], top, [1.0, 1.0]])
 
 
-def _key(path: Points, width: float, back: Points, cased: bool) -> object:
-    return path.tobytes(), width, back.tobytes(), cased
+def _key(route: Route, width: float, cased: bool) -> object:
+    return route.path.tobytes(), width, route.back.tobytes(), route.drawn, cased
 
 
-def build_ribbon(path: Points, surface: Surface, width: float, back: Points = NO_BACK) -> Ribbon:
-    """Return the ribbon ``width`` [mm] wide along ``path`` and round its ``back``, see ``centre_line``."""
-    return _puffed(centre_line(path, surface, back, width), surface, width, sink=0.0)
+def _middle(route: Route, surface: Surface, width: float) -> CentreLine:
+    return centre_line(route.path, surface, route.back, width, drawn=route.drawn)
 
 
-def build_casing(path: Points, surface: Surface, width: float, back: Points = NO_BACK) -> Ribbon:
-    """Return the ribbon that looks out all round the one ``width`` [mm] wide along ``path``."""
-    line = centre_line(path, surface, back, width)
+def build_ribbon(route: Route, surface: Surface, width: float) -> Ribbon:
+    """Return the ribbon ``width`` [mm] wide along a ``route``, see ``centre_line``."""
+    return _puffed(_middle(route, surface, width), surface, width, sink=0.0)
+
+
+def build_casing(route: Route, surface: Surface, width: float) -> Ribbon:
+    """Return the ribbon that looks out all round the one ``width`` [mm] wide along a ``route``."""
+    line = _middle(route, surface, width)
     if not line.closed:
         beyond = 0.5 * CASING * unit(line.points[[0, -1]] - line.points[[1, -2]])
         ends = line.points[[0, -1]] + beyond

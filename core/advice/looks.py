@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 from core.advice.ground import PathPoint
 from core.comparison import shape_of
-from core.cutting import goes_on
+from core.cutting import is_strap
 from core.design_elastics import Elastic
 from core.design_lines import WornLine
 from core.model import ConstrainedModel
@@ -66,7 +66,7 @@ def looks_in(stages: Stages, names: Collection[str], elastics: Mapping[str, Elas
     if elastics:
         looks["stretched"] = partial(_room_in_curves, elastics=elastics)
     known = [line.name for line in stages.model.lines if line.name in names and line.name in elastics]
-    seen = [line.name for line in stages.model.lines if line.name in known and not goes_on(stages, line)]
+    seen = [line.name for line in stages.model.lines if line.name in known and not is_strap(stages, line)]
     if seen:
         looks["pressing"] = partial(_pressing, stages=stages, names=tuple(seen))
     return looks

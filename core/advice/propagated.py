@@ -57,6 +57,9 @@ class Propagation:
         self.normals = skin_normals(stages, self.points)
         self.tensions = line_tensions(stages, self.points)
         self._long = {line.name: line.rest_lengths for line in stages.model.lines}
+        for at in stages.model.pulling:
+            name = stages.model.lines[at].name
+            self._long[name] = stages.model.tapes_at_rest[stages.model.owner == at]
 
     def effect(self, knob: Knob) -> Effect:
         """Return what a knob does. Raises the UserError of a fit that fails to both sides."""

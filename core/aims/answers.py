@@ -62,7 +62,7 @@ class Answers:
         names = [line.name for line in stages.model.lines]
         self._groups = [[names.index(name) for name in group] for group in groups]
         self._ratios = np.array(targets_of(stages.design, stages).ratios)
-        rest = stages.model.sums(stages.model.segments.rest_lengths)
+        rest = stages.model.sums(stages.model.tapes_at_rest)
         self._natural = np.zeros((len(names), len(groups)))
         for column, group in enumerate(self._groups):
             self._natural[group, column] = PERCENT * rest[group]

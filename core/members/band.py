@@ -45,22 +45,33 @@ class Entries:
     width: int
 
 
-def pair_entries(first: Indices, second: Indices) -> Entries:
-    """Return the entries of blocks B (3, 3), one for each pair of free points: B at the ends, -B between.
+def member_entries(signs: Operator) -> Entries:
+    """Return the entries of a block B (3, 3) for each member: what it does between all its points.
 
-    ``first``, ``second`` (s,) are the free points, -1 for a fixed one; the figures are the blocks, (9 s,).
+    Of a member whose vector is the sum of ``signs`` (s, f) times the free points, B lies between points i and
+    j times both signs. The figures are the blocks, (9 s,).
     """
-    segment = np.arange(len(first))
-    places = [(first, first, 1.0), (second, second, 1.0), (first, second, -1.0), (second, first, -1.0)]
-    return joined([_block_entries(segment, i, j, sign) for i, j, sign in places], 9 * len(first))
-
-
-def _block_entries(block: Indices, i: Indices, j: Indices, sign: float) -> Entries:
-    both = (i >= 0) & (j >= 0)
+    member, point, sign = nonzeros(signs)
+    i, j = same_member(member)
     a, b = (axis.ravel()[None, :] for axis in np.indices((3, 3)))
-    row, column = 3 * i[both][:, None] + a, 3 * j[both][:, None] + b
-    source = 9 * block[both][:, None] + 3 * a + b
-    return Entries(row.ravel(), column.ravel(), source.ravel(), np.full(row.size, sign), 0)
+    row, column = 3 * point[i][:, None] + a, 3 * point[j][:, None] + b
+    source = 9 * member[i][:, None] + 3 * a + b
+    value = np.repeat(sign[i] * sign[j], 9)
+    return joined([Entries(row.ravel(), column.ravel(), source.ravel(), value, 0)], 9 * signs.shape[0])
+
+
+def same_member(member: Indices) -> tuple[Indices, Indices]:
+    """Return all pairs of rows, both (p,), that belong to the same ``member`` (e,)."""
+    shape = int(member.max(initial=-1)) + 1, len(member)
+    belongs = sparse.csr_array((np.ones(len(member)), (member, np.arange(len(member)))), shape=shape)
+    first, second, _ = nonzeros(sparse.csr_array(belongs.T @ belongs))
+    return first, second
+
+
+def nonzeros(matrix: Operator) -> tuple[Indices, Indices, Floats]:
+    """Return rows, columns and values of the entries that are not 0, each (e,)."""
+    row, column, value = sparse.find(sparse.csr_array(matrix))
+    return row.astype(np.int64), column.astype(np.int64), value
 
 
 def joined(parts: list[Entries], width: int) -> Entries:

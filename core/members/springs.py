@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 from scipy import sparse
 
-from core.members.band import Entries, Operator, compact, pair_entries
+from core.members.band import Entries, Operator, compact, member_entries, nonzeros
 from core.mesh import Floats, Indices, Points, frozen
 
 _EYE = np.eye(3)
@@ -19,17 +19,17 @@ _EYE = np.eye(3)
 
 @dataclass(frozen=True, eq=False)
 class Springs:
-    """Members between pairs of points, over the displacements of the free points, shape (f, 3) [mm].
+    """Members between two places each, over the displacements of the free points, shape (f, 3) [mm].
 
-    ``pairs`` (s, 2) are the ends; ``rest_spans`` (s, 3) [mm] the vectors from the second to the first at
-    rest; ``stiffness`` (s,) [1]; ``signs`` (s, f) are +1 at the first end, -1 at the second.
+    ``across`` (s, n) makes their vectors, from the second place to the first, of all points: +1 at the first
+    and -1 at the second, or the weights of the points that a place lies between. ``signs`` (s, f) are its
+    columns of the free points. ``rest_spans`` (s, 3) [mm] are the vectors at rest; ``stiffness`` (s,) [1].
     """
 
-    pairs: Indices
+    across: sparse.csr_array
     rest_spans: Points
     stiffness: Floats
     signs: Operator
-    ends: tuple[Indices, Indices]
 
     @cached_property
     def gather(self) -> Operator:
@@ -40,13 +40,27 @@ class Springs:
 
     @cached_property
     def rest_lengths(self) -> Floats:
-        """Lengths at rest, shape (s,) [mm]."""
-        return frozen(np.linalg.norm(self.rest_spans, axis=1))
+        """Lengths at rest, shape (s,) [mm]; worked out as in ``spans``, so that nothing pulls there."""
+        return frozen(np.sqrt(np.einsum("ij,ij->i", self.rest_spans, self.rest_spans)))
 
     @cached_property
     def entries(self) -> Entries:
         """Where the blocks of the members lie in a matrix over the free coordinates."""
-        return pair_entries(*self.ends)
+        return member_entries(self.signs)
+
+    @cached_property
+    def nodes(self) -> Indices:
+        """The free points that the members act on, ascending, shape (l,)."""
+        return np.unique(nonzeros(self.signs)[1])
+
+    def weighted(self, weight: Floats) -> sparse.csr_array:
+        """Return the stiffness (f, f) of members that have ``weight`` (s,) in all directions."""
+        signs = sparse.csr_array(self.signs)
+        return sparse.csr_array(signs.T @ sparse.diags_array(weight) @ signs)
+
+    def lengths(self, points: Points) -> Floats:
+        """Return the lengths of the members at all points, shapes (s,) and (n, 3) [mm]."""
+        return np.asarray(np.linalg.norm(self.across @ points, axis=1))
 
     def spans(self, moved: Points) -> tuple[Points, Floats]:
         """Return vectors and lengths of the members, shapes (s, 3) and (s,) [mm]."""
@@ -88,9 +102,14 @@ def springs(rest: Points, place: Indices, pairs: Indices, stiffness: Floats) -> 
 
     ``place`` (n,) is the row of each point among the free ones, -1 for a fixed one.
     """
-    spans = frozen(rest[pairs[:, 0]] - rest[pairs[:, 1]])
-    ends = place[pairs[:, 0]], place[pairs[:, 1]]
-    return Springs(pairs, spans, frozen(stiffness), compact(incidence_of(place, pairs)), ends)
+    return members(rest, place, incidence_of(np.arange(len(rest)), pairs), stiffness)
+
+
+def members(rest: Points, place: Indices, across: sparse.csr_array, stiffness: Floats) -> Springs:
+    """Build members whose vectors are ``across`` (s, n) times the points; see ``springs`` for the others."""
+    free = np.flatnonzero(place >= 0)
+    signs = sparse.csr_array(across[:, free[np.argsort(place[free])]])
+    return Springs(across, frozen(across @ rest), frozen(stiffness), compact(signs))
 
 
 def incidence_of(place: Indices, pairs: Indices) -> sparse.csr_array:

@@ -92,7 +92,7 @@ def _stretch(stages: Stages, line: Line, elastic: Elastic | None, tension: float
     design, model = stages.design, stages.model
     own = design.traits_of(line.name).stiffness
     per_mm = newtons_per_unit(model, design.tissue_stiffness) * model.tensegric.mean_stiffness
-    ea = per_mm * (design.line_stiffness if own is None else own) * float(line.rest_lengths.mean())
+    ea = per_mm * (design.line_stiffness if own is None else own) * line.spacing
     return max(tension, 0.0) / ea
 
 

@@ -10,9 +10,10 @@ import numpy as np
 from scipy import sparse
 from scipy.ndimage import gaussian_filter1d
 
-from core.centre_line import NO_BACK, USUAL_WIDTH, CentreLine, Surface, centre_line
+from core.centre_line import USUAL_WIDTH, CentreLine, Surface, centre_line
 from core.mesh import Flags, Floats, Mesh, Points, unit
 from core.pipeline import Stages
+from core.routes import NO_BACK, Route
 from core.sewing.tensions import LineTension
 
 _KEPT = 64
@@ -84,8 +85,8 @@ class _Laid:
         )
 
 
-def _lay(path: Points, surface: Surface, width: float, back: Points) -> _Laid:
-    line = centre_line(path, surface, back, width)
+def _lay(route: Route, surface: Surface, width: float) -> _Laid:
+    line = centre_line(route.path, surface, route.back, width, drawn=route.drawn)
     return _Laid(line, surface.follow(line.points))
 
 
@@ -99,7 +100,7 @@ def course_of(
     """
     mesh = surface.mesh
     shift, normals = moved - mesh.vertices, mesh.moved(moved).vertex_normals
-    return _lay(path, surface, width, back).course(tension, shift, normals)
+    return _lay(Route(path, back), surface, width).course(tension, shift, normals)
 
 
 def courses(
@@ -115,18 +116,16 @@ def courses(
     shift[moving.vertices] = places - moving.rest
     for line in stages.model.lines:
         if line.name in tensions:
-            back = stages.backs[line.name].path if line.name in stages.backs else NO_BACK
-            path = stages.control.mesh.vertices[line.path]
             width = stages.design.traits_of(line.name).width or USUAL_WIDTH
-            laid = _known(mesh, path, width, back)
+            laid = _known(mesh, stages.routes[line.name], width)
             yield line.name, laid.course(tensions[line.name], shift, normals), width
 
 
-def _known(mesh: Mesh, path: Points, width: float, back: Points) -> _Laid:
+def _known(mesh: Mesh, route: Route, width: float) -> _Laid:
     """Return how a band lies on the body at rest: as it does whatever the body is shaped to."""
-    known, key = _LAID.setdefault(mesh, {}), (path.tobytes(), width, back.tobytes())
+    known, key = _LAID.setdefault(mesh, {}), (route.path.tobytes(), width, route.back.tobytes())
     if key not in known:
         while len(known) >= _KEPT:
             known.pop(next(iter(known)), None)
-        known[key] = _lay(path, Surface(mesh), width, back)
+        known[key] = _lay(route, Surface(mesh), width)
     return known[key]

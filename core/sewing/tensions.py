@@ -70,15 +70,12 @@ def _springs(stages: Stages, points: Points) -> dict[str, LineTension]:
     model = stages.model
     unit = newtons_per_unit(model, stages.design.tissue_stiffness)
     natural = model.natural_lengths(targets_of(stages.design, stages).ratios)
-    first, second = model.segments.pairs.T
-    force = (
-        unit * model.segments.stiffness * (np.linalg.norm(points[first] - points[second], axis=1) - natural)
-    )
+    force = unit * model.segments.stiffness * (model.segments.lengths(points) - natural)
     made = stages.design.worn_elastics()
     tensions = {}
     for index in model.pulling:
         here, name = model.owner == index, model.lines[index].name
-        mean = float(np.average(force[here], weights=natural[here]))
+        mean = float(np.average(force[here], weights=(natural + model.beyond)[here]))
         tensions[name] = LineTension(force[here], mean, name not in made)
     return tensions
 
@@ -90,7 +87,7 @@ def _on_ribs(stages: Stages) -> dict[str, LineTension]:
     for name, elastic in stages.design.worn_elastics().items():
         if not lines[name].constrains:
             force = elastic.force(1.0 / stages.design.ratio(name) - 1.0)
-            tensions[name] = LineTension(np.full(len(lines[name].pairs), force), force, estimate=False)
+            tensions[name] = LineTension(np.full(len(lines[name].rest_lengths), force), force, estimate=False)
     return tensions
 
 
@@ -109,5 +106,5 @@ def _held(stages: Stages, points: Points) -> dict[str, LineTension]:
     for index, multiplier in zip(model.pulling, multipliers[len(potential.sides) :], strict=True):
         line = model.lines[index]
         force = -unit * float(multiplier)
-        tensions[line.name] = LineTension(np.full(len(line.pairs), force), force, estimate=True)
+        tensions[line.name] = LineTension(np.full(len(line.rest_lengths), force), force, estimate=True)
     return tensions

@@ -71,7 +71,7 @@ class ElasticLines:
         """
         model = self.model
         unit = self.newtons * model.tensegric.mean_stiffness
-        segment = {line.name: float(line.rest_lengths.mean()) for line in model.lines}
+        segment = {line.name: line.spacing for line in model.lines}
         own = {
             name: float(each) / self.ratios[name] / (unit * segment[name])
             for name, each in zip(self.elastics, ea, strict=True)

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from scipy import sparse
 
-from core.members.band import Band, Entries, Operator, band_of, joined
+from core.members.band import Band, Entries, Operator, band_of, joined, nonzeros, same_member
 from core.members.springs import Springs
 from core.mesh import Floats, Indices
 from core.tensegric import TensegricModel
@@ -35,13 +35,18 @@ class Layout:
     @cached_property
     def lines_general(self) -> Operator:
         """The map of the blocks of sliding line segments to a general band: see ``sliding_entries``."""
-        return self.band.general(sliding_entries(*self.segments.ends))
+        return self.band.general(sliding_entries(self.segments.signs))
 
     @cached_property
+    def felt(self) -> tuple[Indices, Indices]:
+        """The worn segments and the free points that they act on, pair by pair, both shape (e,)."""
+        segment, point, _ = nonzeros(self.segments.signs)
+        return segment, point
+
+    @property
     def nodes(self) -> Indices:
-        """The free points of the worn lines, ascending, shape (l,)."""
-        ends = np.concatenate(self.segments.ends)
-        return np.unique(ends[ends >= 0])
+        """The free points that the worn lines act on, ascending, shape (l,)."""
+        return self.segments.nodes
 
     @cached_property
     def corners_of_lines(self) -> Entries:
@@ -79,18 +84,16 @@ def layout_of(tensegric: TensegricModel, segments: Springs, volume: VolumeMeasur
     return Layout(band, constant, changing, segments, corners, trace)
 
 
-def sliding_entries(first: Indices, second: Indices) -> Entries:
-    """Return the entries of the blocks that the two ends of each segment feel, (s, 2, 3, 3) figures.
+def sliding_entries(signs: Operator) -> Entries:
+    """Return the entries of the blocks with which segments act on free points, (e, 3, 3) figures.
 
-    The first end feels A (dx_1 - dx_2), the second B (dx_2 - dx_1): the matrix is not symmetric.
+    ``signs`` (s, f) see ``Springs``; its entries that are not 0 come in the order of ``Layout.felt``. Each
+    point feels the segment's vector through a block of its own: the matrix is not symmetric.
     """
-    segment = np.arange(len(first))
+    segment, point, sign = nonzeros(signs)
+    i, j = same_member(segment)
     a, b = (axis.ravel()[None, :] for axis in np.indices((3, 3)))
-    parts = []
-    for end, (i, j) in enumerate(((first, second), (second, first))):
-        for column, sign in ((i, 1.0), (j, -1.0)):
-            both = (i >= 0) & (column >= 0)
-            source = 18 * segment[both][:, None] + 9 * end + 3 * a + b
-            at = 3 * i[both][:, None] + a, 3 * column[both][:, None] + b
-            parts.append(Entries(at[0].ravel(), at[1].ravel(), source.ravel(), np.full(source.size, sign), 0))
-    return joined(parts, 18 * len(first))
+    row, column = 3 * point[i][:, None] + a, 3 * point[j][:, None] + b
+    source = 9 * i[:, None] + 3 * a + b
+    value = np.repeat(sign[i] * sign[j], 9)
+    return joined([Entries(row.ravel(), column.ravel(), source.ravel(), value, 0)], 9 * len(segment))

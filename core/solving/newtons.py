@@ -39,4 +39,4 @@ def line_ea(model: ConstrainedModel, newtons: float) -> Floats:
 
     It is the same all along a line; ``newtons`` [N/mm] is one unit of the model's stiffness.
     """
-    return np.asarray(newtons * model.segments.stiffness * model.segments.rest_lengths)
+    return np.asarray(newtons * model.segments.stiffness * model.tapes_at_rest)

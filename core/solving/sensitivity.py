@@ -54,10 +54,10 @@ class Answer:
     def by_ratio(self, lines: Indices) -> Rates:
         """Return the rates by the natural lengths of ``lines`` (p,), over their lengths at rest [mm / 1]."""
         model, place = self.potential.model, self.place
-        pull = -self.potential.tape * model.segments.rest_lengths / place.lengths
+        pull = -self.potential.tape * model.tapes_at_rest / place.lengths
         forces = self.by_line(pull, lines)
         held = np.zeros((len(self.potential.wanted), len(lines)))
-        of_line = model.sums(model.segments.rest_lengths)
+        of_line = model.sums(model.tapes_at_rest)
         for row, line in enumerate(self.potential.held_lines, start=len(self.potential.sides)):
             held[row] = np.where(lines == line, -of_line[line], 0.0)
         return self._rates(forces, held)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from core.mesh import Floats, Indices, Points
+from core.mesh import Floats, Points
 from core.model import ConstrainedModel
 from core.solving.newton import RESIDUAL_LIMIT, Balance, balance_at, small_solve
 from core.solving.potential import Place, Potential
@@ -89,7 +89,8 @@ class Skin:
         inner = band.spread(potential.hessian(place, multipliers, clip=False, curved=True, lines=False))
         n, size = self._across(place)
         blocks = potential.line_blocks(place, multipliers, clip=False)
-        ends = np.stack([_projector(n, end) @ blocks for end in model.segments.ends], axis=1)
+        segment, point = model.layout.felt
+        felt = (n[point, :, None] * n[point, None, :]) @ blocks[segment]
         # n turns with the skin: its derivative is that of the volume's gradient, less the part along n.
         first = self._first_line
         line = place.line - (multipliers[first:] @ place.slopes[first:]).reshape(n.shape)
@@ -99,11 +100,5 @@ class Skin:
         centred = (place.points - model.volume.centre).ravel()
         figures = turning[self._node, :, self._axis] * (self._value * centred[self._source])[:, None]
         return np.asarray(
-            inner + model.layout.lines_general @ ends.ravel() + model.layout.turning_general @ figures.ravel()
+            inner + model.layout.lines_general @ felt.ravel() + model.layout.turning_general @ figures.ravel()
         )
-
-
-def _projector(n: Points, ends: Indices) -> Floats:
-    """Return n n^T at the free points ``ends``, shape (s, 3, 3); any matrix for the fixed ones (-1)."""
-    at = n[ends]
-    return np.asarray(at[:, :, None] * at[:, None, :])

@@ -81,7 +81,8 @@ def answers_to(
     if made and not len(answer.potential.held_lines):
         along = _lengths(answer, made)
         natural = ratios[made] * np.array([model.lines[line].rest_length for line in made])
-        reached = np.array([model.sums(answer.place.lengths)[line] for line in made])
+        lengths = model.sums(answer.place.lengths + model.beyond)
+        reached = lengths[made]
         stretch = along / natural[:, None]
         bend = np.array(
             [_bend(elastics[line], at) for line, at in zip(made, reached / natural - 1.0, strict=True)]
@@ -116,6 +117,6 @@ def _pulls(answer: Answer, moved: Floats, stiff: Floats, ratios: Floats) -> Floa
     steps = np.stack(
         [np.sum(along * (model.segments.signs @ column.reshape(-1, 3)), axis=1) for column in moved.T], axis=1
     )
-    natural = model.segments.rest_lengths[:, None] * ratios[model.owner]
+    natural = model.tapes_at_rest[:, None] * ratios[model.owner]
     tension = potential.tape * (place.lengths - potential.natural)
     return np.asarray(potential.tape[:, None] * (steps - natural) + tension[:, None] * stiff[model.owner])

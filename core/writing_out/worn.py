@@ -7,18 +7,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.centre_line import NO_BACK, USUAL_WIDTH, CentreLine, Surface, centre_line
+from core.centre_line import USUAL_WIDTH, CentreLine, Surface, centre_line
 from core.cutting import CutRow, cut_list
 from core.errors import LineError
-from core.fitting.back_length import Back
 from core.lines import Line
 from core.mesh import Floats, Points
 from core.pipeline import Stages
+from core.routes import NO_BACK
 from core.sections import arc_length
 from core.tffd import deform
 
 SIDE_SEAM, CENTRE, LEFT, BACK, SEAM = "right side, seam", "centre front", "left side", "centre back", "seam"
 UPPER, LOWER = "upper end", "lower end"
+EDGE, SHOULDER, SEWN = "upper edge", "shoulder", "back, at the under-bust band"
 """What the marks of a strip are called: a band that goes round begins and ends at the right side."""
 
 AS_WORN = "as worn: an elastic is cut shorter"
@@ -79,9 +80,8 @@ def worn_curves(
     surface, moves = Surface(mesh), deform(stages.binding, control_points) - mesh.vertices
     curves = []
     for line in _worn(stages):
-        back = stages.backs[line.name].path if line.name in stages.backs else NO_BACK
-        path = stages.control.mesh.vertices[line.path]
-        laid = centre_line(path, surface, back, widths.get(line.name, USUAL_WIDTH))
+        route, width = stages.routes[line.name], widths.get(line.name, USUAL_WIDTH)
+        laid = centre_line(route.path, surface, route.back, width, drawn=route.drawn)
         places = laid.points + surface.follow(laid.points) @ moves
         curves.append(WornCurve(line.name, titles.get(line.name, line.name), *_halves(places, laid)))
     return tuple(curves)
@@ -95,7 +95,6 @@ def strips(
     Marks lie at both sides, where front part and back cross the centre, at the ends of an open line, and
     where seams begin. Raises LineError if none is worn.
     """
-    middle = float(stages.control.mesh.vertices[stages.control.border, 0].mean())
     cuts = {row.line: row for row in cut_list(stages, control_points).rows}
     flat = []
     for line in _worn(stages):
@@ -104,7 +103,7 @@ def strips(
             titles.get(line.name, line.name),
             line.length(control_points) + line.back_length,
             widths.get(line.name, USUAL_WIDTH),
-            _marks(line, control_points[line.path], stages.backs.get(line.name), middle),
+            _marks(stages, line, control_points),
             AS_WORN,
             to_cut=False,
         )
@@ -148,7 +147,9 @@ def _halves(places: Points, laid: CentreLine) -> tuple[Points, Points]:
     return places[: last + 1], np.concatenate([places[last:], places[:1]])
 
 
-def _marks(line: Line, places: Points, back: Back | None, middle: float) -> tuple[tuple[float, str], ...]:
+def _marks(stages: Stages, line: Line, control_points: Points) -> tuple[tuple[float, str], ...]:
+    middle = float(stages.control.mesh.vertices[stages.control.border, 0].mean())
+    places, back = line.places(control_points), stages.backs.get(line.name)
     s = arc_length(places)
     end = float(s[-1])
     marks = [(at, CENTRE) for at in _crossings(places[:, 0] - middle, s)]
@@ -159,7 +160,10 @@ def _marks(line: Line, places: Points, back: Back | None, middle: float) -> tupl
             shares = [at / float(along[-1]) for at in _crossings(back.path[:, 0] - middle, along)]
             behind = [(end + share * line.back_length, BACK) for share in shares]
         marks = [(0.0, SIDE_SEAM), *marks, (end, LEFT), *behind, (end + line.back_length, SIDE_SEAM)]
-    elif line.path[0] != line.path[-1]:
+    elif line.tail_length > 0.0:
+        tail = stages.tails[line.name]
+        marks = [(0.0, LOWER), *marks, (end, EDGE), (end + tail.top, SHOULDER), (end + tail.length, SEWN)]
+    elif not line.closed:
         names = (UPPER, LOWER) if places[0, 2] > places[-1, 2] else (LOWER, UPPER)
         marks = [(0.0, names[0]), *marks, (end, names[1])]
     return tuple(marks)
