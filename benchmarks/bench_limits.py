@@ -111,8 +111,7 @@ class Slider:
         lines = [line for line in model.lines if line.name in self._names]
         if min(line.length(points) / line.rest_length - ratio for line in lines) < -1e-9:
             shown.add("slack")
-        made = {line.name for line in lines if not is_strap(stages, line)}
-        made &= set(stages.design.worn_elastics())
+        made = {line.name for line in lines if not is_strap(stages, line)} & {*stages.design.worn_elastics()}
         worn = pressures(stages, points) if made else {}
         if any(worn[name].largest > comfort().red_kpa for name in made):
             shown.add("pressing")

@@ -127,11 +127,7 @@ class Design:
         check_counts(
             (
                 *((len(lines), MOST_LINES, "lines") for lines in (self.lines, self.own_lines, self.traits)),
-                (
-                    sum(len(line.points + line.places) for line in self.own_lines),
-                    MOST_POINTS,
-                    "points of own lines",
-                ),
+                (sum(map(OwnLine.count, self.own_lines)), MOST_POINTS, "points of own lines"),
                 (len(self.own_measures), MOST_MEASURES, "own measures"),
                 (len(self.elastics), MOST_ELASTICS, "elastics"),
                 (sum(len(each.curve) for each in self.elastics), MOST_ROWS, "rows in tables of elastics"),

@@ -72,6 +72,10 @@ class OwnLine:
         """Whether it runs between control points."""
         return bool(self.places)
 
+    def count(self) -> int:
+        """Return how many points or places it has."""
+        return len(self.points) + len(self.places)
+
     @property
     def path(self) -> tuple[int, ...]:
         """The control points in order; a closed line ends with the one that it begins with."""
