@@ -24,6 +24,7 @@ from app.dress.icons import program_icon
 from app.dress.theme import apply_theme, load_fonts
 from app.dress.wishes import wish
 from app.helping.log import LimitedLog, trim
+from app.wording.lengths import use_unit
 from app.wording.words import use_language
 from core import __version__
 from core.errors import UserError
@@ -99,6 +100,7 @@ def application(language: str | None = None, dark: bool | None = None) -> QAppli
         existing.setDesktopFileName("busk")
         existing.setWindowIcon(program_icon())
     use_words(existing, language or wish("language"))
+    use_unit(wish("unit"))
     load_fonts()
     apply_theme(existing, chosen_dark(wish("theme")) if dark is None else dark)
     return existing

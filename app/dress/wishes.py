@@ -7,6 +7,7 @@ from PySide6.QtCore import QSettings
 UNTIL_THEN = {
     "theme": "system",
     "language": "en",
+    "unit": "mm",  # of lengths in the window, one of app.wording.lengths.UNITS
     "start": "page",  # what opens: the start page, the last project or the sample
     "mouse": "busk",  # one of app.showing.gestures.PRESETS
     "material": "clay",  # one of app.seeing.material.MATERIALS

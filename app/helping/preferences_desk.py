@@ -51,8 +51,10 @@ class PreferencesDesk(QObject):
         app = QApplication.instance()
         if key == "theme" and isinstance(app, QApplication):
             apply_theme(app, chosen_dark(value))
-        elif key == "language":
+        elif key in ("language", "unit"):
             said = tr("The language changes when Busk is started again.")
+            if key == "unit":
+                said = tr("The unit of lengths changes when Busk is started again.")
             self._window.notices.show_notice("info", said, "", [(tr("Restart now"), self.restart)])
         elif key == "motion":
             self.set_motion()

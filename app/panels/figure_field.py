@@ -3,29 +3,26 @@
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
 
-import unicodedata
-
 from PySide6.QtCore import QSize, Qt, Signal
 
 from app.dress.theme import font
 from app.dress.tip import set_tip
 from app.panels.typed_field import TypedField, read_figure
+from app.wording.lengths import read_length, shown_digits, shown_unit, shown_value
 from app.wording.words import number, tr
-
-_LENGTHS = {"": 1.0, "mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, '"': 25.4}
-"""Units that may be typed into a field of millimetres [mm]."""
 
 
 class FigureField(TypedField):
     """Shows a value in ``unit`` with ``digits``; ``entered`` carries another one that was typed.
 
-    Into a field of millimetres other units of length can be typed.
+    A value in "mm" is shown in the unit of lengths in use, and can be typed in any other.
     """
 
     entered = Signal(float)
 
     def __init__(self, unit: str, name: str, *, digits: int = 1, signed: bool = False, widest: str) -> None:
-        super().__init__(unit)
+        super().__init__(shown_unit(unit))
+        self._of = unit
         self._digits, self._signed, self._widest = digits, signed, widest
         self._value = 0.0
         self.setFont(font("secondary", tabular=True))
@@ -37,7 +34,8 @@ class FigureField(TypedField):
 
     def set_unit(self, unit: str, digits: int, signed: bool) -> None:
         """Show values in another unit."""
-        self._unit, self._digits, self._signed = unit, digits, signed
+        self._of, self._unit = unit, shown_unit(unit)
+        self._digits, self._signed = digits, signed
         self._make_room()
 
     def sizeHint(self) -> QSize:
@@ -56,17 +54,14 @@ class FigureField(TypedField):
         return self.fontMetrics().horizontalAdvance(self._unit) + 3 if self._unit else 0
 
     def _words(self) -> str:
-        return number(self._value, self._digits, self._signed).replace(",", "")
+        value, digits = shown_value(self._value, self._of), shown_digits(self._digits, self._of)
+        return number(value, digits, self._signed).replace(",", "")
 
     def _read(self, text: str) -> float:
-        value, factor = read_figure(text), 1.0
-        if self._unit == "mm":  # who types another unit means it
-            plain = unicodedata.normalize("NFKC", text).strip()
-            unit = plain.lstrip("+-\N{MINUS SIGN}0123456789., ").lower()
-            factor = _LENGTHS.get(unit, 0.0)
-        if value is None or not factor:
+        value = read_length(text) if self._of == "mm" else read_figure(text)
+        if value is None:
             raise ValueError(tr("“{text}” is no number.").format(text=text))
-        return value * factor
+        return value
 
     def _take(self, value: float) -> None:
         self._value = value

@@ -15,6 +15,7 @@ from app.dress.theme import label, set_tag
 from app.panels.garment_row import CUT, NEWTONS, PRESSURE, GarmentRow
 from app.panels.garment_view import GarmentView, PressureView
 from app.panels.tissue_card import TissueCard
+from app.wording.lengths import length_unit
 from app.wording.words import tr
 
 
@@ -163,7 +164,11 @@ class GarmentPanel(QWidget):
         row.setSpacing(0)
         row.addWidget(label(tr("Cut list"), "heading"), 1)
         right = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignBottom
-        for title, room in ((tr("cut mm"), CUT), ("N", NEWTONS), ("kPa", PRESSURE)):
+        for title, room in (
+            (tr("cut {unit}").format(unit=length_unit()), CUT),
+            ("N", NEWTONS),
+            ("kPa", PRESSURE),
+        ):
             each = label(title, "caption")
             each.setFixedWidth(room)
             each.setAlignment(right)

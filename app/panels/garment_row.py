@@ -14,6 +14,7 @@ from app.panels.elastic_pull import ElasticPull
 from app.panels.figure_field import FigureField
 from app.panels.garment_view import CutView, PressureView
 from app.panels.line_parts import LineChip
+from app.wording.lengths import length_unit
 from app.wording.words import number, tr
 
 CHIP, CUT, NEWTONS, PRESSURE = 20, 54, 52, 56
@@ -174,8 +175,9 @@ class _StretchField(FigureField):
 
 def spoken(view: CutView) -> str:
     """Return a piece for ears."""
+    cut = view.cut and f"{view.cut} {length_unit()}"
     figures = (
-        (view.cut, tr("front part {value} mm") if view.front_only else tr("cut {value} mm")),
+        (cut, tr("front part {value}") if view.front_only else tr("cut {value}")),
         (view.stretch, tr("stretched by {value}")),
         (view.tension, "{value} N"),
     )

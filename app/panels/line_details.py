@@ -15,6 +15,7 @@ from app.panels.leeway_key import LeewayKey
 from app.panels.leeway_words import tone_at
 from app.panels.line_parts import PaletteMenu, StiffnessField
 from app.panels.line_view import LineView, SideView
+from app.wording.lengths import length, length_number, length_unit
 from app.wording.words import number, tr
 
 _OFF = 5e-6  # a set length nearer to the rest length than this means that the line is not worn
@@ -74,7 +75,7 @@ class LineDetails(QWidget):
         for row, figures in enumerate(self._figures):
             for each in figures:
                 each.setVisible(row < len(sides) and (each is not figures[0] or len(sides) > 1))
-        unit = "mm" if len(sides) == 1 else ""  # two sides leave no room for it in each figure
+        unit = length_unit() if len(sides) == 1 else ""  # two sides leave no room for it in each figure
         tone = tone_at(view.leeway, ratio) if worn and not view.stale else ""
         for side, figures in zip(sides, self._figures, strict=False):
             _show_side(side, ratio, "" if view.elastic else tone, unit, figures, bool(view.elastic))
@@ -184,9 +185,11 @@ class LineDetails(QWidget):
         if view.strap:
             self._whole.setText(view.strap)
             return
-        whole = tr("Whole band: {set} of {rest} mm ({percent} %)")
+        whole = tr("Whole band: {set} of {rest} ({percent} %)")
         percent = number(whole_mm / view.whole_mm * 100)
-        self._whole.setText(whole.format(set=number(whole_mm), rest=number(view.whole_mm), percent=percent))
+        self._whole.setText(
+            whole.format(set=length_number(whole_mm), rest=length(view.whole_mm), percent=percent)
+        )
 
 
 def _tools() -> Sequence[tuple[str, str, str]]:
@@ -225,11 +228,11 @@ def _show_side(
     if side.reached_mm is not None:
         off = side.reached_mm - set_mm
         share = abs(off) / set_mm
-        reached = _figure(number(side.reached_mm), unit)
-        gap = _figure(number(off, signed=True), f"mm&nbsp; {number(share * 100)} %")
+        reached = _figure(length_number(side.reached_mm), unit)
+        gap = _figure(length_number(off, signed=True), f"{length_unit()}&nbsp; {number(share * 100)} %")
         if stretch:
             gap = _figure(number(100.0 * off / set_mm, signed=True), "%")
-    said = (side.title, _figure(number(set_mm), unit), reached, gap)
+    said = (side.title, _figure(length_number(set_mm), unit), reached, gap)
     for each, text in zip(figures, said, strict=True):
         each.setText(text)
     set_tag(figures[3], "tone", tone)

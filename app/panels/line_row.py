@@ -17,6 +17,7 @@ from app.panels.line_details import LineDetails
 from app.panels.line_parts import LEAST, LineChip, LineTitle, SideMark
 from app.panels.line_view import LineView
 from app.panels.number_field import NumberField
+from app.wording.lengths import length
 from app.wording.words import number, tr
 
 __all__ = ["LineRow", "LineView"]
@@ -79,7 +80,7 @@ class LineRow(QFrame):
         if has is self and view.settable:
             self.slider.setFocus(Qt.FocusReason.OtherFocusReason)
         self._measure.setVisible(not view.constrained)
-        self._measure.setText(f"{number(view.reached_mm or view.rest_mm)} mm")
+        self._measure.setText(length(view.reached_mm or view.rest_mm))
         self._note.setText(_still_words(view))
         self._note.setVisible(not view.constrained)
         if self._open:  # while the row is closed nobody sees them
@@ -238,7 +239,7 @@ class LineRow(QFrame):
         """Write a set length, which during a drag runs ahead of the view."""
         for field in (self.percent, self.millimetres):
             field.show_length(ratio, self.view.rest_mm, self.view.whole_mm)
-        spoken = f"{number(ratio * 100)} %, {number(ratio * self.view.rest_mm)} mm"
+        spoken = f"{number(ratio * 100)} %, {length(ratio * self.view.rest_mm)}"
         speak_value(self.slider, spoken)
         self.setAccessibleDescription(self._measure.text() if not self.view.constrained else spoken)
         if self._open:

@@ -9,7 +9,7 @@ from PySide6.QtCore import QPoint, QRect, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetrics, QPainter
 
 from app.dress.theme import faded, font
-from app.panels.measure_view import MeasureView, plus_minus
+from app.panels.measure_view import MeasureView
 from app.wording.tokens import Tokens
 
 ROW, NAME, FOOT, EDGE = 30, 20, 30, 4
@@ -46,7 +46,7 @@ class Spot:
         """Whether the name does not fit beside the figures."""
         advance = _advance(self.view.label, "body")
         if self.mixed:
-            advance += 10 + _advance(self.view.unit, "caption")
+            advance += 10 + _advance(self.view.unit_shown, "caption")
         return self.view.known and advance > name_width(self.width, alone=False)
 
     @property
@@ -143,7 +143,7 @@ def paint_row(painter: QPainter, tokens: Tokens, spot: Spot, focused: bool, doub
         said = painter.fontMetrics().horizontalAdvance(view.label) + 6
         painter.setFont(font("caption"))
         painter.setPen(QColor(tokens.text_caption))
-        painter.drawText(name.adjusted(said, 1, 0, 1), LEFT, view.unit)
+        painter.drawText(name.adjusted(said, 1, 0, 1), LEFT, view.unit_shown)
     if view.known:
         _paint_figures(painter, tokens, spot, doubtful)
     for words, role, room in spot.texts:
@@ -178,7 +178,7 @@ def _paint_off(painter: QPainter, tokens: Tokens, spot: Spot) -> None:
     painter.setPen(QColor(tokens.text_caption))
     for cell, off in zip(cells(spot.width, spot.figures + ROW - 9, OFF + 4), spot.view.off, strict=False):
         if off is not None:
-            painter.drawText(cell, RIGHT, plus_minus(off))
+            painter.drawText(cell, RIGHT, spot.view.written_off(off))
     painter.restore()
 
 

@@ -176,7 +176,7 @@ class MeasureTable(QWidget):
         self._spots, self._heads, top = [], [], TOP
         for group, rows in groupby(self.rows, key=lambda view: view.group):
             views = list(rows)
-            units = list(dict.fromkeys(view.unit for view in views))
+            units = list(dict.fromkeys(view.unit_shown for view in views))
             if group:
                 self._heads.append((group, units[0] if len(units) == 1 else "", top))
                 top += HEAD

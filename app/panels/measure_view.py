@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from app.wording.lengths import length_number, shown_digits, shown_unit, shown_value
 from app.wording.words import colon, number, tr
 from core.measuring.plus_minus import digits, rounded
 
@@ -44,7 +45,10 @@ class MeasureView:
     @property
     def change(self) -> float | None:
         """By how much it grew, if that is known: as it is written, so that the columns of a table agree."""
-        return self.change_at(digits_of(self.unit))
+        if self.after is None or self.before is None or self.exact:
+            return self.change_at(digits_of(self.unit))
+        shown = [round(shown_value(each, self.unit), self._digits) for each in (self.after, self.before)]
+        return (shown[0] - shown[1]) / shown_value(1.0, self.unit)
 
     def change_at(self, digits: int) -> float | None:
         """Return by how much it grew where so many decimals are written."""
@@ -68,8 +72,8 @@ class MeasureView:
             return self.reference
         if not self.plus_minus or self.off:  # what is off stands beside it, with all sources
             return tr("an estimate")
-        off = number(self.plus_minus, digits_of(self.unit))
-        return tr("an estimate, ± {off} {unit}").format(off=off, unit=self.unit)
+        off = self.written(self.plus_minus)
+        return tr("an estimate, ± {off} {unit}").format(off=off, unit=self.unit_shown)
 
     @property
     def details(self) -> tuple[str, ...]:
@@ -88,7 +92,20 @@ class MeasureView:
 
     def written(self, value: float | None, signed: bool = False) -> str:
         """Return a value as it stands in the table."""
-        return "" if value is None else number(value, digits_of(self.unit), signed)
+        return "" if value is None else number(shown_value(value, self.unit), self._digits, signed)
+
+    def written_off(self, off: float) -> str:
+        """Return how far a value may be off as it stands in the table."""
+        return length_off(off) if self.unit == "mm" else plus_minus(off)
+
+    @property
+    def unit_shown(self) -> str:
+        """The unit in which values are written."""
+        return shown_unit(self.unit)
+
+    @property
+    def _digits(self) -> int:
+        return shown_digits(digits_of(self.unit), self.unit)
 
     def told(self) -> str:
         """Return all that is told of it under the pointer."""
@@ -97,7 +114,9 @@ class MeasureView:
     def spoken(self) -> str:
         """Return it as it is read out."""
         values = [
-            f"{self.written(each)} {self.unit}" for each in (self.before, self.after) if each is not None
+            f"{self.written(each)} {self.unit_shown}"
+            for each in (self.before, self.after)
+            if each is not None
         ]
         return f"{self.label}{colon()}{' → '.join(values)} {self.caption}".rstrip()
 
@@ -105,6 +124,11 @@ class MeasureView:
 def plus_minus(off: float) -> str:
     """Return how far a figure may be off as it is written."""
     return f"± {number(rounded(off), digits(off))}"
+
+
+def length_off(off: float) -> str:
+    """Return how far a length [mm] may be off as it is written, in the unit in use."""
+    return f"± {length_number(rounded(off), digits(off))}"
 
 
 def digits_of(unit: str) -> int:

@@ -1,4 +1,4 @@
-"""A length that reads as text and can be typed over, in percent or in millimetres."""
+"""A length that reads as text and can be typed over, in percent or in the unit of lengths in use."""
 
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
@@ -9,6 +9,7 @@ from PySide6.QtGui import QFocusEvent
 from app.dress.theme import font
 from app.dress.tip import set_tip
 from app.panels.typed_field import TypedField
+from app.wording.lengths import length_number, shown_unit
 from app.wording.words import joined, number, say, tr
 from core.errors import LineError
 from core.lines import length_ratio
@@ -27,7 +28,7 @@ class NumberField(TypedField):
     opened = Signal()
 
     def __init__(self, unit: str) -> None:
-        super().__init__(unit)
+        super().__init__(shown_unit(unit))
         self._ratio = self._rest_mm = self._whole_mm = 1.0
         self._line = ""
         self.setFont(font("name" if unit == "%" else "body", tabular=True))
@@ -35,17 +36,20 @@ class NumberField(TypedField):
         self.setProperty("kind", "number")
         self.setTextMargins(0, 0, self._unit_width(), 0)
         self.setFixedSize(self.sizeHint())
-        said = tr("Type 94, −6%, −20mm, 440mm or 44cm: of the front part, 50 to 130 % of its length at rest.")
+        said = tr(
+            "Type 94, −6%, −20mm, 440mm, 44cm or 17in: of the front part, 50 to 130 % of its length at rest."
+        )
         set_tip(self, said)
         self.name_line("")
 
     def sizeHint(self) -> QSize:
-        return QSize(self.fontMetrics().horizontalAdvance("100.0") + self._unit_width() + 15, 24)
+        widest = "100.0" if self._unit in ("%", "mm") else "100.00"
+        return QSize(self.fontMetrics().horizontalAdvance(widest) + self._unit_width() + 15, 24)
 
     def name_line(self, title: str) -> None:
         """Tell ears, and in a refusal, whose length this is."""
         self._line = title
-        named = tr("{line}: length in percent") if self._unit == "%" else tr("{line}: length in millimetres")
+        named = _named_in(self._unit)
         self.setAccessibleName(named.format(line=title or tr("Line")))
 
     def show_length(self, ratio: float, rest_mm: float, whole_mm: float) -> None:
@@ -64,8 +68,9 @@ class NumberField(TypedField):
         return 12 if self._unit == "%" else 21
 
     def _words(self) -> str:
-        value = self._ratio * 100 if self._unit == "%" else self._ratio * self._rest_mm
-        return number(value).replace(",", "")
+        if self._unit == "%":
+            return number(self._ratio * 100)
+        return length_number(self._ratio * self._rest_mm).replace(",", "")
 
     def _read(self, text: str) -> float:
         try:
@@ -76,3 +81,13 @@ class NumberField(TypedField):
     def _take(self, value: float) -> None:
         self._ratio = value
         self.entered.emit(value)
+
+
+def _named_in(unit: str) -> str:
+    """Return what a field of a line's length in ``unit`` is called."""
+    return {
+        "%": tr("{line}: length in percent"),
+        "mm": tr("{line}: length in millimetres"),
+        "cm": tr("{line}: length in centimetres"),
+        "in": tr("{line}: length in inches"),
+    }[unit]

@@ -74,18 +74,21 @@ class PreferencesSheet(Sheet):
 
 def _groups() -> tuple[tuple[str, tuple[Setting, ...]], ...]:
     themes = (("system", tr("As the system")), ("light", tr("Light")), ("dark", tr("Dark")))
+    units = (("mm", tr("Millimetres")), ("cm", tr("Centimetres")), ("in", tr("Inches")))
     starts = (("page", tr("Start page")), ("last", tr("The last project")))
     hands = (("busk", "Busk"), ("cad", "CAD"), ("blender", "Blender"), ("trackpad", tr("Trackpad")))
     materials = (("clay", tr("Clay")), ("plaster", tr("Plaster")), ("graphite", tr("Graphite")))
     motions = (("full", tr("Full")), ("reduced", tr("Reduced")))
     turns = tr("How buttons and wheel turn, move and scale the body.")
     again = tr("In force when Busk is started again.")
+    lengths = tr("On screen and in reports. In force when Busk is started again.")
     every = tr("What is not saved yet is kept aside this often, from {least} to {most} s.")
     return (
         (
             tr("Window"),
             (
                 Choice("language", tr("Language"), again, tuple(LANGUAGES.items())),
+                Choice("unit", tr("Lengths"), lengths, units),
                 Choice("theme", tr("Theme"), tr("Light for a bright room, dark for a dim one."), themes),
                 Choice("start", tr("On start"), tr("What the window shows first."), starts),
             ),

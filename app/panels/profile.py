@@ -18,7 +18,8 @@ from app.panels.figure_field import FigureField
 from app.showing.live_plot import PullTitle, Quantity
 from app.showing.profile_band import paint_band
 from app.showing.profile_plot import Drawn, ProfilePlot
-from app.wording.words import number, tr
+from app.wording.lengths import length
+from app.wording.words import tr
 
 STEPS = 2
 """Steps of the slider in a millimetre."""
@@ -169,7 +170,7 @@ class ProfilePanel(FloatingPanel):
         self.title.show_quantity(self._axes[axis])
         self._axis.setText(f"{axis} =")
         self.place.show_value(at)
-        speak_value(self.slider, f"{axis} = {number(at)} mm")
+        speak_value(self.slider, f"{axis} = {length(at)}")
         self.slider.blockSignals(True)
         self.slider.setRange(round(low * STEPS), round(high * STEPS))
         self.slider.setValue(round(at * STEPS))

@@ -13,7 +13,8 @@ from app.dress.parts import Disclosure, button, hairline, sentence
 from app.dress.theme import font, label, set_tag
 from app.dress.tip import set_tip
 from app.panels.figure_field import FigureField
-from app.wording.words import number, tr
+from app.wording.lengths import length, length_number
+from app.wording.words import tr
 from core.sizes import ALLOWANCE
 
 COLUMNS = 3
@@ -176,6 +177,6 @@ class _AllowanceField(FigureField):
     def _read(self, text: str) -> float:
         value, (low, high) = super()._read(text), ALLOWANCE
         if not low <= value <= high:
-            refusal = tr("Choose {low} to {high} mm: an estimate, no norm.")
-            raise ValueError(refusal.format(low=number(low, 0), high=number(high, 0)))
+            refusal = tr("Choose {low} to {high}: an estimate, no norm.")
+            raise ValueError(refusal.format(low=length_number(low, 0), high=length(high, 0)))
         return value

@@ -14,6 +14,7 @@ from app.dress.parts import EmptyState, sentence
 from app.dress.press_row import press_row
 from app.dress.theme import font, tokens_of
 from app.showing.verdict_chip import TONES
+from app.wording.lengths import shown_digits, shown_unit, shown_value
 from app.wording.words import number, tr
 
 
@@ -29,7 +30,10 @@ class Figure:
     def written(self, place: int) -> str:
         """Return the figure of a variant, ready to read."""
         value = self.values[place]
-        return "–" if value is None else f"{number(value, self.digits, signed=self.signed)} {self.unit}"
+        return "–" if value is None else f"{self._number(value)} {shown_unit(self.unit)}"
+
+    def _number(self, value: float) -> str:
+        return number(shown_value(value, self.unit), shown_digits(self.digits, self.unit), self.signed)
 
     def apart(self, place: int) -> float | None:
         """Return by how much a variant differs from the first, if both are known."""

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.panels.measure_view import plus_minus
-from app.wording.words import listed, number, tr
+from app.panels.measure_view import length_off
+from app.wording.lengths import length_number, length_unit
+from app.wording.words import listed, tr
 from core.frame import Frame
 from core.measuring.plus_minus import LIFT, OUT, Spread
 from core.mesh import Floats
@@ -93,19 +94,19 @@ def step_words(step: BustStep, offs: Offs = UNKNOWN) -> str:
 
 def up_words(up: float, off: float | None = None) -> str:
     """Return a move up or down in words [mm]."""
-    return (tr("{mm} mm down") if round(up, 1) < 0.0 else tr("{mm} mm up")).format(mm=_sized(up, off))
+    return (tr("{length} down") if round(up, 1) < 0.0 else tr("{length} up")).format(length=_sized(up, off))
 
 
 def forward_words(forward: float, off: float | None = None) -> str:
     """Return a move forward or back in words [mm]."""
     back = round(forward, 1) < 0.0
-    return (tr("{mm} mm back") if back else tr("{mm} mm forward")).format(mm=_sized(forward, off))
+    return (tr("{length} back") if back else tr("{length} forward")).format(length=_sized(forward, off))
 
 
 def _sized(move: float, off: float | None) -> str:
     # What belongs together is not parted at the end of a line.
-    told = [number(abs(move)), *([] if off is None else [plus_minus(off)])]
-    return " ".join(told).replace(" ", "\N{NO-BREAK SPACE}")
+    told = [length_number(abs(move)), *([] if off is None else [length_off(off)])]
+    return " ".join(told).replace(" ", "\N{NO-BREAK SPACE}") + f" {length_unit()}"
 
 
 def sides_words(move: BustMove) -> tuple[str, str]:

@@ -59,7 +59,7 @@ def sentence(found: Diagnosis, swing: float) -> str:
 
 def _plain(found: Diagnosis, swing: float) -> str:
     words = {
-        "vibrating": tr("The calculation does not come to rest: the bust point swings by ±{swing} mm."),
+        "vibrating": tr("The calculation does not come to rest: the bust point swings by ±{swing}."),
         "diverging": tr("The calculation runs away: the body is shown as it was before."),
         "folded": tr("The skin folds over: this is no body any more."),
         "overstrained": tr("Skin pressed or stretched by over 30 %: no shape to sew for."),

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from app.presenting.lines import line_colours, line_title
 from app.seeing.band import OFF_WIDTH, Band, band_width
 from app.showing.verdict_chip import state_title
+from app.wording.lengths import length, length_unit
 from app.wording.words import number, tr
 from core.design import Design
 from core.live import Frame
@@ -62,20 +63,20 @@ def band_label(design: Design, frame: Frame, name: str) -> tuple[str, str]:
     line = next(line for line in frame.stages.model.lines if line.name == name)
     title = line_title(name, design)
     if not line.constrains:
-        return title, f"{number(line.rest_length)} mm"
+        return title, length(line.rest_length)
     ratio = design.ratio(name)
     if design.traits_of(name).elastic:
         stretch = frame.lengths[name] / (ratio * line.rest_length) - 1.0
         said = tr("stretched by {value}").format(value=f"{number(100.0 * stretch)} %")
-        return f"{title} {number(frame.lengths[name])} mm", said
+        return f"{title} {length(frame.lengths[name])}", said
     change = (ratio - 1.0) * line.rest_length
-    return f"{title} {number(100.0 * ratio)} %", f"{number(change, 1, signed=True)} mm"
+    return f"{title} {number(100.0 * ratio)} %", length(change, signed=True)
 
 
 def facts(frame: Frame, current: bool = True) -> list[str]:
     """Return the plain facts of the status bar; a frame that is not ``current`` is of a former design."""
     return [
-        "mm",
+        length_unit(),
         tr("{count} triangles").format(count=number(len(frame.stages.body.mesh.faces), 0)),
         *([] if current else [state_title("stale")]),
     ]

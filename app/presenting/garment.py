@@ -5,6 +5,7 @@ from __future__ import annotations
 from app.panels.garment_view import CutView, GarmentView
 from app.presenting.lines import line_colours, line_title, titled
 from app.seeing.band import band_width
+from app.wording.lengths import length_number
 from app.wording.words import joined, number, say, tr
 from core.cutting import CutList, CutRow
 from core.design import Design
@@ -80,7 +81,7 @@ def _view(row: CutRow, design: Design, color: str, still: bool) -> CutView:
         color,
         band_width(row.line, design),
         say(row.elastic),
-        "" if row.cut_mm is None else number(row.cut_mm, 0),
+        "" if row.cut_mm is None else length_number(row.cut_mm, 0),
         "" if row.elongation is None else f"{number(100.0 * row.elongation, 0, signed=True)} %",
         "" if row.tension_n is None else number(row.tension_n, 1),
         tuple(told(note, design) for note in row.notes if row.elastic),

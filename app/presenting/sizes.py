@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from app.panels.size_card import SizeView
-from app.wording.words import colon, joined, language, listed, number, say, tr
+from app.wording.lengths import length
+from app.wording.words import colon, joined, language, listed, say, tr
 from core.measures import Measures
 from core.measuring.plus_minus import BEFORE, Spread
 from core.sizes import GIRTHS_OF_SIZES, Neighbour, SizeAnswer, nearby, sizes
@@ -88,4 +89,4 @@ def _near(answer: SizeAnswer) -> Iterator[str]:
 def _away(neighbour: Neighbour) -> str:
     """Return how far a size beside this one is, and which it is."""
     missing = neighbour.missing_mm if neighbour.up else -neighbour.missing_mm
-    return f"{number(missing, 1, signed=True)} mm{colon()}{neighbour.label or neighbour.name}"
+    return f"{length(missing, signed=True)}{colon()}{neighbour.label or neighbour.name}"

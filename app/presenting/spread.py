@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from app.panels.measure_view import MeasureView, plus_minus
+from app.panels.measure_view import MeasureView, length_off, plus_minus
 from app.panels.spread_card import SpreadView
+from app.wording.lengths import length, shown_unit
 from app.wording.words import joined, language, listed, number, say, tr
 from core.advice.assumed import origins
 from core.measuring.plus_minus import AFTER, BEFORE, CHANGE, LIFT, OUT, Spread
@@ -85,7 +86,8 @@ def _shares(
             for source, share in doubt.shares.items()
             if share >= LEAST
         ]
-        said = tr("{head}: {off} {unit}").format(head=head, off=plus_minus(off), unit=unit)
+        told = length_off(off) if unit == "mm" else plus_minus(off)
+        said = tr("{head}: {off} {unit}").format(head=head, off=told, unit=shown_unit(unit))
         lines.append(f"{said} ({listed(parts)})" if parts else said)
     return tuple(lines)
 
@@ -104,11 +106,11 @@ def spread_view(spread: Spread | None, waiting: str, faint: bool) -> SpreadView:
 def _contact(spread: Spread) -> str:
     if LIFT not in spread.other:
         return ""
-    up, out = (number(spread.other[key], 1, signed=True) for key in (LIFT, OUT))
+    up, out = (length(spread.other[key], signed=True) for key in (LIFT, OUT))
     if spread.contact == "sliding":
-        said = tr("If lines slid over the skin instead: bust points {up} mm up, {out} mm forward.")
+        said = tr("If lines slid over the skin instead: bust points {up} up, {out} forward.")
     else:
-        said = tr("If lines stuck to the skin instead: bust points {up} mm up, {out} mm forward.")
+        said = tr("If lines stuck to the skin instead: bust points {up} up, {out} forward.")
     between = tr("The truth lies between the two, and no ± holds it.")
     told = said.format(up=up, out=out)
     return f"{told} {between}" if language() == "en" else f"{told}{between}"

@@ -9,6 +9,7 @@ import numpy as np
 from app.presenting.assessment import AssessmentView
 from app.presenting.bust import bust_move, sides_words, step_words, ups
 from app.showing.verdict_chip import state_title
+from app.wording.lengths import length, length_number
 from app.wording.words import number, tr
 from core.live import Frame
 from core.press_list import PressList
@@ -91,11 +92,11 @@ def swing_mm(frame: Frame) -> tuple[float, float]:
 def plain_sentence(frame: Frame) -> str:
     """Return what it means that a run swings or runs away, or that a shape is no body; else nothing."""
     return {
-        "vibrating": tr("The calculation does not come to rest: the bust point swings by ±{swing} mm."),
+        "vibrating": tr("The calculation does not come to rest: the bust point swings by ±{swing}."),
         "diverging": tr("The calculation runs away: the body is shown as it was before."),
         "folded": tr("The skin folds over: this is no body any more."),
         "overstrained": tr("Skin pressed or stretched by over 30 %: no shape to sew for."),
-    }.get(frame.verdict.state, "").format(swing=number(swing_mm(frame)[1]))
+    }.get(frame.verdict.state, "").format(swing=length(swing_mm(frame)[1]))
 
 
 def _effort(frame: Frame) -> str:
@@ -128,7 +129,7 @@ def _figures(
     move = bust_move(frame)
     told = [(tr("Bust point"), step_words(move.mean))]
     if girths is not None:
-        change = tr("{before} → {after} mm").format(before=number(girths[0]), after=number(girths[1]))
+        change = f"{length_number(girths[0])} → {length(girths[1])}"
         told.append((tr("Bust girth"), change))
     hardest = None if pressed is None else pressed.hardest
     if hardest is not None and hardest.max_kpa is not None:
@@ -145,7 +146,7 @@ def _swing_figures(frame: Frame) -> list[tuple[str, str]]:
     percent = f"{number(100.0 * verdict.error, 2)} ± {number(100.0 * verdict.amplitude, 2)} %"
     return [
         (tr("Volume error"), percent),
-        (tr("Bust point"), f"{number(middle, signed=True)} ± {number(swing)} mm"),
+        (tr("Bust point"), f"{length_number(middle, signed=True)} ± {length(swing)}"),
         (tr("The swing"), grows),
     ]
 

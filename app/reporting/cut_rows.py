@@ -6,9 +6,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import inf, sqrt
 
-from app.panels.measure_view import plus_minus
+from app.panels.measure_view import length_off
 from app.presenting.pressure import light_word
 from app.reporting.telling import NOTHING, figure, piece_title
+from app.wording.lengths import length_number, length_unit
 from app.wording.words import joined, listed, number, say, tr
 from core.cutting import FRONT_ONLY, SLACK, UNCHOSEN, CutRow
 from core.measuring.plus_minus import CUT, MAX_KPA, TENSION
@@ -87,7 +88,7 @@ def _within_words(cut: CutRow, press: PressRow, sheet: Sheet) -> Iterator[str]:
     """Yield where the figures of a piece lie in 95 % of cases, if somebody can work by that."""
     parts, off = [], sheet.off.get(f"{CUT}:{cut.line}")
     if off is not None and cut.cut_mm is not None:
-        parts.append(tr("cut {off} mm").format(off=plus_minus(off)))
+        parts.append(tr("cut {off} {unit}").format(off=length_off(off), unit=length_unit()))
     words = tr("tension {low} to {high} N"), tr("largest pressure {low} to {high} kPa")
     for said, ends in zip(words, _force_ends(cut, press, sheet), strict=True):
         if ends is not None and _factor(*ends) < VAGUE:
@@ -126,9 +127,9 @@ def _ends(sheet: Sheet, key: str, value: float | None) -> tuple[float, float] | 
 
 
 def cut_pieces(sheet: Sheet, order: Sequence[str]) -> list[tuple[str, str, str]]:
-    """Return line, title and length [mm] of whole pieces to be cut, in the ``order`` of the lines."""
+    """Return line, title and shown length of whole pieces to be cut, in the ``order`` of the lines."""
     return [
-        (row.line, piece_title(row.line, row.title), number(row.cut_mm, 0))
+        (row.line, piece_title(row.line, row.title), length_number(row.cut_mm, 0))
         for row in sorted(sheet.cuts.rows, key=lambda row: _place(row.line, order))
         if row.cut_mm is not None and not row.front_only
     ]
@@ -136,14 +137,14 @@ def cut_pieces(sheet: Sheet, order: Sequence[str]) -> list[tuple[str, str, str]]
 
 def _cut_view(cut: CutRow, press: PressRow) -> CutView:
     stretch = None if cut.elongation is None else 100.0 * cut.elongation
-    width = None if cut.width_mm is None else f"{cut.width_mm:g}"
+    width = None if cut.width_mm is None else _width(cut.width_mm)
     figures = (
         width or NOTHING,
-        figure(cut.cut_mm, 0),
-        figure(cut.allowance_mm, 0),
+        figure(cut.cut_mm, 0, "mm"),
+        figure(cut.allowance_mm, 0, "mm"),
         figure(stretch, 0),
-        figure(cut.reached_whole_mm, 0),
-        NOTHING if cut.height_mm is None else number(cut.height_mm, 0, signed=True),
+        figure(cut.reached_whole_mm, 0, "mm"),
+        NOTHING if cut.height_mm is None else length_number(cut.height_mm, 0, signed=True),
         figure(cut.tension_n, 1),
         figure(press.max_kpa, 1),
     )
@@ -174,6 +175,11 @@ def _remark(cut: CutRow) -> str:
 def _elastic(cut: CutRow) -> str:
     """Return what a line is made of, without the width, which stands beside it."""
     return say(cut.elastic).removesuffix(f" {cut.width_mm or 0.0:g} mm") if cut.elastic else NOTHING
+
+
+def _width(mm: float) -> str:
+    """Return a width as it is ordered: in millimetres without decimals that are not there."""
+    return f"{mm:g}" if length_unit() == "mm" else length_number(mm, 0)
 
 
 def _without_figures(view: CutView) -> CutView:

@@ -10,6 +10,7 @@ from app.reporting.marks import paint_chip, paint_light
 from app.reporting.paper import Paper, elided, fitting, line_height, text_width, wrapped
 from app.reporting.tables import heading, paragraph
 from app.reporting.telling import light_legend
+from app.wording.lengths import length_unit
 from app.wording.tokens import LIGHT
 from app.wording.words import tr
 
@@ -32,12 +33,12 @@ def cut_blocks(handout: Handout) -> list[Block]:
 
 def _cut_head() -> Block:
     titles = (
-        tr("width mm"),
-        tr("cut mm"),
+        tr("width {unit}").format(unit=length_unit()),
+        tr("cut {unit}").format(unit=length_unit()),
         tr("seams"),
         tr("stretch %"),
-        tr("worn mm"),
-        tr("height mm"),
+        tr("worn {unit}").format(unit=length_unit()),
+        tr("height {unit}").format(unit=length_unit()),
         tr("tension N"),
         tr("kPa"),
     )

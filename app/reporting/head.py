@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.panels.measure_view import plus_minus
+from app.panels.measure_view import length_off
 from app.presenting.assessment import IDLE, AssessmentView
 from app.presenting.bust import forward_words
 from app.reporting.cut_rows import cut_pieces
@@ -11,6 +11,7 @@ from app.reporting.handout import SHOT_SIZES, SHOTS, Handout
 from app.reporting.marks import paint_chip, paint_level
 from app.reporting.paper import A4, MARGIN, Paper, elided, line_height, text_width, wrapped
 from app.reporting.telling import REASONS, overall, project_words, size_words, system_word
+from app.wording.lengths import length_number, length_unit
 from app.wording.tokens import LIGHT
 from app.wording.words import joined, number, say, tr
 from core.assessment import BAD, CAUTION, GOOD, PENDING
@@ -129,7 +130,7 @@ def _cuts(handout: Handout) -> Block:
         return _sentence(left, room, caption, tr("No figure: the shape is no result."))
     if len(pieces) == 1:
         line, title, length = pieces[0]
-        one = _great(left, room, caption, length, "", "mm")
+        one = _great(left, room, caption, length, "", length_unit())
         colour, name = handout.colours.get(line, _USUAL), elided(title, "strong", room - 5.0)
 
         def paint_one(paper: Paper, x: float, y: float) -> None:
@@ -153,7 +154,7 @@ def _cuts(handout: Handout) -> Block:
         for place, (colour, title, length) in enumerate(rows):
             base = y + 10.6 + 5.9 * place
             paper.text(x + left + end, base, length, "large", align="right")
-            paper.text(x + left + end + 1.0, base, "mm", "strong")
+            paper.text(x + left + end + 1.0, base, length_unit(), "strong")
             paint_chip(paper, x + left + end + 9.0, base - 1.4, colour)
             paper.text(x + left + end + 13.6, base - 0.3, title, "strong")
 
@@ -189,8 +190,9 @@ def _lift(sheet: Sheet) -> Block:
     if sheet.lift is None:
         return _sentence(left, room, caption, tr("No figure: the shape is no result."))
     off, below = sheet.off.get(LIFT), forward_words(sheet.lift.forward, sheet.off.get(OUT))
-    figure = number(sheet.lift.up, 1, signed=True)
-    return _great(left, room, caption, figure, below, "mm", "" if off is None else f"{plus_minus(off)} mm")
+    figure = length_number(sheet.lift.up, signed=True)
+    told = "" if off is None else f"{length_off(off)} {length_unit()}"
+    return _great(left, room, caption, figure, below, length_unit(), told)
 
 
 def _volume(sheet: Sheet) -> Block:

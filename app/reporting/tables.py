@@ -11,6 +11,7 @@ from app.reporting.grounds import note_groups
 from app.reporting.handout import Handout
 from app.reporting.paper import Paper, elided, fitting, line_height, text_width, wrapped
 from app.reporting.telling import MeasureRow, key_measures, measure_rows
+from app.wording.lengths import length_unit
 from app.wording.tokens import LIGHT
 from app.wording.words import tr
 from core.sheet import Sheet
@@ -84,7 +85,7 @@ def line_note_blocks(handout: Handout) -> Iterator[Block]:
 
 def _measure_head(edges: Edges) -> Block:
     titles = tr("before"), tr("after"), tr("change")
-    unit = elided(tr("mm, if not told otherwise"), "caption", edges[0] - 10.0)
+    unit = elided(tr("{unit}, if not told otherwise").format(unit=length_unit()), "caption", edges[0] - 10.0)
 
     def paint(paper: Paper, x: float, y: float) -> None:
         paper.text(x, y + 2.6, unit, "caption")

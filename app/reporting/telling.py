@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
 
-from app.panels.measure_view import plus_minus
+from app.panels.measure_view import length_off, plus_minus
 from app.presenting.assessment import AssessmentView, assessment_view
 from app.presenting.lines import line_title
 from app.presenting.pressure import light_word
+from app.wording.lengths import shown_digits, shown_value
 from app.wording.measure_titles import measure_title
 from app.wording.words import colon, listed, number, say, tr
 from core.design_lines import partner_of
@@ -125,28 +126,32 @@ def foot_words(sheet: Sheet) -> str:
 def _measure_row(row: dict[str, Any], sheet: Sheet) -> MeasureRow:
     digits = 0 if row["unit"] == "ml" else 1
     figures = (
-        figure(row["before"], digits),
-        figure(row["after"], digits),
+        figure(row["before"], digits, row["unit"]),
+        figure(row["after"], digits, row["unit"]),
         _change(row, digits),
     )
     figures = figures if sheet.sound else (figures[0], NOTHING, NOTHING)
     offs = [sheet.off.get(f"{kind}:{row['key']}") for kind in (BEFORE, AFTER, CHANGE)] if sheet.sound else []
-    told = tuple("" if off is None else plus_minus(off) for off in offs)
+    off_words = length_off if row["unit"] == "mm" else plus_minus
+    told = tuple("" if off is None else off_words(off) for off in offs)
     told = told if any(told) else ()
     unit = row["unit"].replace("2", "\N{SUPERSCRIPT TWO}")
     unit = "" if unit == "mm" else unit
     if row["estimate"]:
         alone = row["plus_minus"] >= 0.5 and not told  # else it is in what stands below
-        off = f" ± {number(row['plus_minus'], digits)}" if alone else ""
+        off = f" ± {figure(row['plus_minus'], digits, row['unit'])}" if alone else ""
         unit = f"{unit} {tr('est.')}{off}".strip()
     return MeasureRow(measure_title(row), unit, figures, off=told)
 
 
 def _change(row: dict[str, Any], digits: int) -> str:
     """Return the change of what is printed, so that the columns agree."""
+    digits, unit = shown_digits(digits, row["unit"]), row["unit"]
     if row["before"] is None or row["after"] is None:
-        return NOTHING if row["difference"] is None else number(row["difference"], digits, signed=True)
-    return number(round(row["after"], digits) - round(row["before"], digits), digits, signed=True)
+        change = row["difference"]
+        return NOTHING if change is None else number(shown_value(change, unit), digits, signed=True)
+    after, before = (round(shown_value(row[when], unit), digits) for when in ("after", "before"))
+    return number(after - before, digits, signed=True)
 
 
 def _group(key: str) -> str:
@@ -164,6 +169,8 @@ def system_word(size: dict[str, Any]) -> str:
     return key.upper() if len(key) == 2 else str(size["system"])
 
 
-def figure(value: float | None, digits: int) -> str:
-    """Return a figure as it is printed, or NOTHING."""
-    return NOTHING if value is None else number(value, digits)
+def figure(value: float | None, digits: int, unit: str = "") -> str:
+    """Return a figure in ``unit`` as it is printed, or NOTHING; millimetres in the unit in use."""
+    if value is None:
+        return NOTHING
+    return number(shown_value(value, unit), shown_digits(digits, unit))

@@ -1,0 +1,115 @@
+"""Lengths in millimetres, centimetres and inches: as they are shown, and as they are typed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.panels.figure_field import FigureField
+from app.panels.line_row import LineRow, LineView
+from app.panels.measure_view import MeasureView
+from app.panels.number_field import NumberField
+from app.panels.variants import Figure
+from app.presenting.bust import up_words
+from app.presenting.measures import as_table
+from app.reporting.telling import figure
+from app.wording.lengths import length, read_length, use_unit
+
+UNITS = ("mm", "cm", "in")
+
+
+@pytest.fixture(autouse=True)
+def _millimetres_again() -> Iterator[None]:
+    yield
+    use_unit("mm")
+
+
+@pytest.mark.parametrize(
+    ("text", "mm"),
+    [
+        ("692mm", 692.0),
+        ("69.2cm", 692.0),
+        ("27.2in", 690.88),
+        ('27.2"', 690.88),
+        ("27.2 inch", 690.88),
+        ("０．６９２ｍ", 692.0),
+        ("−1,5 cm", -15.0),
+    ],
+)
+def test_a_typed_unit_counts_whatever_unit_is_shown(text: str, mm: float) -> None:
+    for unit in UNITS:
+        use_unit(unit)
+        assert read_length(text) == pytest.approx(mm)
+
+
+@pytest.mark.parametrize("text", ["", "mm", "3 kg", "1e5", "12mm34", "--3"])
+def test_what_is_not_a_length_is_none(text: str) -> None:
+    assert read_length(text) is None
+
+
+@pytest.mark.parametrize("unit", UNITS)
+@pytest.mark.parametrize("mm", [0.0, -3.14, 692.0, 1234.5])
+def test_a_shown_length_reads_back_within_its_last_decimal(unit: str, mm: float) -> None:
+    use_unit(unit)
+    shown = length(mm)
+    assert shown.endswith(f" {unit}")
+    assert read_length(shown.replace(",", "")) == pytest.approx(mm, abs=0.128)
+    assert read_length(shown.split()[0].replace(",", "")) == pytest.approx(mm, abs=0.128)
+
+
+def test_an_unknown_unit_leaves_millimetres() -> None:
+    use_unit("furlong")
+    assert length(692.0) == "692.0 mm"
+
+
+def test_fields_show_and_take_the_unit_in_use(qtbot: QtBot) -> None:
+    use_unit("in")
+    place, heard = FigureField("mm", "Place", widest="−888.8"), []
+    qtbot.addWidget(place)
+    place.show_value(254.0)
+    assert place.text() == "10.00"
+    assert (place._read("10"), place._read("250mm")) == (254.0, 250.0)
+    of_line = NumberField("mm")
+    qtbot.addWidget(of_line)
+    of_line.name_line("Waist")
+    of_line.entered.connect(heard.append)
+    of_line.show_length(1.0, 508.0, 762.0)
+    assert (of_line.text(), of_line.accessibleName()) == ("20.00", "Waist: length in inches")
+    assert of_line._read("19") == pytest.approx(0.95)
+    assert of_line._read("482.6mm") == pytest.approx(0.95)
+    assert FigureField("%", "Share", widest="+100")._read("12") == 12.0, "other units stay"
+
+
+def test_a_line_is_shown_in_the_unit_in_use(qtbot: QtBot) -> None:
+    use_unit("cm")
+    row = LineRow(LineView("waist", "Waist", "#C2466E", 0.9, 400.0, 380.0, True, True, 600.0))
+    qtbot.addWidget(row)
+    row.set_open(True)
+    texts = " ".join(each.text() for each in row.findChildren(type(row._measure)))
+    assert "38.00" in texts
+    assert "mm" not in texts
+
+
+def test_measures_agree_in_their_columns_and_files_keep_millimetres() -> None:
+    row = MeasureView("Bust", "mm", 1000.04, 1010.06, plus_minus=3.0, estimate=True)
+    cells = as_table([row])
+    for unit, change in (("cm", "+1.01"), ("in", "+0.40")):
+        use_unit(unit)
+        assert row.written(row.change, signed=True) == change
+        before, after = (float(row.written(each).replace(",", "")) for each in (row.before, row.after))
+        assert row.change is not None
+        assert float(row.written(row.change)) == pytest.approx(after - before, abs=1e-9)
+        assert unit in row.caption
+        assert row.spoken().count(unit) == 3
+        assert as_table([row])[1][2:6] == cells[1][2:6]
+
+
+def test_other_units_than_millimetres_are_left_alone() -> None:
+    use_unit("in")
+    assert MeasureView("Volume", "ml", 500.0, 600.0).spoken() == "Volume: 500 ml → 600 ml"
+    assert Figure("%", 1, False, (94.0,)).written(0) == "94.0 %"
+    assert Figure("mm", 1, True, (25.4,)).written(0) == "+1.00 in"
+    assert (figure(25.4, 1), figure(25.4, 1, "mm")) == ("25.4", "1.00")
+    assert up_words(25.4, 2.54).split() == ["1.00", "±", "0.10", "in", "up"]
