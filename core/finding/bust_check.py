@@ -27,7 +27,7 @@ though a belly under them be as wide and they hide their creases."""
 ROUNDEST, FLATTEST = 1.0, 2.3
 """A trunk is so many times as wide as deep; chairs, bottles and things on a table are not."""
 
-APART = 90.0, 400.0
+APART = 70.0, 400.0
 """Bust points lie so far apart [mm]: less is one bump, more the knees or the arms of something."""
 
 UNEVEN = 60.0
