@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QKeyEvent, QUndoGroup
 from PySide6.QtWidgets import QAbstractButton, QApplication, QMainWindow, QVBoxLayout, QWidget
 
@@ -23,6 +23,7 @@ from app.desks.scan_desk import ScanDesk
 from app.desks.start_desk import StartDesk
 from app.desks.verdict_desk import VerdictDesk
 from app.dress.door import Door
+from app.dress.parts import OverCard
 from app.helping.help_desk import HelpDesk
 from app.helping.preferences_desk import PreferencesDesk
 from app.helping.rescue import Rescue
@@ -50,6 +51,7 @@ from app.lining.line_maker import LineMaker
 from app.lining.line_routing import LineRouting
 from app.lining.lines_desk import LinesDesk
 from app.lining.preset_desk import PresetDesk
+from app.panels.coach_mark import CoachMark
 from app.panels.garment import GarmentPanel
 from app.panels.history import HistoryPanel
 from app.panels.inspector import Inspector
@@ -178,6 +180,19 @@ class MainWindow(QMainWindow):
     def focusNextPrevChild(self, next: bool) -> bool:  # noqa: N802
         """Lead the keyboard in the order that eyes read, whenever the parts were made."""
         return self.layout_.next_stop(next)
+
+    def event(self, event: QEvent) -> bool:
+        """Keep keys that are typed while a card is open from acting as shortcuts of the view."""
+        if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.ShortcutOverride:
+            plain = event.modifiers() in (Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.KeypadModifier)
+            if plain and event.text().strip() and event.text().isprintable() and self._has_card():
+                event.accept()
+                return True
+        return super().event(event)
+
+    def _has_card(self) -> bool:
+        cards = self.findChildren(OverCard)
+        return any(card.isVisible() and not isinstance(card, CoachMark) for card in cards)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
         """Press a button by Enter too; Esc takes away what lies over the work."""

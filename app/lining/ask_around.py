@@ -25,6 +25,19 @@ class AskAround(QObject):
         super().__init__(desk)
         self._window, self._desk = window, desk
         desk.card.helped.connect(self.help)
+        desk.card.prioritized.connect(self.prioritize)
+        desk.card.optional_chosen.connect(self.use_inactive)
+
+    def prioritize(self, key: str, priority: str) -> None:
+        """Set what a target counts for where not all of them can be met."""
+        self._desk.all_wishes.priorities[key] = priority
+        self._desk.steps.note()
+        self._desk.ask()
+
+    def use_inactive(self, allowed: bool) -> None:
+        """Let lines that are off be switched on, or not."""
+        self._desk.all_wishes.optional = allowed
+        self._desk.ask()
 
     def help(self) -> None:
         """Lead out of it when no line may change: to sets of lines, or to unlocked ones."""

@@ -20,6 +20,7 @@ from app.lining.ask_wishes import Wishes
 from app.lining.ask_work import Answer, AskWork, Question
 from app.panels.ask_card import AskCard
 from app.presenting.asking import step_words
+from app.presenting.conflicts import inactive_words
 from app.wording.words import joined, say, tr
 from core.aims.figure import Goal
 from core.design import Design
@@ -220,7 +221,9 @@ class AskDesk(QObject):
             self._session.cancel_preview()
         else:
             goals, told, limit = self.goals(), self.all_wishes.told, self.all_wishes.limit
-            self.work.ask(Question(design, frame.stages, goals, told, limit, hurried and bool(goals)))
+            optional = self.ground.inactive if self.all_wishes.optional else ()
+            hurried = hurried and bool(goals)
+            self.work.ask(Question(design, frame.stages, goals, told, limit, hurried, optional))
             self._slow.start()
         self._show()
 
@@ -281,6 +284,7 @@ class AskDesk(QObject):
             self.card.show_wishes([], missing)
             self.card.show_answer()
         else:
+            self.card.show_optional(inactive_words(design, self.ground.inactive), self.all_wishes.optional)
             hint = self.drawing.hint()
             views = wish_views(design, self.all_wishes, self.answer)
             self.card.show_wishes(list(views), hint)

@@ -46,6 +46,15 @@ class AskGround:
         return self._session.frame is not None and self.design is not None and not self.missing
 
     @property
+    def inactive(self) -> tuple[str, ...]:
+        """The lines that are off and could move the body."""
+        design = self.design
+        if design is None:
+            return ()
+        off = (name for name in self.moving if name not in design.worn())
+        return tuple(name for name in off if not design.traits_of(name).locked)
+
+    @property
     def moving(self) -> list[str]:
         """The lines that lie on points which move."""
         frame = self._session.frame

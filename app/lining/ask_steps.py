@@ -89,4 +89,6 @@ class AskSteps(QObject):
 
 
 def _copy(wishes: Wishes) -> Wishes:
-    return replace(wishes, figures=dict(wishes.figures), curves=dict(wishes.curves), drawn=dict(wishes.drawn))
+    figures, priorities = dict(wishes.figures), dict(wishes.priorities)
+    curves, drawn = dict(wishes.curves), dict(wishes.drawn)
+    return replace(wishes, figures=figures, curves=curves, drawn=drawn, priorities=priorities)

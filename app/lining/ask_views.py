@@ -22,6 +22,7 @@ from app.presenting.asking import (
     profile_title,
     values_words,
 )
+from app.presenting.conflicts import conflict_words, switched_words
 from app.presenting.even import asks_to_be_even, evened_words
 from app.wording.words import joined, listed, number, tr
 from core.aims.figure import Goal
@@ -47,9 +48,11 @@ def show_answer(
         met = _is_met(wishes, reply, asked)
         said = answer_words(reply, asked, wishes.only_limit, answer.now)
         price, why = beside_words(asked, answer.now, answer.then), ""
+        conflicts, switched = conflict_words(answer.conflicts), switched_words(design, reply.design)
         if asks_to_be_even(asked) and wishes.only_limit is None:
             said, price, why = evened_words(reply, asked, answer.now, answer.then)
-        changes = "\n".join(filter(None, (why, listed(change_words(design, reply)))))
+            conflicts = ()  # that sentence names the price
+        changes = "\n".join(filter(None, (*conflicts, switched, why, listed(change_words(design, reply)))))
         tone = "ok" if met else "" if is_near(reply, asked) else "warn"
         card.show_answer(said, tone, price, changes, note, can_apply=True)
 
@@ -70,11 +73,14 @@ def wish_views(design: Design, wishes: Wishes, answer: Answer | None) -> Iterato
     come = {**now, **answer.then} if answer is not None else {}
     for name, value in wishes.figures.items():
         shown, words = come.get(name, 0.0) if value is None else value, values_words(now, name)
-        yield WishView(name, figure_title(name), shown, words, signed=is_signed(name), set_=value is not None)
+        priority = wishes.priorities.get(name, "normal")
+        signed, set_ = is_signed(name), value is not None
+        yield WishView(name, figure_title(name), shown, words, signed=signed, set_=set_, priority=priority)
     for section, goals in wishes.curves.items():
         reply = answer.reply if answer is not None else None
         words = off_words(answer.question.goals, reply.reached, section) if answer and reply else ""
-        yield WishView(section, profile_title(section.split()[1]), None, words, set_=bool(goals))
+        title, priority = profile_title(section.split()[1]), wishes.priorities.get(section, "normal")
+        yield WishView(section, title, None, words, set_=bool(goals), priority=priority)
     if design.worn_elastics() and design.line_hold == "spring":
         yield _pressure(wishes.limit, answer)
 
@@ -86,4 +92,4 @@ def _pressure(limit: float | None, answer: Answer | None) -> WishView:
     words = tr("was {value}").format(value=number(max(presses.values()))) if presses else ""
     shown, set_ = most if limit is None else limit, limit is not None
     title = tr("Pressure at most")
-    return WishView(PRESSURE, title, shown, words, "kPa", signed=False, set_=set_, kept=not set_)
+    return WishView(PRESSURE, title, shown, words, "kPa", signed=False, set_=set_, kept=not set_, priority="")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from core.aims.drawn import Drawn
 from core.aims.figure import Goal
@@ -22,14 +22,17 @@ _SOFTEST, _HARDEST = 0.2, 50.0  # limits that can be set [kPa]
 class Wishes:
     """Figures by name [mm], profiles by section, what of them is ``drawn``, and a ``limit`` [kPa].
 
-    A figure without a value is shown as it is, and not asked for, nor is a profile without goals. Without a
-    limit none is broken but where the red light begins, straps aside.
+    ``priorities`` are those of figures and sections that are not "normal"; with ``optional`` lines that are
+    off may be switched on. A figure without a value is shown as it is, and not asked for, nor is a profile
+    without goals. Without a limit none is broken but where the red light begins, straps aside.
     """
 
     figures: dict[str, float | None] = field(default_factory=dict)
     curves: dict[str, tuple[Goal, ...]] = field(default_factory=dict)
     drawn: dict[str, Drawn] = field(default_factory=dict)
     limit: float | None = None
+    priorities: dict[str, str] = field(default_factory=dict)
+    optional: bool = False
 
     @classmethod
     def of(cls, goals: Sequence[Goal]) -> Wishes:
@@ -58,17 +61,27 @@ class Wishes:
         self.figures.pop(key, None)
         self.curves.pop(key, None)
         self.drawn.pop(key, None)
+        self.priorities.pop(key, None)
         self.limit = None if key == PRESSURE else self.limit
 
     def of_key(self, key: str) -> tuple[object, ...]:
         """Return all that is wished by a key, to be compared; a free figure is as good as none."""
-        return self.figures.get(key), self.curves.get(key, ()), key in self.drawn
+        return self.figures.get(key), self.curves.get(key, ()), key in self.drawn, self.priorities.get(key)
 
     @property
     def asked(self) -> tuple[Goal, ...]:
         """What was wished for by name."""
-        single = [Goal(name, value) for name, value in self.figures.items() if value is not None]
-        return (*single, *(goal for curve in self.curves.values() for goal in curve))
+        single = [
+            Goal(name, value, self.priorities.get(name, "normal"))
+            for name, value in self.figures.items()
+            if value is not None
+        ]
+        curves = (
+            replace(goal, priority=self.priorities.get(section, "normal"))
+            for section, curve in self.curves.items()
+            for goal in curve
+        )
+        return (*single, *curves)
 
     @property
     def told(self) -> tuple[str, ...]:

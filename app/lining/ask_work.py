@@ -18,7 +18,9 @@ from core.pipeline import Stages, build
 from core.progress import Progress
 
 if TYPE_CHECKING:
-    from core.request import Asking, Reply
+    from core.aims.conflicts import Conflict
+    from core.aims.line_selection import LineSelection
+    from core.request import Reply
 
 
 _LONGEST = 0.999  # ratio: in the window a line at 100 % would be off, and the body another one
@@ -29,6 +31,7 @@ class Question:
     """What is asked of ``design``, which is built from ``stages``: ``goals``, within a limit [kPa].
 
     ``figures`` are those of which it is told what they are now. One in a hurry is answered near the last.
+    ``optional`` lines are off and may be switched on.
     """
 
     design: Design
@@ -37,13 +40,14 @@ class Question:
     figures: tuple[str, ...]
     most_kpa: float | None = None
     hurried: bool = False
+    optional: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
 class Answer:
     """What is ``now`` [mm], what ``presses`` [kPa], by name, and the ``reply``, if anything was wished.
 
-    ``then`` [mm] is what figures are in the reply.
+    ``then`` [mm] is what figures are in the reply, ``conflicts`` those of targets that are not all met.
     """
 
     question: Question
@@ -51,6 +55,7 @@ class Answer:
     presses: Mapping[str, float]
     reply: Reply | None
     then: Mapping[str, float] = field(default_factory=dict)
+    conflicts: tuple[Conflict, ...] = ()
 
 
 @dataclass(eq=False)
@@ -59,7 +64,14 @@ class _Known:
 
     design: Design
     most_kpa: float | None
-    asking: Asking
+    optional: tuple[str, ...]
+    asking: LineSelection
+
+    def is_of(self, question: Question) -> bool:
+        """Tell whether a question is about the same design, limit and lines."""
+        same = self.most_kpa == question.most_kpa and self.optional == question.optional
+        return self.design is question.design and same
+
     now: dict[str, float] = field(default_factory=dict)
     presses: dict[str, float] = field(default_factory=dict)
 
@@ -129,7 +141,7 @@ class AskWork(QObject):
         """Answer, in a thread of its own."""
         with self._turn:
             known = self._known
-            if known is None or known.design is not question.design or known.most_kpa != question.most_kpa:
+            if known is None or not known.is_of(question):
                 known = self._known = self._open(question, progress)
             # What is asked for is known as it was too, once there is time.
             asked = () if question.hurried else (goal.name for goal in question.goals)
@@ -141,12 +153,17 @@ class AskWork(QObject):
             answer = known.asking.hurried if question.hurried else known.asking.reply
             reply = answer(question.goals, progress) if question.goals else None
             then = known.asking.figures(question.figures, reply.points) if reply is not None else {}
-            return Answer(question, dict(known.now), dict(known.presses), reply, then)
+            conflicts: tuple[Conflict, ...] = ()
+            if reply is not None and not question.hurried:
+                self.nearer.emit(question, reply.design)  # seen at once; the conflicts take as long again
+                conflicts = known.asking.conflicts(reply, question.goals, progress)
+            return Answer(question, dict(known.now), dict(known.presses), reply, then, conflicts)
 
     def _open(self, question: Question, progress: Progress) -> _Known:
+        from core.aims.line_selection import LineSelection  # noqa: PLC0415
         from core.aims.reaching import Bounds  # noqa: PLC0415 (brings a search along that no start needs)
-        from core.request import Asking  # noqa: PLC0415
 
         stages = build(question.design, question.stages, progress)
-        asking = Asking(stages, Bounds({}, longest=_LONGEST), question.most_kpa)
-        return _Known(question.design, question.most_kpa, asking)
+        bounds = Bounds({}, longest=_LONGEST)
+        asking = LineSelection(stages, question.optional, bounds, question.most_kpa)
+        return _Known(question.design, question.most_kpa, question.optional, asking)

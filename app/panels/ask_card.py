@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWi
 
 from app.dress.parts import IconLabel, OverCard, Segment, ToolButton, button, sentence
 from app.dress.theme import label, set_tag
+from app.dress.tip import set_tip
 from app.panels.wish_row import WishRow, WishView
 from app.wording.words import tr
 
@@ -27,12 +28,15 @@ class AskCard(OverCard):
 
     ``entered`` carries a wish's key and its value, ``removed`` its key; ``add_asked`` wants the menu under
     ``add``. ``hand_chosen`` carries what the handles drag: "bust", "apex" or "profile"; ``linked`` whether
-    they move both sides. ``applied`` and ``left`` end it; ``helped`` is the button that shows when nothing
-    can be asked.
+    they move both sides; ``prioritized`` a wish's key and its priority, ``optional_chosen`` whether lines
+    that are off may be switched on. ``applied`` and ``left`` end it; ``helped`` is the button that shows when
+    nothing can be asked.
     """
 
     entered = Signal(str, float)
     removed = Signal(str)
+    prioritized = Signal(str, str)
+    optional_chosen = Signal(bool)
     add_asked = Signal()
     hand_chosen = Signal(str)
     linked = Signal(bool)
@@ -108,7 +112,11 @@ class AskCard(OverCard):
         self.apply.clicked.connect(self._take)
         self.cancel = button(tr("Cancel"), "quiet")
         self.cancel.clicked.connect(self.left)
-        for part in (self.hand, self.link, self.add, self.details):
+        self.optional = ToolButton("bands", size=16, room=28)
+        self.optional.setCheckable(True)
+        self.optional.setAccessibleName(tr("Use inactive lines"))
+        self.optional.clicked.connect(self.optional_chosen)
+        for part in (self.hand, self.link, self.optional, self.add, self.details):
             foot.addWidget(part)
         foot.addStretch(1)
         for part in (self.help_, self.apply, self.cancel):
@@ -160,8 +168,14 @@ class AskCard(OverCard):
         self.help_.setText(tr("Unlock them") if locked else tr("Choose lines"))
         self.help_.setVisible(shown)
         self.apply.setVisible(not shown)
-        for part in (self.add, self.link, self.hand):
+        for part in (self.add, self.link, self.optional, self.hand):
             part.setVisible(not shown)
+
+    def show_optional(self, words: str, chosen: bool) -> None:
+        """Show whether lines that are off may be switched on; without ``words`` there are none."""
+        set_tip(self.optional, words or tr("No inactive line can move the body"))
+        self.optional.setEnabled(bool(words))
+        self.optional.setChecked(chosen)
 
     def take_focus(self, key: str) -> None:
         """Let a wish be typed at once."""
@@ -189,6 +203,7 @@ class AskCard(OverCard):
         row = WishRow(wish)
         row.field.entered.connect(partial(self.entered.emit, wish.key))
         row.field.typed.connect(self._follow_typing)
+        row.prioritized.connect(partial(self.prioritized.emit, wish.key))
         row.remove.clicked.connect(partial(self._remove, wish.key))
         return row
 

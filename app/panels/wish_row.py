@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 from PySide6.QtCore import QRegularExpression, Qt, Signal
 from PySide6.QtGui import QKeyEvent, QRegularExpressionValidator
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
+from app.dress.menu import Menu, pull_down
 from app.dress.parts import ToolButton
 from app.dress.theme import label, set_tag
+from app.dress.tip import set_tip
 from app.panels.figure_field import FigureField
 from app.wording.words import tr
 
@@ -22,8 +25,8 @@ _UNITS = {"mm": '(mm|cm|m|in|"|)', "kPa": "(kPa|)"}
 class WishView:
     """One wish: its ``key``, ``title`` and ``value`` in ``unit``; None cannot be typed.
 
-    ``now`` says what it is now; a ``set_`` one is asked for, another shows what is. One that is ``kept``
-    cannot be taken away.
+    ``priority`` is "high", "normal" or "low", empty where there is none. ``now`` says what it is now; a
+    ``set_`` one is asked for, another shows what is. One that is ``kept`` cannot be taken away.
     """
 
     key: str
@@ -34,6 +37,7 @@ class WishView:
     signed: bool = True
     set_: bool = True
     kept: bool = False
+    priority: str = "normal"
 
 
 class _WishField(FigureField):
@@ -81,7 +85,9 @@ class _WishField(FigureField):
 
 
 class WishRow(QWidget):
-    """A wish in a row: title, field, what it is now, and the cross that takes it away."""
+    """A wish in a row: title, field, what it is now, its priority, and the cross that takes it away."""
+
+    prioritized = Signal(str)
 
     def __init__(self, view: WishView) -> None:
         super().__init__()
@@ -98,13 +104,28 @@ class WishRow(QWidget):
         row.addStretch(1)
         row.addWidget(self.now)
         row.addWidget(self.field)
+        self.priority = ToolButton("caret-up", size=12, room=22)
+        set_tip(self.priority, tr("Set the priority of this target where not all can be met"))
+        titles = {"high": tr("High"), "normal": tr("Normal"), "low": tr("Low")}
+        self._titles, menu = titles, Menu(self)
+        for name, title in titles.items():
+            menu.addAction(title, partial(self.prioritized.emit, name))
+        self.priority.clicked.connect(lambda: pull_down(menu, self.priority))
+        self.priority.setParent(self)
+        self.priority.setVisible(bool(view.priority))
         row.addWidget(self.remove)
         # Told once, as words come in later: a long title is not cut, it takes a line of its own.
         self.breadth = self.sizeHint().width() + _WAS if view.value is not None else None
+        if view.priority:
+            row.insertWidget(row.count() - 1, self.priority)
 
     def show_view(self, view: WishView) -> None:
         """Bring value and words up to date."""
         self.remove.setVisible(not view.kept)
         self.now.setText(view.now if view.set_ else tr("free"))
+        icons = {"high": "caret-up", "low": "caret-down"}
+        self.priority.show_icon(icons.get(view.priority, "caret-right"))
+        self.priority.setAccessibleName(self._titles.get(view.priority, ""))
+        self.priority.setEnabled(view.set_)
         if view.value is not None:
             self.field.show_value(view.value)

@@ -1,0 +1,57 @@
+"""Words for targets that conflict and for lines that are switched on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from app.presenting.asking import figure_title, is_signed
+from app.presenting.lines import told_title
+from app.wording.words import listed, number, tr
+from core.aims.outline import section_of
+from core.design import Design
+
+if TYPE_CHECKING:
+    from core.aims.conflicts import Conflict
+
+
+def conflict_words(conflicts: Iterable[Conflict]) -> tuple[str, ...]:
+    """Return one sentence per target that is missed: its value alone, and what another one loses."""
+    return tuple(map(_sentence, conflicts))
+
+
+def _sentence(conflict: Conflict) -> str:
+    name, alone = figure_title(conflict.name), _value(conflict.name, conflict.alone)
+    if not conflict.against:
+        return tr("{target}: {value} is the nearest even as the only target.").format(
+            target=name, value=alone
+        )
+    words = tr(
+        "{target} conflicts with {other}: as the only target {value}, with {other} at {lost} instead of "
+        "{kept} ({price} mm per mm)."
+    )
+    lost, kept = (_value(conflict.against, value) for value in (conflict.lost, conflict.kept))
+    other, price = figure_title(conflict.against), number(conflict.price, 2)
+    return words.format(target=name, other=other, value=alone, lost=lost, kept=kept, price=price)
+
+
+def _value(name: str, value: float) -> str:
+    words = tr("{mm} mm off") if section_of(name) else tr("{mm} mm")
+    return words.format(mm=number(value, 1, signed=is_signed(name)))
+
+
+def switched_words(before: Design, after: Design) -> str:
+    """Return which lines an answer switches on, if it does."""
+    lines = _titles(after.worn() - before.worn(), after)
+    return tr("Switched on: {lines}.").format(lines=lines) if lines else ""
+
+
+def inactive_words(design: Design, names: Iterable[str]) -> str:
+    """Return which lines that are off may be switched on; empty if there are none."""
+    lines = _titles(names, design)
+    words = tr("Switch on inactive lines where they bring the targets nearer: {lines}")
+    return words.format(lines=lines) if lines else ""
+
+
+def _titles(names: Iterable[str], design: Design) -> str:
+    return listed(dict.fromkeys(told_title(name, design) for name in sorted(names)))
