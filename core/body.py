@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
 from core.cleaning.calm import calmed, noise_of
+from core.cleaning.edits import UNEDITED, ScanEdits
 from core.cleaning.holes import Hole, find_holes
 from core.cleaning.mending import mended
 from core.cleaning.repair import repair
 from core.cleaning.skin import Skin
 from core.errors import ScanError
-from core.mesh import Faces, Mesh, Points
+from core.mesh import Faces, Indices, Mesh, Points
 from core.progress import Progress, quiet
 from core.reading.raw_scan import RawScan
 from core.reading.scan_file import no_memory, read_raw, scan_bytes
@@ -30,7 +31,9 @@ TORSO = 600.0
 class Body:
     """The skin in the canonical frame [mm], wound outward; ``repairs`` holds one sentence a repair.
 
-    ``rebuilt``: the file held points only, and the skin was laid through them.
+    ``rebuilt``: the file held points only, and the skin was laid through them. ``edits`` are those of the
+    scan that were applied, ``cut`` the heights of its crop [mm], ``estimated`` the vertices, shape (k,), that
+    fill holes, ``whole`` the lowest and the highest level before a crop, if there was one [mm].
     """
 
     mesh: Mesh
@@ -38,6 +41,18 @@ class Body:
     repairs: tuple[str, ...]
     name: str
     rebuilt: bool = False
+    edits: ScanEdits = UNEDITED
+    cut: tuple[float, ...] = ()
+    estimated: Indices = field(default_factory=lambda: np.empty(0, dtype=np.int64))
+    whole: tuple[float, float] | None = None
+
+    @property
+    def heights(self) -> tuple[float, float]:
+        """The lowest and the highest level of the whole scan, before a crop [mm]."""
+        if self.whole is not None:
+            return self.whole
+        z = self.mesh.vertices[:, 2]
+        return float(z.min()), float(z.max())
 
     @cached_property
     def calm(self) -> Mesh:
@@ -57,7 +72,12 @@ class Body:
     @cached_property
     def holes(self) -> tuple[Hole, ...]:
         """The holes that stay open, longest first; where a neck, an arm or the hips were cut is none."""
-        return tuple(hole for hole in find_holes(self.mesh) if not hole.opening)
+        return tuple(hole for hole in find_holes(self.mesh) if not hole.opening and not self._is_cut(hole))
+
+    def _is_cut(self, hole: Hole) -> bool:
+        """Return whether most of a border is where the scan was cropped."""
+        z = self.mesh.vertices[hole.border, 2]
+        return any(float((np.abs(z - level) < 1e-6).mean()) > 0.5 for level in self.cut)
 
 
 class RefusedError(ScanError):

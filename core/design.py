@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import reduce
-from pathlib import Path
 from typing import Any
 
 from core.design_calibration import Calibration
@@ -26,35 +25,13 @@ from core.lines import RATIO_LIMITS
 from core.mechanics import CHOICES, DEFAULT_LINE_STIFFNESS, RANGES, Mechanics
 from core.placing import PlacedMark
 from core.printable_name import repeated
+from core.scan_source import ScanSource
 from core.volume import CONTROLS
+
+__all__ = ["TEMPLATES", "WEIGHTS", "Design", "ScanSource"]
 
 WEIGHTS = ("smooth", "paper")
 TEMPLATES = ("168", "120")
-_LONGEST_WORD = 100  # letters of a unit or an axis
-
-
-@dataclass(frozen=True)
-class ScanSource:
-    """Where the scan lies: the file ``path``, or ``member`` of the project ``path``.
-
-    ``unit``, ``up`` and ``front`` are None unless they were set by hand; ``up`` and ``front`` are axes of the
-    file like "+z", or directions in it like "0.2,0,1". Raises UserError for what is far too long.
-    """
-
-    path: str
-    member: str = ""
-    unit: str | None = None
-    up: str | None = None
-    front: str | None = None
-
-    def __post_init__(self) -> None:
-        if any(len(word or "") > _LONGEST_WORD for word in (self.unit, self.up, self.front)):
-            raise UserError("The unit, up or front of the scan cannot be used.", "Choose it again.")
-
-    @property
-    def name(self) -> str:
-        """The scan's file name."""
-        return Path(self.member or self.path).name
 
 
 @dataclass(frozen=True)

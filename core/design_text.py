@@ -7,16 +7,19 @@ from collections.abc import Mapping
 from dataclasses import asdict, fields
 from typing import Any
 
+from core.cleaning.edits import UNEDITED
 from core.design import Design
 from core.design_elastics import TISSUE_STIFFNESS
 from core.document_limits import LARGEST_UNKNOWN, check_nesting, check_values
 from core.errors import ProjectError
 from core.json_values import field_of, parsed, whole_number
 
-FORMAT = 4
-"""The newest format that is read: 2 has variants beside the design, 3 elastics, 4 free lines and straps."""
+FORMAT = 5
+"""The newest format that is read: 2 has variants beside the design, 3 elastics, 4 free lines and straps, 5
+edits of the scan.
+"""
 
-WITH_VARIANTS, WITH_ELASTICS, WITH_FREE_LINES = 2, 3, 4
+WITH_VARIANTS, WITH_ELASTICS, WITH_FREE_LINES, WITH_EDITS = 2, 3, 4, 5
 """All else is written as 1."""
 
 _KNOWN = frozenset(field.name for field in fields(Design)) - {"unknown"}
@@ -46,6 +49,10 @@ def to_values(design: Design, written: int = 1) -> dict[str, Any]:
         written = max(written, WITH_ELASTICS)
     else:
         del values["elastics"]
+    if design.scan.edits == UNEDITED:
+        del values["scan"]["edits"]
+    else:
+        written = max(written, WITH_EDITS)
     if design.tissue_stiffness == TISSUE_STIFFNESS:
         del values["tissue_stiffness"]
     for key in ("own_measures", "customer", "worn_tight_mm", "calibration"):

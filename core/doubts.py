@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from core.body import Body
+from core.edited_body import mirror_sentence
 from core.finding.bust_point import ACROSS, NIPPLE
 from core.landmark import CERTAIN, SIDES, Landmarks
 
@@ -13,7 +14,14 @@ ESSENTIAL = ("bust_point", "fold")
 def doubts(body: Body, landmarks: Landmarks) -> list[str]:
     """Return one sentence for each thing that should be looked at. Source: ours."""
     unsure = "It is not certain how this scan is to be understood: please check unit, up and front."
-    return [unsure] * (not body.pose.sure) + landmark_doubts(landmarks)
+    return [unsure] * (not body.pose.sure) + edit_doubts(body) + landmark_doubts(landmarks)
+
+
+def edit_doubts(body: Body) -> list[str]:
+    """Return what edits of the scan leave to be looked at."""
+    filled = "Holes of the scan are filled by hand: what is measured there is an estimate."
+    mirrored = [mirror_sentence(body.edits.kept)] if body.edits.kept else []
+    return mirrored + [filled] * (len(body.estimated) > 0)
 
 
 def landmark_doubts(landmarks: Landmarks) -> list[str]:

@@ -6,8 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 
+import numpy as np
+
 from core.body import Body
 from core.cleaning.inner import BURIED
+from core.edited_body import is_estimated
 from core.finding.bust_check import check, check_anchor, check_placed, placed_warnings
 from core.finding.bust_point import bust_points, missing_sides
 from core.finding.chest import find_anchor, find_poles
@@ -25,6 +28,12 @@ NOTHING: Mapping[str, Points] = MappingProxyType({})
 
 UNMEASURED = 0.55
 """Landmarks that were never held against a known answer claim this part of their confidence: below 0.5."""
+
+
+ESTIMATED = 0.3
+"""The most confidence [1] in a landmark on skin that fills a hole: no more than in one that a hole hides."""
+
+FILLED = "Found on skin that fills a hole by estimate."
 
 
 def find_landmarks(body: Body, placed: Mapping[str, Points] = NOTHING) -> Landmarks:
@@ -63,7 +72,7 @@ def find_landmarks(body: Body, placed: Mapping[str, Points] = NOTHING) -> Landma
     strange = hints(build, body.pose, told)
     most = doubted(found.points, strange)
     bust = {name: _at_most(mark, most) for name, mark in found.points.items()}
-    points = MappingProxyType({**told.points, **bust})
+    points = MappingProxyType(_on_filled(body, {**told.points, **bust}))
     warnings = (*[BURIED] * (BURIED in body.repairs), *(hint.sentence for hint in strange), *warnings)
     warnings = (*warnings, *placed_warnings(found), *coarse_warning(_spacing(calm, found.points)))
     return Landmarks(points, found.bust_level, found.underbust_level, warnings, strange)
@@ -93,6 +102,19 @@ def _levels(
     bust = [found[f"bust_point_{side}"].position[2] for side in sides]
     under = [found[f"{name}_{side}"].position[2] for name in ("fold", "lowest") for side in sides]
     return Landmarks(MappingProxyType(found), float(sum(bust)) / len(bust), float(min(under)))
+
+
+def _on_filled(body: Body, points: Mapping[str, Landmark]) -> dict[str, Landmark]:
+    """Return landmarks with little confidence in those that were found on skin that fills a hole."""
+    if len(body.estimated) == 0:
+        return dict(points)
+    inside = is_estimated(body, np.stack([mark.position for mark in points.values()]))
+    return {
+        name: replace(mark, confidence=min(mark.confidence, ESTIMATED), rule=FILLED)
+        if on and not mark.by_hand
+        else mark
+        for (name, mark), on in zip(points.items(), inside, strict=True)
+    }
 
 
 def _less(mark: Landmark, share: float) -> Landmark:

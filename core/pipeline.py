@@ -11,8 +11,11 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 
 from core.body import Body, RefusedError, body_of
+from core.build_shares import READING, SHARES
+from core.cleaning.edits import UNEDITED
 from core.control_mesh import ControlMesh, fit_control_mesh
 from core.design import Design, ScanSource
+from core.edited_body import KEEP_MORE, NO_BUST, edited
 from core.elastic_model import elastic_model
 from core.errors import FitError, LandmarkError, LineError, UserError
 from core.fitting.back_length import Back, back_of
@@ -105,20 +108,6 @@ class BodyFollows:
         return self.moving.side_volume_changes(places)
 
 
-SHARES = {"read scan": 0.5, "find landmarks": 0.1, "fit control mesh": 0.1, "bind body": 0.1}
-"""What part of the time of a build the slow stages take, roughly."""
-
-READING = {
-    "reading": (0.0, 0.3),
-    "rebuilding the surface": (0.3, 0.6),
-    "repairing": (0.6, 0.8),
-    "finding up and front": (0.8, 0.9),
-    "closing holes": (0.9, 0.92),
-    "calming the skin": (0.92, 1.0),
-}
-"""Where each part of the reading of a scan begins and ends, as shares of its time, roughly."""
-
-
 class StuckError(UserError):
     """A ``body`` was read, and no bust found on it or no control mesh laid: it can be shown and corrected.
 
@@ -191,11 +180,13 @@ def build(design: Design, previous: Stages | StuckError | None = None, progress:
     """
     stage = _Stager(previous, progress)
     try:
-        scan, body = stage("read scan", partial(read_body, progress=stage.inside), design.scan)
+        source = replace(design.scan, edits=UNEDITED)
+        scan, body = stage("read scan", partial(_read_upright, progress=stage.inside), source)
     except RefusedError as refusal:
         stuck = StuckError(refusal, refusal.body, design, stage)
     else:
         try:
+            body = stage("edit scan", partial(edited, progress=stage.inside), body, design.scan.edits)
             return _stages(stage, design, scan, body)
         except (LandmarkError, FitError) as problem:
             stuck = StuckError(problem, body, design, stage)
@@ -236,17 +227,28 @@ def targets_of(design: Design, stages: Stages) -> Targets:
 
 
 def read_body(source: ScanSource, progress: Progress = quiet) -> tuple[ScanFile, Body]:
-    """Return a scan as it came and the body read from it. Raises ScanError, ProjectError or Cancelled."""
+    """Return a scan as it came and the body read from it, edited.
+
+    Raises ScanError, ProjectError, LandmarkError or Cancelled.
+    """
+    scan, body = _read_upright(source, progress)
+    return scan, edited(body, source.edits, progress)
+
+
+def _read_upright(source: ScanSource, progress: Progress) -> tuple[ScanFile, Body]:
     scan = read_scan_file(source, progress)
     told = {"unit": source.unit, "up": source.up, "front": source.front}
-    body = body_of(scan.name, scan.data, **told, progress=progress)
-    body.calm_down(progress)
-    return scan, body
+    return scan, body_of(scan.name, scan.data, **told, progress=progress)
 
 
 def find(body: Body, placed: tuple[PlacedMark, ...]) -> Landmarks:
     """Return the landmarks of a body, with those that were placed by hand. Raises LandmarkError."""
-    return find_landmarks(body, in_mm(placed, body.pose.file_to_mm))
+    try:
+        return find_landmarks(body, in_mm(placed, body.pose.file_to_mm))
+    except LandmarkError as problem:
+        if not body.cut or placed:
+            raise
+        raise LandmarkError(NO_BUST, KEEP_MORE) from problem
 
 
 def _bind(body: Mesh, control: ControlMesh, fade: Floats, weights: Weights, scaled_normals: bool) -> Binding:

@@ -8,14 +8,13 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from app.commands.advice_words import add_assumptions, add_cure, add_evening, add_wishes, add_worn_scan
+from app.commands.scan_words import add_scan
 from app.commands.settings import ELASTIC_HELP, help_text
-from app.wording.scan_formats import KINDS, PACKED
+from app.wording.scan_formats import KINDS
 from core import __version__
 from core.design_measures import HELP as MEASURE_HELP
 from core.errors import UserError
 from core.own_lines import HELP as LINE_HELP
-from core.placing import HELP as LANDMARK_HELP
-from core.standing.upright import MILLIMETRES
 from core.volume import CONTROLS
 
 COMMANDS = {
@@ -61,8 +60,6 @@ _SOLVED = ("cut", "press", "spread")
 
 _OF_LINES = ("solve", "ask", "calibrate", "doctor", "even")
 """Others that take lines, and what these are made of."""
-
-_AXIS = "like {axis}, or a direction x,y,z of the file for a body that stands askew"
 
 
 def command_options(command: str, words: Sequence[str]) -> argparse.Namespace:
@@ -114,7 +111,7 @@ def command_parser(command: str) -> argparse.ArgumentParser:
     """Return what reads the words after a command."""
     parser = _Parser(prog=f"busk {command}", description=COMMANDS[command])
     if command in _OF_A_SCAN:
-        _add_scan(parser)
+        add_scan(parser)
     if command == "export":
         _add_files(parser)
     _add_design(parser, command)
@@ -198,20 +195,6 @@ def _add_design(parser: argparse.ArgumentParser, command: str) -> None:
     if command == "cut":
         same = "let lines of elastic reach what they reach without it: lengths are then those on the body"
         parser.add_argument("--as-worn", action="store_true", help=same)
-
-
-def _add_scan(parser: argparse.ArgumentParser) -> None:
-    """Add a scan and all that can be said about it."""
-    kinds = f"a scan ({KINDS}, each also packed as {PACKED}) or a project (.busk)"
-    parser.add_argument("input", metavar="SCAN_OR_PROJECT", help=kinds)
-    parser.add_argument(
-        "--unit", type=str.lower, choices=tuple(MILLIMETRES), help="the scan's unit, if not guessed well"
-    )
-    parser.add_argument("--up", metavar="AXIS", help=f"what points up in the scan: {_AXIS.format(axis='+z')}")
-    parser.add_argument(
-        "--front", metavar="AXIS", help=f"where the body faces in the scan: {_AXIS.format(axis='-y')}"
-    )
-    parser.add_argument("--landmark", action="append", metavar="NAME=x,y,z", help=LANDMARK_HELP)
 
 
 def _add_sheet(parser: argparse.ArgumentParser) -> None:

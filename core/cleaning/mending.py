@@ -65,12 +65,12 @@ def mend(mesh: Mesh, progress: Progress = quiet) -> tuple[Mesh, int, int]:
         return mesh, 0, 0
     faces, added, closed = [home[mesh.faces]], [vertices], 0
     count, tree = len(vertices), cKDTree(vertices)
-    edges = _edges_at(np.concatenate([*small, start[:0]]), faces[0])
+    edges = edges_at(np.concatenate([*small, start[:0]]), faces[0])
     for done, loop in enumerate(small):
         progress("closing holes", 0.5 + 0.5 * done / len(small))
         patch, new = _filled(vertices[loop], tree, mesh.vertex_normals)
         corners = np.concatenate([loop, count + np.arange(len(new))])[patch]
-        inner = set(_keys(corners).tolist()) - set(_keys(loop[None]).tolist())
+        inner = set(edge_keys(corners).tolist()) - set(edge_keys(loop[None]).tolist())
         if not inner.isdisjoint(edges):
             continue  # it would join what is joined already
         edges |= inner
@@ -133,14 +133,14 @@ def _without_tangles(mesh: Mesh, twin: Indices) -> Indices:
     return np.arange(len(twin))
 
 
-def _edges_at(loop: Indices, faces: Faces) -> set[int]:
+def edges_at(loop: Indices, faces: Faces) -> set[int]:
     """Return the keys of all edges of the faces that touch ``loop``."""
     touched = np.zeros(int(faces.max(initial=0)) + 1, dtype=bool)
     touched[loop] = True
-    return set(_keys(faces[touched[faces].any(axis=1)]).tolist())
+    return set(edge_keys(faces[touched[faces].any(axis=1)]).tolist())
 
 
-def _keys(polygons: Indices) -> Indices:
+def edge_keys(polygons: Indices) -> Indices:
     """Return a number for each side of ``polygons``, shape (m, k): equal for equal sides."""
     ends = np.sort(np.stack([polygons, np.roll(polygons, -1, axis=1)]), axis=0)
     return np.asarray((ends[0] << 31 | ends[1]).ravel())
@@ -164,7 +164,7 @@ def _filled(border: Points, skin: cKDTree, normals: Points) -> tuple[Faces, Poin
     near = skin.query_ball_point(middle, CLOSED)
     around = (skin.data[near] - middle) @ axes.T
     around = around[(normals[near] @ axes[2] > 0.3) & (np.abs(around[:, 2]) < extent[0])]
-    bend = _quadric(np.concatenate([around, local]), max(extent[0], 1e-9))
+    bend = quadric_height(np.concatenate([around, local]), max(extent[0], 1e-9))
     rest = local[:, 2] - bend(local[:, :2])
     weight = 1.0 / np.maximum(((inside[:, None] - local[None, :, :2]) ** 2).sum(axis=2), 1e-12)
     height = bend(inside) + weight @ rest / weight.sum(axis=1)
@@ -179,7 +179,7 @@ def _fan(border: Points) -> Faces:
     return np.array([[2, 1, 0], [3, 2, 0]] if across[0] < across[1] else [[3, 2, 1], [3, 1, 0]])
 
 
-def _quadric(places: Points, scale: float) -> Callable[[Floats], Floats]:
+def quadric_height(places: Points, scale: float) -> Callable[[Floats], Floats]:
     """Fit a quadric height over the plane to ``places``, shape (k, 3); the middle counts most."""
 
     def terms(flat: Floats) -> Floats:

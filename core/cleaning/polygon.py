@@ -11,21 +11,22 @@ TOOTH = np.radians(75.0)
 """Corners sharper than this are cut off first [rad]."""
 
 
-def triangulated(outline: Floats) -> tuple[Faces, Floats]:
+def triangulated(outline: Floats, least: float = 0.0) -> tuple[Faces, Floats]:
     """Return triangles over the polygon ``outline``, shape (b, 2), counter-clockwise, and places inside it.
 
     Corners from b on are those places, shape (k, 2), about as far from each other as the corners of the
-    outline. Its sides are sides of triangles, whatever it looks like. Source: ours; ears after Meisters 1975.
+    outline, and no nearer than ``least``. Its sides are sides of triangles, whatever it looks like. Source:
+    ours; ears after Meisters 1975.
     """
     rest = np.arange(len(outline))
     teeth, rest = _clipped(outline, rest, TOOTH)
-    faces, inside = _even(outline, rest)
+    faces, inside = _even(outline, rest, least)
     if faces is None:
         faces, inside = _clipped(outline, rest, np.inf)[0], np.empty((0, 2))
     return np.concatenate([teeth, faces]), inside
 
 
-def _even(outline: Floats, rest: Indices) -> tuple[Faces | None, Floats]:
+def _even(outline: Floats, rest: Indices, least: float) -> tuple[Faces | None, Floats]:
     """Strew places evenly over the polygon of the corners ``rest`` and join all by Delaunay triangles.
 
     No faces are returned where these do not follow the outline.
@@ -34,9 +35,9 @@ def _even(outline: Floats, rest: Indices) -> tuple[Faces | None, Floats]:
     if len(rest) < 5:
         return None, none
     ring = outline[rest]
-    step = float(np.median(np.linalg.norm(np.roll(ring, -1, axis=0) - ring, axis=1)))
+    step = max(least, float(np.median(np.linalg.norm(np.roll(ring, -1, axis=0) - ring, axis=1))))
     low, high = ring.min(axis=0), ring.max(axis=0)
-    if not step > 0.0 or np.ptp(ring, axis=0).max() > 60.0 * step:
+    if not step > 0.0 or np.ptp(ring, axis=0).max() > (60.0 if least == 0.0 else 150.0) * step:
         return None, none
     rows = np.arange(low[1], high[1], step * np.sqrt(0.75))
     columns = np.arange(low[0], high[0], step)
