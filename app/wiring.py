@@ -74,6 +74,7 @@ def _connect_session(window: MainWindow) -> None:
     session.design_changed.connect(desk.show_design)
     session.failed.connect(desk.show_failure)
     session.failed.connect(window.doctor_desk.refuse)
+    session.failed.connect(scan_desk.show_refused)
     session.not_saved.connect(desk.show_not_saved)
     session.asked.connect(scan_desk.show_stuck)
     session.saved.connect(desk.show_saved)
@@ -135,6 +136,7 @@ def _connect_panels(window: MainWindow) -> None:
     window.model.changed.connect(session.change)
     window.scan.open_asked.connect(desk.open)
     window.scan.told.connect(scan_desk.tell)
+    window.scan.edits.edited.connect(scan_desk.edit)
     window.scan.front_asked.connect(scan_desk.ask)
 
 

@@ -42,23 +42,26 @@ def to_values(design: Design, written: int = 1) -> dict[str, Any]:
         for key in ("places", "over_shoulder"):
             if not line[key]:
                 del line[key]
-    if any(line.free or line.over_shoulder for line in design.own_lines):
-        written = max(written, WITH_FREE_LINES)  # an older program would lay them elsewhere
-    if design.elastics:
-        # An older program would drop the elastics of lines at its next save: it must not read this.
-        written = max(written, WITH_ELASTICS)
-    else:
+    if not design.elastics:
         del values["elastics"]
     if design.scan.edits == UNEDITED:
         del values["scan"]["edits"]
-    else:
-        written = max(written, WITH_EDITS)
     if design.tissue_stiffness == TISSUE_STIFFNESS:
         del values["tissue_stiffness"]
     for key in ("own_measures", "customer", "worn_tight_mm", "calibration"):
         if not values[key]:
             del values[key]
-    return {"format": written, "length_unit": "mm", **unknown, **values}
+    return {"format": max(written, _format_of(design)), "length_unit": "mm", **unknown, **values}
+
+
+def _format_of(design: Design) -> int:
+    """Return the oldest format that holds a design: an older program would drop what it does not know."""
+    needed = (
+        (WITH_EDITS, design.scan.edits != UNEDITED),
+        (WITH_FREE_LINES, any(line.free or line.over_shoulder for line in design.own_lines)),
+        (WITH_ELASTICS, bool(design.elastics)),
+    )
+    return max((written for written, used in needed if used), default=1)
 
 
 def from_json(text: str) -> Design:

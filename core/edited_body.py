@@ -46,7 +46,6 @@ def _edited(body: Body, edits: ScanEdits) -> Body:
         sign = 1.0 if edits.kept == "left" else -1.0
         middle = middle_of(even_cloud(mesh.vertices, mesh.faces), np.array([1.0, 0.0, 0.0]))
         mesh = mirrored_half(mesh, middle, sign)
-        sentences.append(mirror_sentence(edits.kept))
     last = replace(body, mesh=mesh, cut=levels, edits=edits, whole=body.heights)
     if edits.filled or edits.fill_all:
         chosen = _chosen(last.holes, edits)

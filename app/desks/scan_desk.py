@@ -19,7 +19,8 @@ from app.seeing.portrait import Picture
 from app.seeing.ways import Way, pictures
 from app.wording.words import tr
 from core.body import Body
-from core.design import Design
+from core.cleaning.edits import ScanEdits
+from core.design import Design, ScanSource
 from core.pipeline import Stages, StuckError
 
 if TYPE_CHECKING:
@@ -88,7 +89,7 @@ class ScanDesk(QObject):
         window, self.stuck = self._window, stuck
         lacks = stuck.kind == "landmarks"
         window.landmark_desk.show_stuck(stuck)
-        window.scan.set_scan(scan_view(stuck.design.scan, stuck.body))
+        window.scan.set_scan(scan_view(stuck.design.scan, stuck.body, stuck.kind != "refused"))
         window.view.show_stuck(stuck.body, stuck.landmarks)
         window.desk.go_to("landmarks" if lacks else "scan")
         window.rail.set_state("scan", "done" if lacks else "look")
@@ -107,20 +108,35 @@ class ScanDesk(QObject):
             return
         scan = design.scan
         if not key:
-            text, scan = tr("Unit, up and front as found"), replace(scan, unit=None, up=None, front=None)
+            text, scan = tr("Unit, up and front as found"), scan.set_up(unit=None, up=None, front=None)
         elif key == "unit":
-            text, scan = tr("Scan in {unit}").format(unit=value), replace(scan, unit=value)
+            text, scan = tr("Scan in {unit}").format(unit=value), scan.set_up(unit=value)
         elif key == "up":
             # What was told to be front may lie along the new axis: then it is to be found.
             front = (
                 scan.front if scan.front and scan.front[1:] != value[1:] and "," not in scan.front else None
             )
-            text, scan = tr("{axis} is up").format(axis=value), replace(scan, up=value, front=front)
+            text, scan = tr("{axis} is up").format(axis=value), scan.set_up(up=value, front=front)
         else:
             up = self._shown_up() if scan.up is None else scan.up
-            text, scan = tr("{axis} is front").format(axis=value), replace(scan, up=up, front=value)
+            text, scan = tr("{axis} is front").format(axis=value), scan.set_up(up=up, front=value)
+        self._read_again(scan, text)
+
+    def edit(self, edits: ScanEdits, text: str) -> None:
+        """Edit the scan as one undo step named ``text``."""
+        design = self.stuck.design if self.stuck else self._session.design
+        if design is not None:
+            self._read_again(replace(design.scan, edits=edits), text)
+
+    def show_refused(self) -> None:
+        """Show the scan as it is after an edit that was refused."""
+        frame, design = self._session.frame, self._session.design
+        if frame is not None and design is not None and not self.stuck:
+            self._window.scan.set_scan(scan_view(frame.stages.design.scan, frame.stages.body))
+
+    def _read_again(self, scan: ScanSource, text: str) -> None:
         if self.stuck:
-            self._session.open_design(replace(design, scan=scan))
+            self._session.open_design(replace(self.stuck.design, scan=scan))
         else:
             self._session.change({"scan": scan}, text)
 
@@ -140,10 +156,10 @@ class ScanDesk(QObject):
         if waiting is not None:
             # What is open may have been edited while the question waited.
             if self._window.desk.may_leave():
-                self._session.open_design(replace(waiting, scan=replace(waiting.scan, up=up, front=front)))
+                self._session.open_design(replace(waiting, scan=waiting.scan.set_up(up=up, front=front)))
         elif design is not None:
             self._session.change(
-                {"scan": replace(design.scan, up=up, front=front)}, tr("Front chosen by its picture")
+                {"scan": design.scan.set_up(up=up, front=front)}, tr("Front chosen by its picture")
             )
 
     def leave_question(self) -> None:

@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QScrollArea, QVBoxLay
 from app.dress.parts import EmptyState, Segment, button, hairline, sentence
 from app.dress.theme import label, set_tag
 from app.dress.tip import set_tip
+from app.panels.scan_edits import EditsView, ScanEditor
 from app.wording.scan_formats import KINDS
 from app.wording.words import number, say, tr
 
@@ -28,6 +29,7 @@ class ScanView:
     """What is shown of a scan: ``reason`` why this ``unit``; ``up`` and ``front`` are axes of the file.
 
     ``notes`` are further sentences on it; ``told`` names what was not found but told: unit, up, front.
+    ``edits`` is None for a scan that cannot be edited, as it is not upright.
     """
 
     file: str
@@ -40,12 +42,13 @@ class ScanView:
     repairs: tuple[str, ...]
     notes: tuple[str, ...] = ()
     told: frozenset[str] = frozenset()
+    edits: EditsView | None = None
 
 
 class ScanPanel(QWidget):
     """The facts of the scan; ``told`` with "unit", "up" or "front" and what it is, an empty key forgets all.
 
-    ``open_asked`` for another file; ``front_asked`` when the pictures are wanted.
+    ``open_asked`` for another file; ``front_asked`` when the pictures are wanted. ``edits`` edits the scan.
     """
 
     told = Signal(str, str)
@@ -92,8 +95,9 @@ class ScanPanel(QWidget):
         self._notes.setVisible(bool(view.notes))
         done = [each for each in view.repairs if not _stays(each)]
         self._repairs.setText(_listed(done) or tr("Nothing had to be repaired."))
-        none = tr("None; where neck, arms or hips were cut is no hole.")
-        self._holes.setText(_listed([each for each in view.repairs if _stays(each)]) or none)
+        self.edits.setVisible(view.edits is not None)
+        if view.edits is not None:
+            self.edits.show_edits(view.edits)
 
     def _facts(self) -> QScrollArea:
         inside = QWidget()
@@ -103,9 +107,8 @@ class ScanPanel(QWidget):
         column.setSpacing(3)
         self._file, self._triangles = sentence("", "name"), label("", "secondary")
         self._notes, self._reason = sentence(), sentence()
-        self._repairs, self._holes = sentence(), sentence()
-        for each in (self._repairs, self._holes):
-            each.setTextFormat(Qt.TextFormat.RichText)
+        self._repairs, self.edits = sentence(), ScanEditor()
+        self._repairs.setTextFormat(Qt.TextFormat.RichText)
         self.units = self._choices("unit", [(unit, tr(unit)) for unit in UNITS])
         axes = [(axis, axis.replace("-", "\N{MINUS SIGN}")) for axis in AXES]
         self.ups, self.fronts = self._choices("up", axes), self._choices("front", axes)
@@ -118,7 +121,7 @@ class ScanPanel(QWidget):
         self._group(column, tr("Axis of the file that points up"), self.ups)
         self._group(column, tr("Axis of the file that the chest faces"), self.fronts)
         self._group(column, tr("Why"), self._reason)
-        self._group(column, tr("Holes that stay open"), self._holes)
+        column.addWidget(self.edits)
         self._group(column, tr("Repairs"), self._repairs)
         column.addSpacing(14)
         column.addWidget(another, alignment=Qt.AlignmentFlag.AlignLeft)

@@ -6,11 +6,14 @@ from collections.abc import Collection, Mapping
 
 from app.panels.landmark_row import LandmarkView
 from app.panels.scan import ScanView
-from app.wording.words import number, tr
+from app.panels.scan_edits import EditsView, HoleView
+from app.wording.words import number, say, tr
 from core.body import Body
+from core.cleaning.holes import NAMED, hole_sentence, hole_sentences
 from core.design import ScanSource
-from core.doubts import ESSENTIAL
+from core.doubts import ESSENTIAL, edit_doubts
 from core.landmark import CERTAIN, NAMES, Landmark
+from core.mesh import Points
 
 GROUPS = {
     "bust_point": "bust",
@@ -96,8 +99,8 @@ def landmark_view(name: str, mark: Landmark | None, accepted: Collection[Spot] =
     )
 
 
-def scan_view(source: ScanSource, body: Body) -> ScanView:
-    """Return the facts of the scan."""
+def scan_view(source: ScanSource, body: Body, upright: bool = True) -> ScanView:
+    """Return the facts of the scan; one that is not ``upright`` cannot be edited."""
     pose = body.pose
     return ScanView(
         source.name,
@@ -110,11 +113,29 @@ def scan_view(source: ScanSource, body: Body) -> ScanView:
         body.repairs,
         _notes(body),
         frozenset(key for key in ("unit", "up", "front") if getattr(source, key) is not None),
+        _edits_view(source, body) if upright else None,
     )
 
 
+def _edits_view(source: ScanSource, body: Body) -> EditsView:
+    """Return the edits of a scan, with those of its open holes that are listed."""
+    rows, (low, high) = body.holes[:NAMED], body.heights
+    holes = [HoleView(say(hole_sentence(body.mesh, hole)), _place(hole.centre)) for hole in rows]
+    more = [say(each) for each in hole_sentences(body.mesh, body.holes)[NAMED:]]
+    return EditsView(source.edits, high - low, tuple(holes), "".join(more))
+
+
+def _place(centre: Points) -> tuple[float, float, float]:
+    x, y, z = centre.round(1).tolist()
+    return x, y, z
+
+
 def _notes(body: Body) -> tuple[str, ...]:
-    """Return what else is to be known of a body: on what copy of its skin it is measured."""
+    """Return what else is to be known of a body: its edits, and on what copy of its skin it is measured."""
+    return (*map(say, edit_doubts(body)), *_copy_notes(body))
+
+
+def _copy_notes(body: Body) -> tuple[str, ...]:
     if body.calm is body.mesh:
         return ()
     if len(body.calm.faces) != len(body.mesh.faces):

@@ -139,9 +139,11 @@ def _hole(mesh: Mesh, loop: Indices, faces: Indices) -> Hole:
 def hole_sentences(mesh: Mesh, holes: tuple[Hole, ...]) -> tuple[str, ...]:
     """Return what the user should know of the ``holes`` of an upright skin, one sentence each."""
     open_ones = [hole for hole in holes if not hole.opening]
-    named = [
-        f"A hole of {hole.length / 10.0:.0f} x {hole.width / 10.0:.0f} cm stays open, {hole.place(mesh)}."
-        for hole in open_ones[:NAMED]
-    ]
+    named = [hole_sentence(mesh, hole) for hole in open_ones[:NAMED]]
     more = len(open_ones) - NAMED
     return tuple(named) + ((f"{more} more holes stay open.",) if more > 0 else ())
+
+
+def hole_sentence(mesh: Mesh, hole: Hole) -> str:
+    """Return the size of a hole of an upright skin, and where it is."""
+    return f"A hole of {hole.length / 10.0:.0f} x {hole.width / 10.0:.0f} cm stays open, {hole.place(mesh)}."
