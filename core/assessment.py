@@ -50,6 +50,12 @@ class Finding:
     value: float = 0.0
 
 
+UNKNOWN_PRESSURE = Finding(
+    *("pressure", CAUTION, "The contact pressure could not be computed."),
+    "Change a length to compute it again.",
+)
+
+
 @dataclass(frozen=True)
 class Assessment:
     """The overall verdict: ``findings`` are ranked, the worst first.
@@ -82,18 +88,25 @@ def assessed(shown: Shown) -> Assessment:
 
 
 def assessment_of(
-    shown: Shown, cuts: CutList | None, pressed: PressList | None, *, running: bool = False
+    shown: Shown,
+    cuts: CutList | None,
+    pressed: PressList | None,
+    *,
+    running: bool = False,
+    failed: bool = False,
 ) -> Assessment:
     """Return the assessment of a run, with its cut list and pressures as far as they are known.
 
-    While it is ``running`` it may still converge. A run without a valid shape has neither.
+    While it is ``running`` it may still converge; ``failed``: computing its pressures did, and they stay
+    unknown. A run without a valid shape has neither.
     """
     stages, verdict, active = shown.stages, shown.verdict, bool(shown.stages.design.worn())
     found = [*_run(shown, running), *_foundations(stages)]
     if verdict.sound:
-        found += [*_bands(cuts), *_pressures(pressed)]
+        found += [*_bands(cuts), *([UNKNOWN_PRESSURE] if failed else _pressures(pressed))]
     ranked = sorted(found, key=lambda each: (-LEVELS.index(each.level), TOPICS.index(each.topic)))
-    pending = "convergence" if running else "pressure" if active and pressed is None and verdict.sound else ""
+    awaited = active and verdict.sound and pressed is None and not failed
+    pending = "convergence" if running else "pressure" if awaited else ""
     return Assessment(tuple(ranked), pending, active)
 
 

@@ -73,6 +73,8 @@ def test_it_is_never_good_before_the_pressure_is_known(sure: Solution) -> None:
     assert assessment_of(sure, cuts(), None).level == PENDING
     assert assessment_of(sure, cuts(), None).pending == "pressure"
     assert assessment_of(sure, None, None, running=True).pending == "convergence"
+    unknown = assessment_of(sure, cuts(), None, failed=True)
+    assert (unknown.level, unknown.pending) == (CAUTION, ""), "no pressure is no good pressure"
     slack = assessment_of(sure, cuts(slack=True, push_n=2.0), None)
     assert slack.level == BAD, "what is bad already is shown at once"
     mild = assessment_of(sure, cuts(slack=True, push_n=0.1), None)

@@ -186,6 +186,25 @@ def test_quick_steps_that_are_refused_go_back_to_the_last_that_was_solved(
     assert not session.design.lines
 
 
+def test_a_step_that_is_refused_when_made_again_leaves_the_steps_after_it(
+    session: Session, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(app.asking.edit, "PAUSE", 600.0)
+    session.commit_line("mid-bust", "Mid-bust line", 0.98)
+    qtbot.waitUntil(lambda: is_solved(session))
+    session.commit_line("mid-bust", "Mid-bust line", 0.97)
+    session.commit_line("full-bust", "Full-bust line", 0.96)
+    last, stack = session.document, session.undo_stack
+    stack.undo()
+    stack.undo()
+    stack.redo()
+    refuse(session)
+    assert (stack.index(), stack.count()) == (0, 2)
+    stack.redo()
+    stack.redo()
+    assert session.document is last
+
+
 @pytest.mark.parametrize("error", FAULTS[2:], ids=lambda each: type(each).__name__)
 def test_a_thread_that_is_ended_from_within_is_reported(
     error: BaseException, session: Session, qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -8,7 +8,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QLabel
-from window_tools import Script, drag, run_main, settled, undrawn
+from window_tools import Script, drag, run_main, run_undrawn, settled, undrawn
 
 import app.keeping.pressure_desk as desk_module
 from app.main_window import MainWindow
@@ -264,3 +264,26 @@ def a_click_turns_to_the_place(window: MainWindow, listed: PressList) -> Script:
     QTest.mouseClick(window.pressure_desk.card.place, Qt.MouseButton.LeftButton)
     assert len(window.map_desk.flags.flags) == 1, "it is pinned already"
     window.map_desk.choose("")
+
+
+def test_pressures_that_cannot_be_computed_are_no_reason_to_wait(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object) -> PressList:
+        raise MemoryError
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        pressing = desk_module.press_list
+        monkeypatch.setattr(desk_module, "press_list", fail)
+        drag(window, "mid-bust", -10)
+        yield settled(window)
+        yield lambda: window.notices.notice() is not None
+        view = window.verdict_desk.of(window.session.frame)
+        assert (view.level, view.waiting) == ("caution", "")
+        assert view.first.startswith("The contact pressure could not be computed.")
+        assert window.rail.items["result"].state() == "look"
+        monkeypatch.setattr(desk_module, "press_list", pressing)
+        drag(window, "mid-bust", -10)
+        yield settled(window)
+        yield lambda: window.verdict_desk.of(window.session.frame).level == "bad"
+
+    run_undrawn([], script)

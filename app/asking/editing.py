@@ -174,7 +174,8 @@ class Editing(QObject):
         edit = self._last_edit()
         if edit is None or self._step != self._revision:
             return False
-        rest = edit.split()
+        # What is pushed takes the place of all that can be redone: then the whole step goes back.
+        rest = edit.split() if not self.undo_stack.canRedo() else None
         if rest is not None:
             saved = self.undo_stack.isClean()
             self.undo_stack.push(rest)

@@ -40,13 +40,14 @@ class VerdictDesk(QObject):
         """Return the overall verdict of a frame, as far as it is known; pressures are computed in a job."""
         window, design = self._window, frame.stages.design
         moves = frame is window.session.frame and not window.is_at_rest()
-        running, cuts, pressed = frame.at_work or moves, None, None
+        running, failed, cuts, pressed = frame.at_work or moves, False, None, None
         if not running and frame.verdict.sound and design.worn():
             cuts = self._cuts.get(frame)
             if cuts is None:
                 cuts = self._cuts[frame] = cut_list(frame.stages, frame.control_points)
-            pressed = window.pressure_desk.of(frame)
-        return assessment_view(assessment_of(frame, cuts, pressed, running=running), design)
+            pressed, failed = window.pressure_desk.of(frame), window.pressure_desk.has_failed(frame)
+        found = assessment_of(frame, cuts, pressed, running=running, failed=failed)
+        return assessment_view(found, design)
 
     def _strip_verdict(self, frame: Frame, view: AssessmentView) -> StripVerdict:
         """Return the values of the strip; girth and pressure only once the body has come to rest."""

@@ -41,6 +41,7 @@ class PressureDesk(QObject):
         self._body: object = None
         self._known: WeakKeyDictionary[Frame, PressList] = WeakKeyDictionary()
         self._asked: WeakSet[Frame] = WeakSet()
+        self._failed: WeakSet[Frame] = WeakSet()
         self.found.connect(self.follow)
         self.card.place_asked.connect(self.place_asked)
         panel.opened.connect(self.follow)
@@ -57,10 +58,14 @@ class PressureDesk(QObject):
                 tr("Working out the pressure"),
                 lambda progress: press_list(frame.stages, frame.control_points),
                 lambda found: self._take(frame, found),
-                self._window.desk.show_failure,
+                lambda error: self._fail(frame, error),
                 left=lambda: self._leave_off(frame),
             )
         return self._known.get(frame)
+
+    def has_failed(self, frame: Frame) -> bool:
+        """Return whether the pressures of a frame could not be computed, and are not on their way."""
+        return frame in self._failed
 
     def of_listed(self, frame: Frame) -> PressList | None:
         """Return the same for the list of lines: only where it is seen, and a line is worn."""
@@ -92,6 +97,11 @@ class PressureDesk(QObject):
 
     def _take(self, frame: Frame, found: object) -> None:
         self._known[frame] = cast(PressList, found)
+        self.found.emit()
+
+    def _fail(self, frame: Frame, error: Exception) -> None:
+        self._failed.add(frame)
+        self._window.desk.show_failure(error)
         self.found.emit()
 
     def _leave_off(self, frame: Frame) -> None:
