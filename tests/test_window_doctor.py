@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import threading
+
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from window_tools import Script, run_main, settled, undrawn
+from window_tools import Script, run_main, run_undrawn, settled, undrawn
 
+import app.keeping.pressure_desk
 from app.desks.doctor_desk import ABOUT
 from app.main_window import MainWindow
 from app.panels.notice import REFUSED, Notice
+from core.press_list import press_list
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -137,6 +141,35 @@ def test_asked_of_a_calm_design_he_says_that_nothing_is_wrong() -> None:
         assert not [each for each in window.notices._waiting if each.about == ABOUT]
 
     run_main([], script)
+
+
+def test_asked_before_the_verdict_is_known_he_says_what_presses(monkeypatch: pytest.MonkeyPatch) -> None:
+    known, asked = threading.Event(), []
+
+    def slow(*arguments: object) -> object:
+        known.wait(60.0)
+        return press_list(*arguments)  # type: ignore[arg-type]
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        monkeypatch.setattr(app.keeping.pressure_desk, "press_list", slow)
+        window.lines_desk.commit_length("mid-bust", 0.93)
+        yield settled(window)
+        frame = window.session.frame
+        assert window.verdict_desk.of(frame).level == "pending"
+        window.doctor_desk.ask()
+        yield lambda: told(window)
+        asked.append((notice_of(window).tone, notice_of(window).sentence))
+        known.set()
+        yield lambda: window.verdict_desk.of(frame).level == "bad"
+
+    try:
+        run_undrawn([], script)
+    finally:
+        known.set()
+    ((tone, sentence),) = asked
+    assert tone == "warn", "not calm beside a red verdict"
+    assert "Mid-bust presses with" in sentence
 
 
 def test_what_was_closed_stays_away_until_something_else_is_wrong() -> None:

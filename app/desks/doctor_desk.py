@@ -13,11 +13,12 @@ from PySide6.QtCore import QObject, QTimer
 from app.asking.jobs import Job
 from app.panels.notice import REFUSED, Action
 from app.presenting import doctor as words
+from app.presenting.assessment import assessment_view
 from app.presenting.lines import titled
 from app.presenting.verdict import plain_sentence, state_of, swing_mm
 from app.wording.words import joined, say, tr
 from core.answer import NoBalanceError
-from core.assessment import BAD
+from core.assessment import BAD, PENDING, Assessment
 from core.design import Design
 from core.doctor import Diagnosis, diagnose
 from core.errors import UserError
@@ -176,14 +177,20 @@ class DoctorDesk(QObject):
             self._found(frame, found, asked=True)
             return
         self._job = None
+        # It may have come to rest since it was asked.
+        frame = self._frame or frame
         overall = self._window.verdict_desk.of(frame)
-        if overall.reasons:
-            tone = "warn" if overall.level == BAD else "info"
-            said = joined(message for message, _ in overall.reasons[:REASONS])
+        level, reasons = overall.level, overall.reasons
+        if level == PENDING:  # the diagnosis knows already what the verdict waits for
+            own = assessment_view(Assessment(found.findings), frame.stages.design)
+            level, reasons = own.level, (*own.reasons, *reasons)
+        if reasons:
+            tone = "warn" if level == BAD else "info"
+            said = joined(message for message, _ in reasons[:REASONS])
             actions = self._fixes(found)
             trouble = _Trouble("checked")
-            hint = words.hint(found) if found.findings else joined(overall.reasons[0][1:])
-            details = "\n".join((*map(joined, overall.reasons), words.details(found)))
+            hint = words.hint(found) if found.findings else joined(reasons[0][1:])
+            details = "\n".join((*map(joined, reasons), words.details(found)))
             self._show(tone, said, hint, actions, details, trouble, asked=True)
             return
         said = tr("Nothing is wrong: the calculation comes to rest, and the skin is calm.")
