@@ -15,7 +15,7 @@ from core.doubts import doubts
 from core.pipeline import Stages
 from core.press_list import PressList, PressRow, press_list
 from core.report import Shown, warnings
-from core.sewing.comfort import AMBER, RED, comfort
+from core.sewing.comfort import AMBER, GREEN, comfort
 from core.verdict import Verdict
 
 GOOD, PENDING, CAUTION, BAD = LEVELS = ("good", "pending", "caution", "bad")
@@ -39,7 +39,7 @@ class Finding:
 
     ``topic`` is one of TOPICS, ``level`` CAUTION or BAD. ``message`` states in a sentence what is wrong,
     ``action`` what to do, empty where the message includes it. ``lines`` are the lines concerned,
-    ``value`` the pressure [kPa] of one on that.
+    ``value`` the pressure [kPa] of one on that, 0 if it is not known.
     """
 
     topic: str
@@ -164,13 +164,16 @@ def _slack(row: CutRow) -> Finding:
 
 
 def _pressures(pressed: PressList | None) -> Iterator[Finding]:
-    """Yield lines that press more than the green light allows, the hardest first."""
-    rows = [row for row in pressed.rows if row.light in (AMBER, RED)] if pressed is not None else []
+    """Yield lines that press more than the green light allows, the hardest first, and those not known."""
+    rows = [row for row in pressed.rows if row.light != GREEN] if pressed is not None else []
     for row in sorted(rows, key=lambda row: -(row.max_kpa or 0.0)):
         yield _pressure(row)
 
 
 def _pressure(row: PressRow) -> Finding:
+    if row.max_kpa is None:
+        message = f"{row.title} has an unknown contact pressure."
+        return Finding("pressure", CAUTION, message, " ".join(row.notes), (row.line,))
     kpa, mmhg = row.max_kpa or 0.0, row.max_mmhg or 0.0
     message = f"{row.title} presses with {kpa:.1f} kPa ({mmhg:.0f} mmHg)."
     if row.light == AMBER:

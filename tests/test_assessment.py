@@ -9,6 +9,8 @@ import pytest
 
 from app.presenting.assessment import IDLE, assessment_lines, assessment_view
 from app.wording.words import read_words, speaking
+from core.advice.cure import findings
+from core.advice.standing import standing
 from core.assessment import BAD, CAUTION, GOOD, PENDING, PUSHES, Assessment, assessed, assessment_of
 from core.cutting import CutList, CutRow, cut_list
 from core.design import Design
@@ -123,6 +125,16 @@ def test_a_fit_far_off_the_body_is_no_good_result(sure: Solution, what: str, far
     assert found.level == level
     if level == CAUTION:
         assert f"{far:.0f} mm off the " in found.findings[0].message
+
+
+def test_a_pressure_that_is_not_known_is_no_good_one(sure: Solution, built: Built) -> None:
+    """A band on the rib cage moves nothing, so without an elastic nobody knows how it presses."""
+    design = built("mannequin").design.with_line("mid-bust", None).with_line("under-bust", 0.6)
+    stages = replace(build(design, built("mannequin")), landmarks=sure.stages.landmarks)
+    found = assessed(run(stages))
+    assert levels(found) == [("pressure", CAUTION)]
+    assert "elastic" in found.findings[0].action
+    assert findings(standing(stages)) == (), "no change of its length makes it known"
 
 
 def test_doubtful_landmarks_are_in_it(sure: Solution) -> None:

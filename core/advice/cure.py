@@ -46,4 +46,6 @@ class Cure:
 
 def findings(standing: Standing) -> tuple[Finding, ...]:
     """Return what is found on a design that was run and that a change of it can end, the worst first."""
-    return tuple(each for each in assessed(standing).findings if each.topic in CURABLE)
+    found = (each for each in assessed(standing).findings if each.topic in CURABLE)
+    # No length, width or choice makes a pressure known.
+    return tuple(each for each in found if each.topic != "pressure" or each.value)
