@@ -8,10 +8,12 @@ import pytest
 from PySide6.QtCore import QPoint, QRect, QSize, Qt
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QApplication, QWidget
+from pytestqt.qtbot import QtBot
 
 from app.dress.parts import FloatingPanel
 from app.dress.shadow import floating_ground
-from app.dress.theme import apply_theme
+from app.dress.theme import Sentence, apply_theme
+from app.panels.draw_card import DrawCard
 from app.showing.floating import GAP, Floating
 from app.wording.tokens import DARK, LIGHT
 
@@ -92,3 +94,16 @@ def test_a_shadow_is_painted_once_and_follows_theme_and_size(qapp: QApplication)
             assert panel.grab().toImage() == image
             assert floating_ground.cache_info().misses == painted
     qapp.setStyleSheet("")
+
+
+@pytest.mark.parametrize("word", ["curve ", "曲線を描きます。"])
+def test_a_card_has_room_for_all_that_it_shows(qtbot: QtBot, word: str) -> None:
+    card = DrawCard()
+    qtbot.addWidget(card)
+    card.show()
+    for what, keys in ((20, 12), (3, 2), (30, 1)):
+        card.say("Draw a line", what * word, keys * word)
+        card.adjustSize()
+        QApplication.processEvents()
+        for words in card.findChildren(Sentence):
+            assert words.height() >= words.heightForWidth(words.width())

@@ -12,7 +12,8 @@ from app.asking.jobs import Job
 from app.lining.line_routing import led
 from app.lining.sketching import Sketching
 from app.presenting.lines import LINE_COLOURS, kind_of, line_colours, row_title
-from app.wording.words import number, tr
+from app.wording.lengths import length
+from app.wording.words import tr
 from core.body import Body
 from core.design_lines import OwnLine
 from core.errors import UserError
@@ -280,14 +281,14 @@ class LineDrawing(QObject):
 def _fit_words(found: Snapped | FreeCurve) -> list[str]:
     """Return how a line lies to what was drawn, and what it does not do."""
     if isinstance(found, FreeCurve):
-        said = [tr("Deviation from the drawn curve: up to {mm} mm.").format(mm=number(found.off, 1))]
+        said = [tr("Deviation from the drawn curve: up to {length}.").format(length=length(found.off))]
         if found.cut:
             said.append(tr("The part outside the control mesh was left out: the body is fixed there."))
     else:
-        what = tr("It follows the control mesh, off what you drew by up to {mm} mm.")
+        what = tr("It follows the control mesh, off what you drew by up to {length}.")
         if found.off > _WIDE:
-            what = tr("It can follow the control mesh only: off what you drew by up to {mm} mm.")
-        said = [what.format(mm=number(found.off, 0))]
+            what = tr("It can follow the control mesh only: off what you drew by up to {length}.")
+        said = [what.format(length=length(found.off, 0))]
     if not found.pulls:
         said.append(tr("No point of it can move, so it is only measured and pulls nothing."))
     return said

@@ -33,7 +33,9 @@ class DrawCard(FloatingPanel):
         close.clicked.connect(self.left)
         head.addWidget(close)
         self._what, self._keys = sentence(""), sentence("", "caption")
-        self._what.setFixedWidth(WIDTH)
+        self._words = self._what, self._keys
+        for words in self._words:
+            words.setFixedWidth(WIDTH)
         self.both = QCheckBox(tr("Mirror to the other side, linked"))
         self.snap = QCheckBox(tr("Snap to control points"))
         set_tip(self.snap, tr("Move the line onto the nearest control points instead of keeping the curve"))
@@ -67,4 +69,8 @@ class DrawCard(FloatingPanel):
         self._title.setText(title)
         self._what.setText(what)
         self._keys.setText(keys)
+        for words in self._words:
+            words.setFixedHeight(
+                words.heightForWidth(WIDTH)
+            )  # a panel is sized without regard to wrapped text
         self.adjustSize()

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from app.presenting.lines import told_title
+from app.wording.lengths import length, length_number
 from app.wording.words import colon, listed, number, tr
 from core.aims.bust import LIFT, OUT
 from core.aims.even import FURTHER_OUT, HIGHER
@@ -52,7 +53,10 @@ def profile_title(section: str) -> str:
     """Return what the profile of a section is called: "left", "right", or its x [mm]."""
     sides = {"left": tr("Profile through the left bust point")}
     sides["right"] = tr("Profile through the right bust point")
-    return sides.get(section, tr("Profile at {x} mm").format(x=section))
+    if section in sides:
+        return sides[section]
+    x = float(section)
+    return tr("Profile at {x}").format(x=length(x, 0 if x.is_integer() else 1))
 
 
 def is_signed(name: str) -> bool:
@@ -62,8 +66,8 @@ def is_signed(name: str) -> bool:
 
 def figure_words(name: str, value: float) -> str:
     """Return a figure with its value: "Bust point up +12.0 mm"."""
-    return tr("{figure} {value} mm").format(
-        figure=figure_title(name), value=number(value, 1, signed=is_signed(name))
+    return tr("{figure} {value}").format(
+        figure=figure_title(name), value=length(value, 1, signed=is_signed(name))
     )
 
 
@@ -89,7 +93,7 @@ def answer_words(
         return tr("Reached.")
     if is_met(reply, goals):
         most = max(float(np.abs(off).max()) for off in profiles_off(goals, reply.reached).values())
-        return tr("Reached within {mm} mm.").format(mm=number(most))
+        return tr("Reached within {length}.").format(length=length(most))
     if is_near(reply, goals):
         return _near_words(reply, goals, now or {})
     nearest = listed(_nearest(reply, goals, now or {}))
@@ -106,10 +110,10 @@ def _near_words(reply: Reply, goals: Sequence[Goal], now: Mapping[str, float]) -
     section = max(offs, key=lambda each: float(np.abs(offs[each]).mean()))
     before = _off_before(goals, now, section)
     if before is None or float(np.abs(offs[section]).mean()) <= _MUCH * before:
-        said = tr("Met within {mean} mm on average, {most} mm at most.")
+        said = tr("Met within {mean} on average, {most} at most.")
     else:
-        said = tr("Nearest is {mean} mm off on average, {most} mm at most (was {before} mm).")
-    return said.format(**_mean_and_most(offs[section]), before=number(before or 0.0))
+        said = tr("Nearest is {mean} off on average, {most} at most (was {before}).")
+    return said.format(**_mean_and_most(offs[section]), before=length(before or 0.0))
 
 
 def _off_before(goals: Sequence[Goal], now: Mapping[str, float], section: str) -> float | None:
@@ -123,7 +127,7 @@ def _come(reply: Reply, goals: Sequence[Goal]) -> Iterable[str]:
     """Yield what figures come to that were to stay."""
     for goal in goals:
         words = figure_words(goal.name, reply.reached[goal.name])
-        was = number(goal.value, 1, signed=is_signed(goal.name))
+        was = length_number(goal.value, 1, signed=is_signed(goal.name))
         moved = abs(reply.reached[goal.name] - goal.value) > _MET
         yield tr("{figure} (was {value})").format(figure=words, value=was) if moved else words
 
@@ -135,13 +139,13 @@ def _nearest(reply: Reply, goals: Sequence[Goal], now: Mapping[str, float]) -> I
         yield figure_words(goal.name, reply.reached[goal.name])
     profiles = profiles_off(goals, reply.reached)
     for section, off in profiles.items():
-        said = tr("a profile off by {mean} mm on average ({most} mm at most)")
+        said = tr("a profile off by {mean} on average ({most} at most)")
         if len(profiles) > 1:
-            said = tr("{profile}: off by {mean} mm on average ({most} mm at most)")
+            said = tr("{profile}: off by {mean} on average ({most} at most)")
         words = said.format(profile=figure_title(section), **_mean_and_most(off))
         before = _off_before(goals, now, section)
         if before is not None:
-            words += tr(", {before} mm before").format(before=number(before))
+            words += tr(", {before} before").format(before=length(before))
         yield words
 
 
@@ -154,10 +158,10 @@ def beside_words(goals: Sequence[Goal], now: Mapping[str, float], then: Mapping[
         return ""
     asked = {goal.name.removesuffix(" left").removesuffix(" right") for goal in goals}
     free = [name for name in (LIFT, OUT) if name not in asked and name in now and name in then]
-    said = tr("{figure} {before} → {after} mm")
+    said = tr("{figure} {before} → {after}")
     moved = []
     for name in (name for name in free if abs(then[name] - now[name]) > _MET):
-        before, after = (number(each[name], 1, signed=True) for each in (now, then))
+        before, after = length_number(now[name], 1, signed=True), length(then[name], 1, signed=True)
         moved.append(said.format(figure=figure_title(name), before=before, after=after))
     return tr("Moves along: {figures}").format(figures=listed(moved)) if moved else ""
 
@@ -167,7 +171,7 @@ def off_words(goals: Sequence[Goal], reached: Mapping[str, float], section: str)
     off = profiles_off(goals, reached).get(section)
     if off is None:
         return ""
-    return tr("off by {mean} mm, at most {most}").format(**_mean_and_most(off))
+    return tr("off by {mean}, at most {most}").format(**_mean_and_most(off))
 
 
 def is_met(reply: Reply, goals: Sequence[Goal]) -> bool:
@@ -187,7 +191,7 @@ def is_near(reply: Reply, goals: Sequence[Goal]) -> bool:
 
 
 def _mean_and_most(off: Floats) -> dict[str, str]:
-    return {"mean": number(float(np.abs(off).mean())), "most": number(float(np.abs(off).max()))}
+    return {"mean": length(float(np.abs(off).mean())), "most": length(float(np.abs(off).max()))}
 
 
 def reasons_words(reply: Reply) -> str:
@@ -274,4 +278,4 @@ def values_words(values: Mapping[str, float], name: str) -> str:
     """Return what a figure was before, in a few words; nothing before it is known."""
     if name not in values:
         return ""
-    return tr("was {value}").format(value=number(values[name], 1, signed=is_signed(name)))
+    return tr("was {value}").format(value=length_number(values[name], 1, signed=is_signed(name)))

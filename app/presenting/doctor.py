@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from app.presenting.assessment import assessment_view
 from app.presenting.lines import line_title, row_title
 from app.showing.verdict_chip import state_title
+from app.wording.lengths import length
 from app.wording.words import joined, listed, number, tr
 from core.advice.cure import Cure
 from core.advice.fight import Pull
@@ -32,7 +33,7 @@ def sentence(found: Diagnosis, swing: float) -> str:
         return _plain(found, swing)
     words = {
         "vibrating": tr(
-            "{one} and {other} pull against each other: the bust point swings by ±{swing} mm every {period} "
+            "{one} and {other} pull against each other: the bust point swings by ±{swing} every {period} "
             "turns."
         ),
         "volume": tr(
@@ -53,7 +54,7 @@ def sentence(found: Diagnosis, swing: float) -> str:
     one, other = (_name(found, pull) for pull in (worst.one, worst.other))
     what = "volume" if found.complaint == "vibrating" and swing < _SEEN else found.complaint
     percent = number(100.0 * found.verdict.amplitude, 2)
-    values = {"swing": number(swing), "percent": percent, "period": _period(found)}
+    values = {"swing": length(swing), "percent": percent, "period": _period(found)}
     return words[what].format(one=one, other=other, **values)
 
 
@@ -67,7 +68,7 @@ def _plain(found: Diagnosis, swing: float) -> str:
         "settling": tr("The calculation has come to no rest yet."),
         "unreachable": tr("No balance is found with the lines at these lengths."),
     }
-    return words[found.complaint].format(swing=number(swing))
+    return words[found.complaint].format(swing=length(swing))
 
 
 def hint(found: Diagnosis) -> str:
@@ -131,21 +132,21 @@ def change_words(found: Diagnosis, change: Change) -> str:
         ratio = change.design.ratio(change.lines[0])
         values = {
             "line": row_title(change.lines[0], design),
-            "mm": number(abs(found.longer_mm(change))),
+            "length": length(abs(found.longer_mm(change))),
             "percent": number(100.0 * ratio),
         }
         longer = ratio > design.ratio(change.lines[0])
-        what = tr("Lengthen {line} by {mm} mm") if longer else tr("Shorten {line} by {mm} mm")
+        what = tr("Lengthen {line} by {length}") if longer else tr("Shorten {line} by {length}")
         if found.complaint == "unreachable":  # that length is nowhere to be seen
             what = tr("Set {line} to {percent} %")
         what = what.format(**values)
     elif change.kind == "together":
-        what = tr("Bring all lines up to {mm} mm nearer to 100 %")
-        what = what.format(mm=number(found.moves_mm(change), 0))
+        what = tr("Bring all lines up to {length} nearer to 100 %")
+        what = what.format(length=length(found.moves_mm(change), 0))
     elif change.kind == "width":
-        what = tr("Widen {line} to {mm} mm")
+        what = tr("Widen {line} to {length}")
         width = change.design.traits_of(change.lines[0]).width
-        what = what.format(line=row_title(change.lines[0], design), mm=number(width or 0.0, 0))
+        what = what.format(line=row_title(change.lines[0], design), length=length(width or 0.0, 0))
     elif change.kind == "off":
         what = tr("Take {line} off").format(line=row_title(change.lines[0], design))
     return listed((choice, what[:1].lower() + what[1:])) if choice and what else choice or what

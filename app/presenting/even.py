@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from app.panels.even_card import EvenSummary, EvenView
-from app.panels.measure_view import plus_minus
+from app.panels.measure_view import length_off, plus_minus
 from app.presenting.asking import figure_title, is_met, is_signed, reasons_words
 from app.presenting.lines import row_title
+from app.wording.lengths import length, length_number, length_unit, shown_digits, shown_unit, shown_value
 from app.wording.words import joined, listed, number, say, tr
 from core.advice.parting import ENOUGH, moves_one_side, partable
 from core.aims.bust import LIFT, OUT
@@ -70,16 +71,20 @@ def _offs(spread: Spread | None) -> dict[str, float]:
 
 def _sentence(now: Evenness, offs: Mapping[str, float], words: str = "") -> str:
     if now.furthest < ENOUGH:
-        return tr("Both bust points lie alike within {mm} mm.").format(mm=number(ENOUGH))
+        return tr("Both bust points lie alike within {length}.").format(length=length(ENOUGH))
     parts, within = [], True
     for key, value, left, right in (
-        ("higher", now.higher, tr("left {mm} mm higher"), tr("right {mm} mm higher")),
-        ("further_out", now.further_out, tr("left {mm} mm further out"), tr("right {mm} mm further out")),
+        ("higher", now.higher, tr("left {length} higher"), tr("right {length} higher")),
+        ("further_out", now.further_out, tr("left {length} further out"), tr("right {length} further out")),
     ):
         if abs(value) >= ENOUGH:
             off = offs.get(key)
-            mm = number(abs(value)) if off is None else f"{number(abs(value))} {plus_minus(off)}"
-            parts.append((left if value > 0.0 else right).format(mm=mm))
+            size = (
+                length(abs(value))
+                if off is None
+                else f"{length_number(abs(value))} {length_off(off)} {length_unit()}"
+            )
+            parts.append((left if value > 0.0 else right).format(length=size))
             within &= off is not None and abs(value) <= off
     said = (words or tr("Bust points: {how}.")).format(how=listed(parts))
     return joined((said, tr("Within the error they lie alike."))) if within else said
@@ -93,22 +98,22 @@ def _view(row: EvenRow, doubtful: bool, off: float | None) -> EvenView:
         None if not row.sided or value is None else value / _FULL[row.unit] for value in (row.before, after)
     )
     return EvenView(
-        f"{title} [{row.unit}]",
+        f"{title} [{shown_unit(row.unit)}]",
         _written(row, row.before),
         _written(row, after),
         joined((tip, tr("Within the error both are alike."))) if within else tip,
         (shares[0], shares[1]),
-        "" if off is None else plus_minus(off),
+        "" if off is None else (length_off(off) if row.unit == "mm" else plus_minus(off)),
         within,
     )
 
 
 def _written(row: EvenRow, value: float | None) -> str:
     """Return a figure with the side that is more, as it stands in the table."""
-    digits = 0 if row.unit == "ml" else 1
+    digits = shown_digits(0 if row.unit == "ml" else 1, row.unit)
     if value is None:
         return "\N{EN DASH}"
-    size = number(abs(value), digits)
+    size = number(shown_value(abs(value), row.unit), digits)
     if not row.sided or size == number(0.0, digits):
         return size
     return (tr("L {size}") if value > 0.0 else tr("R {size}")).format(size=size)
@@ -166,9 +171,9 @@ def parted_titles(design: Design, names: tuple[str, ...]) -> list[str]:
 
 def left_as_it_is(gained: float, lost: float) -> tuple[str, str]:
     """Return why a design is not made even, and what could be done; both in mm, see ``Evened``."""
-    said = tr("These lines cannot make it more even: {gained} mm nearer would move both sides by {lost} mm.")
+    said = tr("These lines cannot make it more even: {gained} nearer would move both sides by {lost}.")
     hint = tr("Other lines may do more: a strap lifts one side alone.")
-    return said.format(gained=number(max(gained, 0.0)), lost=number(lost)), hint
+    return said.format(gained=length(max(gained, 0.0)), lost=length(lost)), hint
 
 
 def asks_to_be_even(goals: Sequence[Goal]) -> bool:
@@ -189,9 +194,9 @@ def evened_words(
     wanted = {goal.name: goal.value for goal in goals}
     wanted |= {name: now[name] for name in (LIFT, OUT) if name in now and name not in wanted}
     nearer = {name: abs(come[name] - mm) - abs(now[name] - mm) for name, mm in wanted.items() if name in now}
-    line = tr("{figure}: {before} → {after} mm")
+    line = tr("{figure}: {before} → {after}")
     lines = [_way(name, now[name], come[name], line) for name, by in nearer.items() if by < -_SEEN]
-    beside = tr("{figure} {before} → {after} mm")
+    beside = tr("{figure} {before} → {after}")
     price = listed(_way(name, now[name], come[name], beside) for name, by in nearer.items() if by > _SEEN)
     costs = tr("At the price of: {figures}").format(figures=price) if price else ""
     why = "\n".join(filter(None, ("" if met else _why(reply), _by_turns(reply.design))))
@@ -227,12 +232,14 @@ def _way(name: str, before: float, after: float, said: str) -> str:
         FURTHER_OUT: (tr("Left further forward"), tr("Right further forward")),
     }
     if name not in titles:
-        words = [number(each, 1, signed=is_signed(name)) for each in (before, after)]
-        return said.format(figure=figure_title(name), before=words[0], after=words[1])
+        signed = is_signed(name)
+        values = {"before": length_number(before, 1, signed), "after": length(after, 1, signed)}
+        return said.format(figure=figure_title(name), **values)
     one, other = (titles[name][each < 0.0] for each in (before, after))
-    values = {"before": number(abs(before)), "after": number(abs(after))}
+    values = {"before": length_number(abs(before)), "after": length(abs(after))}
     if min(abs(before), abs(after)) < _SEEN:  # even has no side
         one = other = one if abs(before) >= abs(after) else other
     if one != other:
-        said = tr("{figure} {before} mm → {other} {after} mm")
+        said = tr("{figure} {before} → {other} {after}")
+        values["before"] = length(abs(before))
     return said.format(figure=one, other=other, **values)

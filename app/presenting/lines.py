@@ -9,8 +9,9 @@ from functools import cache
 
 from app.panels.line_view import LineView, SideView
 from app.seeing.band import band_width
+from app.wording.lengths import length
 from app.wording.tokens import LINE_COLORS
-from app.wording.words import listed, number, say, tr
+from app.wording.words import listed, say, tr
 from core.design import Design
 from core.design_lines import partner_of
 from core.leeway import Leeway
@@ -193,8 +194,8 @@ def _strap_words(tail: Tail) -> str:
     """Return where a strap goes on from its upper end, or why it does not."""
     if tail.problem:
         return tr("{why} It ends on the upper chest.").format(why=say(tail.problem))
-    words = tr("Over the shoulder to the under-bust band at the back; {mm} mm of it on the fixed body")
-    return words.format(mm=number(tail.length, 0))
+    words = tr("Over the shoulder to the under-bust band at the back; {length} of it on the fixed body")
+    return words.format(length=length(tail.length, 0))
 
 
 @cache

@@ -6,6 +6,7 @@ from collections.abc import Collection, Mapping
 
 from app.panels.measure_editor import Draft
 from app.presenting.scan import landmark_title
+from app.wording.lengths import length, length_number
 from app.wording.words import number, say, tr
 from core.design_measures import LONGEST_NAME, OwnMeasure
 from core.errors import UserError
@@ -23,15 +24,16 @@ def own_words(own: OwnMeasure) -> str:
         }
         return ways[own.kind].format(start=places[0], end=places[1])
     if not places:
-        height = number(own.level, 0)
-        return tr("Yours: a tape, level, {mm} mm above the lowest point of the scan.").format(mm=height)
+        return tr("Yours: a tape, level, {length} above the lowest point of the scan.").format(
+            length=length(own.level, 0)
+        )
     at, above, below = (
         tr("Yours: a tape, level, at {place}."),
-        tr("Yours: a tape, level, {mm} mm above {place}."),
-        tr("Yours: a tape, level, {mm} mm below {place}."),
+        tr("Yours: a tape, level, {length} above {place}."),
+        tr("Yours: a tape, level, {length} below {place}."),
     )
     words = above if own.level > 0.0 else below if own.level < 0.0 else at
-    return words.format(place=places[0], mm=number(abs(own.level), 0))
+    return words.format(place=places[0], length=length(abs(own.level), 0))
 
 
 def draft_of(own: OwnMeasure) -> Draft:
@@ -75,14 +77,14 @@ def said_of(before: Measure, after: Measure) -> tuple[str, str, str]:
     """Return what a measure is now, what is said of it, and what is doubtful in it or why it is missing."""
     if before.value is None or after.value is None:
         return "", "", say(before.note or after.note)
-    values = " → ".join(number(value) for value in (before.value, after.value))
-    said = tr("before → after, {change} mm").format(
-        change=number(round(after.value, 1) - round(before.value, 1), signed=True)
+    values = f"{length_number(before.value)} → {length(after.value)}"
+    said = tr("before → after, {change}").format(
+        change=length(round(after.value, 1) - round(before.value, 1), signed=True)
     )
     sure = min(before.confidence, after.confidence)
     unsure = tr("What it is taken from is sure to {percent} %").format(percent=number(100 * sure, 0))
     doubts = (unsure if sure < CERTAIN else "", say(after.note))
-    return f"{values} mm", said, "\n".join(each for each in doubts if each)
+    return values, said, "\n".join(each for each in doubts if each)
 
 
 def _free(name: str, taken: Collection[str]) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 
 from app.panels.worn_page import FigureRow, NumberRow
 from app.presenting.lines import told_title
+from app.wording.lengths import length, length_number
 from app.wording.words import joined, listed, number, tr
 from core.calibration import CalibrationResult, Difference, Figures, Worn
 from core.design import Design
@@ -20,10 +21,10 @@ def aligned_words(worn: Worn) -> str:
     """Return how well a worn scan lies on the first, in a sentence or two."""
     laid = worn.alignment
     met = tr(
-        "{share} % of the skin that no line moves lies within 5 mm of it, {mm} mm off as a rule."
-    ).format(share=number(100.0 * laid.met, 0), mm=number(laid.rms, 1))
-    sure = tr("Sure to ±{turn}° and ±{mm} mm.").format(
-        turn=number(2.0 * float(laid.turns.max()), 2), mm=number(2.0 * float(laid.shifts.max()), 1)
+        "{share} % of the skin that no line moves lies within 5 mm of it, {length} off as a rule."
+    ).format(share=number(100.0 * laid.met, 0), length=length(laid.rms))
+    sure = tr("Sure to ±{turn}° and ±{length}.").format(
+        turn=number(2.0 * float(laid.turns.max()), 2), length=length(2.0 * float(laid.shifts.max()))
     )
     return joined([met, sure])
 
@@ -39,7 +40,7 @@ def figure_rows(difference: Difference) -> tuple[FigureRow, ...]:
 def _figures(figures: Figures) -> tuple[str, str, str]:
     if not np.isfinite(figures.rms):
         return "–", "–", "–"
-    return number(figures.mean, 1, True), number(figures.rms, 1), number(figures.most, 1)
+    return length_number(figures.mean, 1, True), length_number(figures.rms), length_number(figures.most)
 
 
 def map_values(difference: Difference | None, count: int) -> Floats:
@@ -62,11 +63,11 @@ def bust_words(difference: Difference) -> str:
         named[side].format(
             way=_way(
                 float(way[2]),
-                tr("{mm} mm higher (±{sure} mm)"),
-                tr("{mm} mm lower (±{sure} mm)"),
+                tr("{length} higher (±{sure})"),
+                tr("{length} lower (±{sure})"),
                 difference.bust_unsure[side],
             ),
-            out=_way(-float(way[1]), tr("{mm} mm further out"), tr("{mm} mm less far out")),
+            out=_way(-float(way[1]), tr("{length} further out"), tr("{length} less far out")),
         )
         for side, way in difference.bust_points.items()
     ]
@@ -74,7 +75,7 @@ def bust_words(difference: Difference) -> str:
 
 
 def _way(mm: float, more: str, less: str, sure: float = 0.0) -> str:
-    return (less if round(mm, 1) < 0.0 else more).format(mm=number(abs(mm), 1), sure=number(sure, 1))
+    return (less if round(mm, 1) < 0.0 else more).format(length=length(abs(mm)), sure=length(sure))
 
 
 def told_words(difference: Difference) -> str:
@@ -158,10 +159,10 @@ def better_words(found: CalibrationResult, design: Design) -> str:
             "Not found: {numbers} went to the end of what may be. Is this the scan with the garment on, and "
             "are these its lines?"
         ).format(numbers=names)
-    before, after = (number(each.all_of_it.rms, 1) for each in (found.before, found.after))
+    before, after = (length(each.all_of_it.rms) for each in (found.before, found.after))
     if not found.helped:
-        return tr("No number moved by more than its ±: it stays at {before} mm.").format(before=before)
-    nearer = tr("Predicted less real: {before} → {after} mm.").format(before=before, after=after)
+        return tr("No number moved by more than its ±: it stays at {before}.").format(before=before)
+    nearer = tr("Predicted less real: {before} → {after}.").format(before=before, after=after)
     left = tr("Most of it remains: posture, breath or cloth may have made these numbers.")
     weak = tr("None of these numbers is told well: take them as a hint.")
     return joined([nearer, left if found.explains_little else "", weak if found.weak else ""])
@@ -171,8 +172,8 @@ def record_words(record: Calibration | None) -> str:
     """Return what a design keeps of a calibration, in a line; nothing if there was none."""
     if record is None:
         return ""
-    return tr("Calibrated on {file}: {before} → {after} mm.").format(
-        file=record.worn, before=number(record.rms_before, 1), after=number(record.rms_after, 1)
+    return tr("Calibrated on {file}: {before} → {after}.").format(
+        file=record.worn, before=length(record.rms_before), after=length(record.rms_after)
     )
 
 

@@ -21,6 +21,7 @@ from app.showing.plot_curves import Curve, Event
 from app.showing.plot_legend import Entry, Legend, legend_entries, legend_width, run_title
 from app.showing.tracks import Exact, Track, error_quantities, height_quantities, tolerance_of
 from app.showing.verdict_chip import VerdictChip, VerdictLine
+from app.wording.lengths import shown_value
 from app.wording.words import tr
 
 _HIGH, _LOW, _FOLDED = 184, 150, 36
@@ -137,13 +138,14 @@ class Strip(QWidget):
         is_main, some = main == "exact", tracks.get(main) or next(iter(tracks.values()), None)
         for plot in self.plots:
             quantity = plot.quantity.name
+            scale = shown_value(1.0, "mm" if quantity.endswith("_mm") else "")
             curves = [
-                Curve(track.turns, getattr(track, quantity), roles[name], run_title(name))
+                Curve(track.turns, scale * getattr(track, quantity), roles[name], run_title(name))
                 for name, track in tracks.items()
             ]
             plot.set_curves(
                 curves,
-                None if exact is None else getattr(exact, quantity),
+                None if exact is None else scale * getattr(exact, quantity),
                 exact_is_main=is_main,
                 tolerance=tolerance_of(quantity, some),
                 events=self._events,

@@ -8,6 +8,7 @@ import numpy as np
 
 from app.showing.live_plot import Quantity
 from app.showing.plot_curves import Numbers
+from app.wording.lengths import length_unit, shown_value
 from app.wording.words import tr
 
 TOLERANCE_PERCENT = 0.1
@@ -44,8 +45,8 @@ def error_quantities() -> tuple[Quantity, ...]:
 def height_quantities() -> tuple[Quantity, ...]:
     """Return which height can be plotted: it is counted from that of the body at rest."""
     return (
-        Quantity("bust_mm", tr("Bust point height"), "mm", 2.0),
-        Quantity("apex_mm", tr("Foremost place, height"), "mm", 2.0),
+        Quantity("bust_mm", tr("Bust point height"), length_unit(), shown_value(2.0)),
+        Quantity("apex_mm", tr("Foremost place, height"), length_unit(), shown_value(2.0)),
     )
 
 

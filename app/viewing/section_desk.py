@@ -19,7 +19,8 @@ from app.showing.plane_handle import PlaneHandle
 from app.showing.profile_plot import Drawn
 from app.showing.viewport import Viewport
 from app.viewing.section_marks import apex_pairs, bands, bust_points, home, most_off, side_of
-from app.wording.words import number, tr
+from app.wording.lengths import length
+from app.wording.words import tr
 from core.errors import UserError
 from core.export import write_profile
 from core.live import Frame
@@ -273,4 +274,4 @@ class SectionDesk(QObject):
         away = np.linalg.norm(plot.to_pixels(foot.place) - plot.to_pixels(place))
         gap = stand_out(foot, self.curves["other" if "other" in self.curves else "before"])
         if away < _NEAR and gap is not None:
-            plot.show_gap(gap[0], foot.place, f"{number(gap[1], 1, signed=True)} mm")
+            plot.show_gap(gap[0], foot.place, length(gap[1], signed=True))

@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from app.panels.measure_view import plus_minus
+from app.panels.measure_view import length_off
 from app.presenting.body_now import BodyNow
 from app.presenting.bust import bust_move
+from app.wording.lengths import length_unit
 from core.measuring.plus_minus import Spread
 from core.mesh import Floats
 from core.profile import Curve, Plane, Slicer, apexes
@@ -85,7 +86,7 @@ def most_off(
     if not found:
         return None
     place, way, most = max(found, key=lambda each: each[2])
-    return place, way, f"{plus_minus(most)} mm"
+    return place, way, f"{length_off(most)} {length_unit()}"
 
 
 def _round(curve: Curve, off: Floats) -> Floats:
