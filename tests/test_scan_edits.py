@@ -12,6 +12,8 @@ from scipy.spatial import cKDTree
 from shapes import SAMPLES
 from test_mending import is_sound, pierced
 
+from app.commands.even import run_even
+from app.presenting.even import even_summary
 from core.body import read_scan
 from core.cleaning.clipping import above, mirrored_half
 from core.cleaning.edits import ScanEdits
@@ -177,3 +179,11 @@ def test_a_crop_without_a_bust_is_refused_and_the_last_build_is_reused(person):
     assert build(Design(source), cropped).body.mesh.faces.shape == stages.body.mesh.faces.shape
     with pytest.raises(LandmarkError):
         edited(person, ScanEdits(low=5000.0))
+
+
+def test_the_symmetry_of_a_mirrored_body_comes_with_the_warning():
+    source = ScanSource(str(SAMPLES / "person.ply"), edits=ScanEdits(kept="right"))
+    found = run_even(source.path, Design(source), (), (), make=False)
+    assert found.told.before.furthest < 0.5
+    assert mirror_sentence("right") in found.warnings
+    assert mirror_sentence("right") in even_summary(found.told, found.stages).says

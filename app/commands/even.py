@@ -17,6 +17,7 @@ from core.advice.parting import ENOUGH
 from core.backups import backed_up
 from core.design import Design
 from core.document import Document
+from core.doubts import edit_doubts
 from core.errors import UserError
 from core.evenness import BeforeAfter, Evenness, EvenRow, even_rows, evenness
 from core.pipeline import Stages, build
@@ -94,7 +95,8 @@ def run_even(
     stages = build(made_of(dressed(design, stages.model.lines, lengths), elastics), stages)
     solution = run_to_body(stages)
     told = evenness(stages, solution.control_points)
-    even = Even(stages, told, _settled(solution), shape_warnings(solution))
+    warnings = [*edit_doubts(stages.body), *shape_warnings(solution)]
+    even = Even(stages, told, _settled(solution), warnings)
     if make and not even.enough:
         made = make_even(stages)
         # The adaptive control keeps both volumes together and the exact answer each: they do not compare.

@@ -17,6 +17,7 @@ from core.aims.even import FURTHER_OUT, HIGHER
 from core.aims.figure import Goal
 from core.aims.outline import section_of
 from core.design import Design
+from core.doubts import edit_doubts
 from core.evenness import BeforeAfter, Evenness, EvenRow, even_rows
 from core.measuring.plus_minus import AFTER, Spread
 from core.pipeline import Stages
@@ -46,8 +47,9 @@ def even_summary(
     rows = {row.key: row for row in even_rows(told.before, told.after)}
     hint, possible = _hint(stages, now) if not doubt else (doubt, False)
     offs = _offs(spread)
+    said = _sentence(now, {}, tr("Bust points before: {how}.")) if doubt else _sentence(now, offs)
     return EvenSummary(
-        _sentence(now, {}, tr("Bust points before: {how}.")) if doubt else _sentence(now, offs),
+        joined((*map(say, edit_doubts(stages.body)), said)),
         tuple(_view(rows[key], bool(doubt), offs.get(key)) for key in _titles()),
         (*map(say, told.notes), *_rests_on()),
         hint,
