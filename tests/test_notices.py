@@ -88,3 +88,16 @@ def test_a_wide_button_stands_under_the_words_and_a_short_one_beside_them(qtbot:
         QApplication.processEvents()
         assert one.y() <= bar.unfold.y() + 10, "where there is room it stands beside them"
         bar.close_notice()
+
+
+def test_no_button_is_cut_off(qtbot: QtBot) -> None:
+    bar = NoticeBar()
+    qtbot.addWidget(bar)
+    words = ["Lengthen Mid-bust by 37.1 mm", "Lengthen Mid-bust by 2.6 mm"]
+    bar.show_notice("warn", "It is strained.", actions=[(each, print) for each in words], details="Figures")
+    for width, seen in ((420, 1), (680, 2), (420, 1)):
+        bar.set_room(width, 600)
+        QApplication.processEvents()
+        shown = [each for each in bar._buttons if not each.isHidden()]
+        assert len(shown) == seen
+        assert all(each.width() >= each.sizeHint().width() for each in shown)

@@ -260,10 +260,14 @@ class NoticeBar(FloatingPanel):
         wide = self.width() - taken < _LEAST_WORDS
         row, other = (self._below, self._row) if wide else (self._row, self._below)
         first = 0 if wide else self._row.count() - 2 - sum(self._row.indexOf(b) >= 0 for b in self._buttons)
+        left, _, right, _ = self.row.getContentsMargins()
+        room = self.width() - left - right - self._below.contentsMargins().left()
         for place, each in enumerate(self._buttons):
             other.removeWidget(each)
             row.removeWidget(each)
             row.insertWidget(first + place, each)
+            room -= each.sizeHint().width() + 8
+            each.setVisible(not wide or place == 0 or room >= 0)  # a word cut in half offers nothing
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
