@@ -260,8 +260,8 @@ class NoticeBar(FloatingPanel):
         wide = self.width() - taken < _LEAST_WORDS
         row, other = (self._below, self._row) if wide else (self._row, self._below)
         first = 0 if wide else self._row.count() - 2 - sum(self._row.indexOf(b) >= 0 for b in self._buttons)
-        left, _, right, _ = self.row.getContentsMargins()
-        room = self.width() - left - right - self._below.contentsMargins().left()
+        aside = self.row.contentsMargins(), self._below.contentsMargins()
+        room = self.width() - sum(each.left() + each.right() for each in aside)
         for place, each in enumerate(self._buttons):
             other.removeWidget(each)
             row.removeWidget(each)
