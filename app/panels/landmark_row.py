@@ -21,6 +21,7 @@ from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 from app.dress.parts import paint_card
 from app.dress.theme import font, tokens_of, tone_of
 from app.dress.tip import set_tip
+from app.wording.lengths import length
 from app.wording.words import say, tr
 from core.landmark import CERTAIN
 
@@ -72,7 +73,7 @@ class LandmarkView:
         if self.absent:
             return tr("not found")
         if self.by_hand:
-            off = tr("by hand, {mm} mm off").format(mm=f"{self.off_mm:.0f}")
+            off = tr("by hand, {length} off").format(length=length(self.off_mm, 0))
             return off if self.off_mm else tr("by hand")
         return f"{self.confidence * 100:.0f} %"
 

@@ -12,7 +12,8 @@ from app.dress.parts import Segment, button, hairline, sentence
 from app.dress.theme import label
 from app.dress.tip import set_tip
 from app.panels.figure_field import FigureField
-from app.wording.words import joined, number, say, tr
+from app.wording.lengths import length
+from app.wording.words import joined, say, tr
 from core.cleaning.edits import UNEDITED, ScanEdits
 from core.errors import UserError
 
@@ -94,7 +95,7 @@ class ScanEditor(QWidget):
         self._view, edits = view, view.edits
         self.low.show_value(edits.low or 0.0)
         self.high.show_value(view.height if edits.high is None else edits.high)
-        self._extent.setText(tr("of {height} mm").format(height=number(view.height, 0)))
+        self._extent.setText(tr("of {height}").format(height=length(view.height, 0)))
         self.sides.set_choice(edits.kept)
         for row in self.fills:
             self._list.removeWidget(row)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from app.presenting.asking import figure_title, is_signed
 from app.presenting.lines import told_title
+from app.wording.lengths import length
 from app.wording.words import listed, number, tr
 from core.aims.outline import section_of
 from core.design import Design
@@ -36,8 +37,8 @@ def _sentence(conflict: Conflict) -> str:
 
 
 def _value(name: str, value: float) -> str:
-    words = tr("{mm} mm off") if section_of(name) else tr("{mm} mm")
-    return words.format(mm=number(value, 1, signed=is_signed(name)))
+    size = length(value, 1, signed=is_signed(name))
+    return tr("{length} off").format(length=size) if section_of(name) else size
 
 
 def switched_words(before: Design, after: Design) -> str:

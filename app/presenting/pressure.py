@@ -8,6 +8,7 @@ from app.panels.garment_view import PressureView
 from app.panels.line_view import LineView
 from app.panels.pressure_card import TONES, LightLimits, PressureSummary
 from app.presenting.lines import line_colours, line_title, titled
+from app.wording.lengths import length
 from app.wording.words import joined, language, listed, number, say, tr
 from core.design import Design
 from core.press_list import PressList, PressRow
@@ -106,9 +107,9 @@ def side_words(where: str) -> str:
 
 def place_words(row: PressRow) -> str:
     """Return where a line presses most, in words."""
-    height = number(row.height_mm or 0.0, 0)
-    words = tr("{side}, {mm} mm above the lowest point of the scan")
-    return words.format(side=side_words(row.where), mm=height)
+    height = length(row.height_mm or 0.0, 0)
+    words = tr("{side}, {length} above the lowest point of the scan")
+    return words.format(side=side_words(row.where), length=height)
 
 
 def pressure_summary(listed: PressList | None, design: Design, doubt: str = "") -> PressureSummary:

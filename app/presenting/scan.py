@@ -7,7 +7,8 @@ from collections.abc import Collection, Mapping
 from app.panels.landmark_row import LandmarkView
 from app.panels.scan import ScanView
 from app.panels.scan_edits import EditsView, HoleView
-from app.wording.words import number, say, tr
+from app.wording.lengths import length
+from app.wording.words import say, tr
 from core.body import Body
 from core.cleaning.holes import NAMED, hole_sentence, hole_sentences
 from core.design import ScanSource
@@ -140,8 +141,7 @@ def _copy_notes(body: Body) -> tuple[str, ...]:
         return ()
     if len(body.calm.faces) != len(body.mesh.faces):
         return (tr("It is so fine that a thinned copy is measured."),)
-    noise = number(body.noise, 1)
-    return (tr("It is noisy, by {noise} mm: a smoothed copy is measured.").format(noise=noise),)
+    return (tr("It is noisy, by {noise}: a smoothed copy is measured.").format(noise=length(body.noise)),)
 
 
 def work_words(what: str) -> str:
