@@ -15,7 +15,7 @@ SYNONYMS = {
     "Reset to scan": "clear remove all off zero 初期化 リセット",
     "Variant A": "compare alternative version 比較 バリエーション",
     "Variants side by side": "compare alternatives 比較 バリエーション",
-    "Preferences…": "settings options setup language theme units 設定 オプション 言語 テーマ 単位",
+    "Preferences…": "settings setup language units mm cm inch theme 設定 オプション 言語 テーマ 単位 インチ",
     "日本語": "japanese nihongo language 言語",
     "English": "英語 language 言語",
     "Before / after": "compare difference 比較 違い",
