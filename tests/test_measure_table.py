@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from PySide6.QtCore import QRect
@@ -74,5 +72,3 @@ def test_a_length_says_that_no_plus_minus_is_worked_out() -> None:
     assert "lengths of lines too, only the bust points have a ±" in line.told()
     assert girth.off[1] is not None
     assert "lengths of lines" not in girth.told()
-    _, early = spread_views([GIRTH, LINE], replace(known, contact=""), faint=True)
-    assert early == LINE, "it may be still to come, for all that is seen"

@@ -236,10 +236,13 @@ def test_a_force_that_is_off_by_more_than_itself_is_told_from_nothing_on(told: l
     assert sure.plus_minus(key) == pytest.approx(2.0 * hypot(1.0, 0.1))
 
 
-def test_a_line_that_pushes_is_told_between_two_figures_in_order(told: list[Spread]) -> None:
+@pytest.mark.parametrize(("value", "ends"), [(-1.0, (0.0, 0.0)), (0.5, (0.0, 1.3)), (2.0, (1.2, 2.8))])
+def test_the_range_of_a_tension_ends_where_a_band_would_have_to_push(
+    told: list[Spread], value: float, ends: tuple[float, float]
+) -> None:
     key = "tension:mid-bust"
-    pushed = replace(told[-1], doubts={key: Doubt({"tape": 0.4})}, figures={key: -1.0})
-    assert pushed.between(key, -1.0) == pytest.approx((-1.8, -0.2))
+    doubtful = replace(told[-1], doubts={key: Doubt({"tape": 0.4})}, figures={key: value})
+    assert doubtful.between(key, value) == pytest.approx(ends)
 
 
 def test_what_hangs_on_landmarks_of_which_nobody_knows_how_sure_they_are_has_no_spread(plain: Stages) -> None:
