@@ -34,9 +34,8 @@ def test_all_files_of_a_project_at_once(tmp_path, anna, capsys):
     turn = ["--turntable", str(tmp_path / "t.gif"), "--frames", "2", "--size", "64x64"]
     assert main(["export", anna, *words, *turn]) == 0
     said = capsys.readouterr()
-    assert [line.partition(": ")[0] for line in said.out.splitlines()] == [
-        str(tmp_path / name) for name in [*names.values(), "t.gif"]
-    ]
+    written = [str(tmp_path / name) for name in [*names.values(), "t.gif"]]
+    assert [line.partition(": ")[0] for line in said.out.splitlines()][: len(written)] == written
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted([*names.values(), "t.gif"])
     body, control = (trimesh.load_mesh(tmp_path / names[what]) for what in ("body", "control"))
     assert 0.4 < body.extents[1] < 0.7  # metres, y up

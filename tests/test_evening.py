@@ -36,7 +36,7 @@ def plain() -> Stages:
 def uneven(plain: Stages) -> Stages:
     """Straps of two lengths under a split mid-bust line."""
     design = split(plain.design.with_line("mid-bust", 0.95), TEMPLATE, "mid-bust")
-    design = design.with_line("strap left", 0.9).with_line("strap right", 0.97)
+    design = design.with_line("strap left", 0.975).with_line("strap right", 0.993)
     return build(design, plain)
 
 
@@ -104,12 +104,11 @@ def test_what_brings_less_than_it_takes_away_is_not_worth_it(person: Stages) -> 
 def test_what_is_to_stay_is_let_go_of_for_what_is_even(person: Stages) -> None:
     design = person.design.with_line("mid-bust", 0.97).with_line("full-bust", 0.97)
     for line in ready_made(TEMPLATE)["straps"]:
-        design = design.with_own_line(line).with_line(line.name, 0.97)
+        design = design.with_own_line(line).with_line(line.name, 0.99)
     made = make_even(build(design, person))
-    assert made.even
     assert made.goals == EVEN
     assert made.worth
-    # With the lift kept it would be even too, and the bust points 8 mm further in.
+    assert made.after.furthest < 0.1 * made.before.furthest
     assert made.lost < 0.5 * made.gained
 
 

@@ -11,18 +11,16 @@ from pdf_tools import Pdf
 from PySide6.QtGui import QImage
 
 from app.dress.theme import load_fonts
-from app.reporting.grounds import cut_notes
+from app.reporting.cut_rows import line_notes
 from app.reporting.handout import SHOTS, Handout
 from app.reporting.pages import pages_of
 from app.reporting.pdf import write_pdf
-from app.reporting.telling import cut_views, shared_notes
 from core.design_lines import LineTraits
 from core.pipeline import Stages, build
 from core.presets import built_in, with_preset
 from core.sheet import Heading, Sheet, sheet_of
 from core.solution import run
 
-NO_ELASTIC = "No elastic is chosen for it: choose one to get its length to cut."
 LONG = "Upper edge of the cup, laid double, left"
 
 
@@ -48,23 +46,21 @@ def test_no_name_of_a_line_is_cut(bra: Sheet, tmp_path: Path) -> None:
     english, japanese = (printed(bra, tmp_path / f"{words}.pdf", words).text() for words in ("en", "ja"))
     assert all(name in english for name in ("Mid-bust", LONG, "Strap right"))
     assert all(name in japanese for name in ("バスト下部", "ストラップ右"))
-    assert "…" not in english.partition("Cut list")[2].partition("Tension and pressure")[0]
+    assert "…" not in english.partition("To cut")[2].partition("Notes")[0]
 
 
 def test_what_is_noted_of_every_line_is_said_once(bra: Sheet) -> None:
-    views, footnotes = cut_views(bra, [])
-    assert NO_ELASTIC in shared_notes(bra)
-    assert not set(shared_notes(bra)) & set(footnotes)
-    assert f"Each line: {NO_ELASTIC}" in cut_notes(bra)
-    for view in views:
-        told = [footnotes[mark - 1] for mark in view.marks]
-        assert any("95 %" in note for note in told), "what is its own stays its own"
+    (title, shared), *own = line_notes(bra, [])
+    assert title == ""
+    assert shared
+    assert not {note for _, notes in own for note in notes} & set(shared)
     one = replace(bra, cuts=replace(bra.cuts, rows=bra.cuts.rows[:1]), pressures=bra.pressures[:1])
-    assert shared_notes(one) == []
-    assert NO_ELASTIC in cut_views(one, [])[1]
+    assert [title for title, _ in line_notes(one, [])] == ["Mid-bust"]
 
 
-def test_strained_skin_is_amber_and_says_how_far(built: Callable[[str], Stages], tmp_path: Path) -> None:
+def test_strained_skin_heads_the_sheet_and_says_how_far(
+    built: Callable[[str], Stages], tmp_path: Path
+) -> None:
     load_fonts()
     stages = built("mannequin")
     design = replace(stages.design, volume="exact")
@@ -72,19 +68,7 @@ def test_strained_skin_is_amber_and_says_how_far(built: Callable[[str], Stages],
     sheet = sheet_of(shown, shown.records, Heading("anna", "2026-01-31"))
     assert sheet.state == "strained"
     assert sheet.strain == shown.verdict.strain is not None
-    calm = replace(sheet, state="settled", strain=None)
-    said = printed(sheet, tmp_path / "strained.pdf")
-    assert "over 20 %" in said.text()
-    assert "20 % 超" in printed(sheet, tmp_path / "ja.pdf", "ja").text()
-    assert "over 20 %" not in printed(calm, tmp_path / "calm.pdf").text()
-    assert reddish(said) > 0.0 > reddish(Pdf(tmp_path / "calm.pdf")), "a triangle in amber, a green tick"
-
-
-def reddish(pdf: Pdf) -> float:
-    """How much more red than green there is beside the word for the state, at the top right."""
-    (word,) = (piece for piece in pdf.pieces(0) if piece.text in ("Settled, strained", "Settled"))
-    dot = 300.0 / 25.4
-    top, bottom = round((word.top - 1.0) * dot), round((word.bottom + 1.0) * dot)
-    left, right = round((word.left - 5.0) * dot), round((word.left - 0.8) * dot)
-    mark = pdf.pixels(0, 300)[top:bottom, left:right].astype(float)
-    return float((mark[..., 2] - mark[..., 1]).mean())  # blue, green, red
+    said = printed(sheet, tmp_path / "strained.pdf").text()
+    assert "Do not use" in said
+    assert "over 20 %" in said
+    assert "使用不可" in printed(sheet, tmp_path / "ja.pdf", "ja").text()

@@ -82,6 +82,8 @@ def test_a_long_name_of_ones_own_keeps_the_columns(person: Path, capsys: pytest.
 def test_text_and_table_tell_the_same(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["measure", str(project)]) == 0
     text = capsys.readouterr().out.splitlines()
+    assert text[0].startswith("Verdict: ")
+    text = text[next(row for row, line in enumerate(text) if "before" in line) :]
     assert main(["measure", str(project), "--csv"]) == 0
     rows = list(csv.DictReader(capsys.readouterr().out.splitlines()))
     assert len(text) == len(rows) + 1

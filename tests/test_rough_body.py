@@ -161,5 +161,5 @@ def test_the_view_draws_every_detail_only_of_what_is_seen_near(qtbot, ball, monk
     view.close_view()
 
 
-def _refuse(*_: object) -> None:
+def _refuse(*_: object, **__: object) -> None:
     raise AssertionError("laid again")

@@ -11,7 +11,7 @@ from core.body import body_of, read_scan
 from core.cleaning.holes import MOST, find_holes, frame_of
 from core.errors import LandmarkError, ScanError
 from core.finding.breast_profile import LONGEST, profiles
-from core.finding.chest import ABOVE, find_anchor, find_poles
+from core.finding.chest import ABOVE, Pole, find_anchor, find_poles
 from core.finding.relief import breast_patch
 from core.measuring.rings import skin_ring, tape_ring
 from core.mesh import Mesh
@@ -129,9 +129,10 @@ def test_points_on_the_border_of_the_search_for_poles_are_inside():
 
 def test_a_breast_of_a_few_points_is_refused():
     corners = np.array([[0.0, -100.0, 0.0], [90.0, -100.0, 0.0], [0.0, -100.0, 90.0]])
+    place = np.array([0.0, -100.0, 0.0])
     for vertices in (corners, 1000.0 + corners):
         with pytest.raises(LandmarkError, match="skin of a breast is missing"):
-            breast_patch(Mesh(vertices, np.array([[0, 1, 2]])), np.array([0.0, -100.0, 0.0]))
+            breast_patch(Mesh(vertices, np.array([[0, 1, 2]])), Pole(place, 20.0, True, place, 1.0))
 
 
 @pytest.mark.parametrize("shape", ["0 0 0", "0 0 {k}", "{k}e-200 {j}e-200 0"])

@@ -166,7 +166,7 @@ def test_a_linked_pair_is_made_of_the_same_in_one_step() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
         window.line_maker.add("straps")
-        window.lines_desk.commit_length("strap left", 0.97)
+        window.lines_desk.commit_length("strap left", 0.9915)
         window.inspector.open("garment")
         yield at_rest(window)
         steps, before = window.session.undo_stack.count(), cut_rows(window)

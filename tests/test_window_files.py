@@ -128,7 +128,7 @@ def test_an_export_that_failed_is_told_until_it_succeeds(
         window.actions_.export.trigger()
         yield lambda: tone() == "ok"
         window.notices.close_notice()
-        assert tone() == "", "nothing waits behind it"
+        assert tone() in ("", "warn"), "no failure waits behind it"
         window.session.open("resources/samples/person.ply")
         yield lambda: window.session.name == "person"
         assert window.status._saved.text() == "", "this one was never saved"

@@ -83,10 +83,10 @@ def test_an_export_is_named_and_can_be_left_by_card_key_and_status_bar(
             yield jobs_end
             assert len(left) == count
             assert body.read_text() == "what stood there"
-            assert window.notices.notice() is None
+            assert window.notices.notice().tone == "warn", "the verdict alone, no file is reported"
         monkeypatch.setattr(app.exporting.ready, "write_mesh", write)
         window.actions_.export.trigger()
-        yield lambda: window.notices.notice() is not None
+        yield lambda: window.notices.notice().tone == "ok"
         assert body.read_bytes().startswith(b"ply")
 
     run_main([], script)

@@ -34,7 +34,7 @@ BOTTOM = A4[1] - MARGIN - 6.0
 
 _GAP = 5.0  # over the key measures, and under the curves [mm]
 _SMALLER = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5)  # of the height of the pictures, until the first page holds all
-_CURVES = (100.0, 84.0, 70.0, 60.0)  # heights of the curves at the head of the appendix [mm]
+_CURVES = (100.0, 84.0, 70.0, 60.0, 50.0, 42.0)  # heights of the curves at the head of the appendix [mm]
 
 
 @dataclass(frozen=True, eq=False)

@@ -48,6 +48,9 @@ FLAT_SLOPE, FLAT_RUN, FLAT_AROUND, FAINT = 0.45, 42.0, 0.17, 0.3
 """So is one that stands out by less than this part of its drop to a fold that is hardly seen, and less than
 so far, and is wider than the trunk by less than this part [1, mm, 1, 1]."""
 
+SHALLOW = 24.0
+"""So is one that stands out by less than this [mm], and by less than that part of its drop."""
+
 WRINKLED, CREASED = 3.5, 2.4
 """Upright waves of the skin under the bust [mm, root of the mean square]: bodies have 3.3 at most. The lesser
 is enough where cloth hides the folds as well."""
@@ -103,6 +106,7 @@ def flat_hint(mesh: Mesh, landmarks: Landmarks) -> tuple[Hint, ...]:
     depth, drop = _breast(landmarks)
     seen = max(landmarks.points[f"fold_{side}"].confidence for side in SIDES)
     low = more < FLAT_GIRTH * under.tape and depth < FLAT_DEPTH
+    low |= depth < min(FLAT_SLOPE * drop, SHALLOW)
     hung = depth < min(FLAT_SLOPE * drop, FLAT_RUN) and seen < FAINT and more < FLAT_AROUND * under.tape
     if not (low or hung):
         return ()
