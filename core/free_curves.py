@@ -19,6 +19,9 @@ from core.snapping import STEP, off_by
 _STEPS = (6.0, 3.0, 1.5)
 """How far apart the vertices of a free line are [mm]: the first that keeps the curve."""
 
+HANGS = 0.05
+"""A vertex hangs on control points that can move if their weights are more than this together [1]."""
+
 _KEPT = 0.5  # a line this near to the curve that was drawn keeps it [mm]
 
 
@@ -74,7 +77,7 @@ def _curve(
     embedded = embed(control.grid, places + places[:1] * closed)
     shown = skin_places(skin, control.mesh, embedded.weights)
     free = np.flatnonzero(~control.fixed)
-    pulls = bool(abs(embedded.weights[:, free]).sum() > 0.0)
+    pulls = bool(abs(embedded.weights[:, free]).sum(axis=1).max() > HANGS)
     off = off_by(resample(curve[inner], 1.0), shown)
     return FreeCurve(places, closed, shown, off, pulls, len(kept) < len(curve))
 

@@ -164,7 +164,7 @@ class _Stager:
     def inside(self, what: str, share: float) -> None:
         """Hear how far the reading of the scan is, which comes first."""
         start, end = READING.get(what, (0.0, 1.0))
-        self._progress(what, SHARES["read scan"] * (start + share * (end - start)))
+        self._progress(what, (SHARES["read scan"] + SHARES["edit scan"]) * (start + share * (end - start)))
 
 
 def _same(old: tuple[Any, ...], new: tuple[Any, ...]) -> bool:

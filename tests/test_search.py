@@ -34,7 +34,7 @@ def test_what_a_designer_types_is_found() -> None:
 
         assert first("lif") == "Map on the body"
         assert first("リフト")
-        assert first("unit") == first("インチ") == "Scan"
+        assert first("unit") == first("インチ") == "Preferences"
         assert first("prin") == "Print the picture"
         for typed in ("waist", "bust", "report", "cup", "ＳＴＬ", "断面", "カップ", "レポート", "symm"):
             assert first(typed), typed

@@ -98,9 +98,9 @@ def test_a_scan_that_cannot_go_on_is_read_once_however_many_pins_it_takes(
     mannequin: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     read: list[Any] = []
-    reading = core.pipeline.read_body
+    reading = core.pipeline._read_upright
     monkeypatch.setattr(core.pipeline, "find", partial(nothing_unless_placed, needed=2))
-    monkeypatch.setattr(core.pipeline, "read_body", lambda *a, **b: (read.append(a), reading(*a, **b))[1])
+    monkeypatch.setattr(core.pipeline, "_read_upright", lambda *a, **b: (read.append(a), reading(*a, **b))[1])
 
     def script(window: MainWindow) -> Script:
         desk, panel = window.scan_desk, window.landmarks
