@@ -45,24 +45,27 @@ class DrawCard(FloatingPanel):
         self.move_ = button(tr("Move it where it can pull"))
         self.move_.hide()
         self.move_.clicked.connect(self.moved)
-        foot = QHBoxLayout()
-        foot.setSpacing(8)
         self.keep, self.undo = button(tr("Keep line"), "primary"), button(tr("One step back"), "quiet")
         for each in (self.keep, self.undo, self.move_):
             each.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click leaves the keys to the hand that draws
         self.keep.clicked.connect(self.kept)
         self.undo.clicked.connect(self.back)
-        foot.addStretch(1)
-        foot.addWidget(self.undo)
-        foot.addWidget(self.keep)
         column.addLayout(head)
         for part in (self._what, self.move_, self._keys, self.snap, self.both):
             column.addWidget(part)
         column.addSpacing(4)
-        column.addLayout(foot)
+        column.addLayout(self._foot())
         self.row.setContentsMargins(28, 20, 24, 28)
         self.row.addLayout(column)
         self.hide()
+
+    def _foot(self) -> QHBoxLayout:
+        foot = QHBoxLayout()
+        foot.setSpacing(8)
+        foot.addStretch(1)
+        foot.addWidget(self.undo)
+        foot.addWidget(self.keep)
+        return foot
 
     def say(self, title: str, what: str, keys: str) -> None:
         """Show a title, what to do or how the line lies, and the keys that do it."""

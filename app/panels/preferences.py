@@ -72,6 +72,14 @@ class PreferencesSheet(Sheet):
         self.changed.emit(key, str(chosen))
 
 
+def _autosave() -> Amount:
+    every = tr("What is not saved yet is kept aside this often, from {least} to {most} s.")
+    least, most = AUTOSAVE
+    unit = tr("{seconds} s").format(seconds="").strip()
+    said = every.format(least=least, most=most)
+    return Amount("autosave", tr("Autosave"), said, unit, 1.0, 0, (float(least), float(most)))
+
+
 def _groups() -> tuple[tuple[str, tuple[Setting, ...]], ...]:
     themes = (("system", tr("As the system")), ("light", tr("Light")), ("dark", tr("Dark")))
     units = (("mm", tr("Millimetres")), ("cm", tr("Centimetres")), ("in", tr("Inches")))
@@ -82,7 +90,6 @@ def _groups() -> tuple[tuple[str, tuple[Setting, ...]], ...]:
     turns = tr("How buttons and wheel turn, move and scale the body.")
     again = tr("In force when Busk is started again.")
     lengths = tr("On screen and in reports. In force when Busk is started again.")
-    every = tr("What is not saved yet is kept aside this often, from {least} to {most} s.")
     return (
         (
             tr("Window"),
@@ -101,18 +108,5 @@ def _groups() -> tuple[tuple[str, tuple[Setting, ...]], ...]:
                 Choice("motion", tr("Motion"), tr("Reduced: the view jumps where it would glide."), motions),
             ),
         ),
-        (
-            tr("Safety"),
-            (
-                Amount(
-                    "autosave",
-                    tr("Autosave"),
-                    every.format(least=AUTOSAVE[0], most=AUTOSAVE[1]),
-                    tr("{seconds} s").format(seconds="").strip(),
-                    1.0,
-                    0,
-                    (float(AUTOSAVE[0]), float(AUTOSAVE[1])),
-                ),
-            ),
-        ),
+        (tr("Safety"), (_autosave(),)),
     )
