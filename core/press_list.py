@@ -51,9 +51,15 @@ class PressList:
     worn: Mapping[str, LinePressure]
 
     @property
-    def force_n(self) -> float:
-        """All that all bands press with together, whichever way [N]."""
-        return sum(worn.force for worn in self.worn.values())
+    def force_n(self) -> float | None:
+        """All that the bands of known tension press with together, whichever way [N]; None without any."""
+        known = [row.force_n for row in self.rows if row.force_n is not None]
+        return sum(known) if known else None
+
+    @property
+    def complete(self) -> bool:
+        """Whether the tension of every line is known."""
+        return all(row.force_n is not None for row in self.rows)
 
     @property
     def hardest(self) -> PressRow | None:

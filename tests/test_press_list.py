@@ -77,6 +77,7 @@ def test_rows_say_what_the_bands_say(built: Callable[[str], Stages]) -> None:
         low = solution.body.vertices[:, 2].min()
         assert row.height_mm == pytest.approx(row.place[2] - low, abs=0.5)
     assert listed.force_n == pytest.approx(sum(band.force for band in worn.values()))
+    assert not listed.complete, "the under-bust line has no elastic"
     assert listed.hardest is rows["full-bust"]
 
 
@@ -149,6 +150,15 @@ def test_the_command_prints_limits_with_their_sources_and_what_is_left_out(
 def test_without_a_worn_line_there_is_nothing_to_press(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["press", SCAN]) == 2
     assert "No line is worn" in capsys.readouterr().err
+
+
+def test_the_total_of_unknown_tensions_is_not_printed_as_none(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["press", SCAN, "--line", "under-bust=90%"]) == 0
+    plain = capsys.readouterr().out
+    assert "Total force on the skin unknown" in plain
+    assert " 0.0 N" not in plain
+    assert main(["press", SCAN, "--line", "under-bust=90%", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["force_n"] is None
 
 
 def test_a_project_needs_no_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

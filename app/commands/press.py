@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields
 
 from app.commands.told import csv_text, told
 from app.commands.worn import Worn, run_worn
+from app.presenting.pressure import total_words
 from core import __version__
 from core.design import Design
 from core.press_list import PressList, PressRow, press_list
@@ -43,7 +44,6 @@ def _plain(found: Press) -> str:
         f"{'bridged mm':>11}  where most"
     )
     rows = [line for row in found.listed.rows for line in _lines(row)]
-    total = f"All bands together press on the skin with {found.listed.force_n:.1f} N."
     left_out = [f"  {sentence}" for sentence in LEFT_OUT]
     return "\n".join(
         [
@@ -52,7 +52,7 @@ def _plain(found: Press) -> str:
             heading,
             *rows,
             "",
-            total,
+            f"{total_words(found.listed)}.",
             *_limits(),
             "",
             "What the figures leave out:",

@@ -134,9 +134,19 @@ def pressure_summary(listed: PressList | None, design: Design, doubt: str = "") 
         place,
         f"{place_words(most)}\n{look}",
         joined((comfort().says(most.max_kpa).told(language()), *_unmeant(most))),
-        tr("All bands together press on the skin with {force} N").format(force=number(listed.force_n)),
+        total_words(listed),
         marks,
     )
+
+
+def total_words(listed: PressList) -> str:
+    """Return the total force of all bands on the skin in words: of those whose tension is known."""
+    if listed.force_n is None:
+        return tr("Total force on the skin unknown")
+    words = tr("Total force of all bands on the skin: {force} N")
+    if not listed.complete:
+        words = tr("Total force on the skin of the bands with known tension: {force} N")
+    return words.format(force=number(listed.force_n, 1))
 
 
 def _nothing(why: str) -> PressureSummary:
