@@ -17,7 +17,7 @@ CONTROLS = ("adaptive", "conventional", "accumulating", "exact", "none")
 _VIEW_MENUS = {
     "compare": ("ghost", "wipe", "side"),
     "looks": ("front", "left", "right", "back", "three-quarter", "top", "perspective"),
-    "layers": ("control-mesh", "landmarks", "bands", "section"),
+    "layers": ("control-mesh", "landmarks", "bands", "section", "colours"),
 }
 """What stands in a menu of its own within that of the view; the rest stands in that itself."""
 

@@ -246,6 +246,7 @@ class ViewArea(QWidget):
             self.tools.set_view(name)
 
     def _show_new(self, body: Body) -> None:
+        self.tools.actions_by_name["colours"].setEnabled(body.colours is not None)
         for panel in (self.tools, self.compare):
             panel.show()
         self._shades = None

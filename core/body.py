@@ -17,7 +17,8 @@ from core.cleaning.skin import Skin
 from core.errors import ScanError
 from core.mesh import Faces, Indices, Mesh, Points
 from core.progress import Progress, quiet
-from core.reading.raw_scan import RawScan
+from core.reading.colours import is_plain, laid_on
+from core.reading.raw_scan import Colours, RawScan
 from core.reading.scan_file import no_memory, read_raw, scan_bytes
 from core.reading.surface import FEWEST_POINTS, is_cloud, surface_of
 from core.standing.body_size import MILLIMETRES
@@ -33,7 +34,8 @@ class Body:
 
     ``rebuilt``: the file held points only, and the skin was laid through them. ``edits`` are those of the
     scan that were applied, ``cut`` the heights of its crop [mm], ``estimated`` the vertices, shape (k,), that
-    fill holes, ``whole`` the lowest and the highest level before a crop, if there was one [mm].
+    fill holes, ``whole`` the lowest and the highest level before a crop, if there was one [mm]. ``colours``
+    are those of the scan at the vertices, shape (n, 4), None without any.
     """
 
     mesh: Mesh
@@ -45,6 +47,7 @@ class Body:
     cut: tuple[float, ...] = ()
     estimated: Indices = field(default_factory=lambda: np.empty(0, dtype=np.int64))
     whole: tuple[float, float] | None = None
+    colours: Colours | None = None
 
     @property
     def heights(self) -> tuple[float, float]:
@@ -126,11 +129,12 @@ def _body_of(
 ) -> Body:
     scan = read_raw(name, data, progress)
     rebuilt = is_cloud(scan)
-    said: tuple[str, ...] = ()
+    said = scan.notes
+    shape = scan.vertices, scan.faces
     if rebuilt:
-        said = (f"Laid a surface through {len(scan.vertices):,} points.",)
-        scan = RawScan(*_surface(name, scan, progress))
-    vertices, faces, repairs = repair(scan.vertices, scan.faces, progress)
+        said = (f"Laid a surface through {len(scan.vertices):,} points.", *said)
+        shape = _surface(name, scan, progress)
+    vertices, faces, repairs = repair(*shape, progress)
     if len(faces) == 0:
         raise ScanError(f"{name} has no sound triangles.", "Export the scan again.")
     progress(STANDING, 0.0)
@@ -146,7 +150,15 @@ def _body_of(
     turn = pose.file_to_mm[:3, :3]
     skin, cut = _off_the_stand(Skin(vertices @ turn.T, faces), pose.stand)
     mesh, mendings = mended(Mesh(skin.vertices, skin.faces), progress)
-    return Body(mesh, pose, (*said, *repairs, *cut, *mendings), scan_name(name), rebuilt)
+    colours = _colours(mesh, scan, pose)
+    return Body(mesh, pose, (*said, *repairs, *cut, *mendings), scan_name(name), rebuilt, colours=colours)
+
+
+def _colours(mesh: Mesh, scan: RawScan, pose: Pose) -> Colours | None:
+    """Return the colours of a scan on the skin that was made of it, None where they show nothing."""
+    if scan.colours is None or is_plain(scan.colours):
+        return None
+    return laid_on(mesh.vertices, scan.vertices @ pose.file_to_mm[:3, :3].T, scan.colours)
 
 
 def _off_the_stand(skin: Skin, level: float) -> tuple[Skin, tuple[str, ...]]:

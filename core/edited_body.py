@@ -17,6 +17,7 @@ from core.cleaning.repair import counted
 from core.errors import LandmarkError
 from core.mesh import Flags, Mesh, Points
 from core.progress import Progress, quiet
+from core.reading.colours import colourless, laid_on
 from core.standing.symmetry import even_cloud, middle_of
 
 NEAR = 25.0
@@ -42,11 +43,15 @@ def _edited(body: Body, edits: ScanEdits) -> Body:
     sentences: list[str] = []
     if levels:
         sentences.append("Cropped by hand.")
+    scanned = mesh.vertices
     if edits.kept:
         sign = 1.0 if edits.kept == "left" else -1.0
         middle = middle_of(even_cloud(mesh.vertices, mesh.faces), np.array([1.0, 0.0, 0.0]))
         mesh = mirrored_half(mesh, middle, sign)
-    last = replace(body, mesh=mesh, cut=levels, edits=edits, whole=body.heights)
+        scanned = mesh.vertices.copy()  # where the vertices of the image come from
+        scanned[:, 0] = middle + sign * np.abs(mesh.vertices[:, 0] - middle)
+    colours = None if body.colours is None else laid_on(scanned, body.mesh.vertices, body.colours)
+    last = replace(body, mesh=mesh, cut=levels, edits=edits, whole=body.heights, colours=colours)
     if edits.filled or edits.fill_all:
         chosen = _chosen(last.holes, edits)
         mesh, estimated, unfilled = filled(mesh, chosen)
@@ -54,7 +59,9 @@ def _edited(body: Body, edits: ScanEdits) -> Body:
             sentences.append(f"Filled {counted(done, 'hole')} by hand: the skin there is an estimate.")
         if unfilled:
             sentences.append(f"Holes whose border touches itself cannot be filled: {unfilled}.")
-        last = replace(last, mesh=mesh, estimated=estimated)
+        if colours is not None:
+            colours = np.concatenate([colours, colourless(len(estimated))])
+        last = replace(last, mesh=mesh, estimated=estimated, colours=colours)
     former = set(hole_sentences(body.mesh, body.holes))
     kept = [each for each in body.repairs if each not in former]
     return replace(last, repairs=(*kept, *sentences, *hole_sentences(mesh, last.holes)))

@@ -53,6 +53,7 @@ QT = {"PySide6.QtCore", "PySide6.QtGui", "PySide6.QtWidgets"}
 OUTSIDE = {
     "ground": NUMBERS | {"numba"},
     **dict.fromkeys(ANATOMY, NUMBERS),
+    "reading": NUMBERS | {"PIL"},
     "mechanics": NUMBERS,
     "solving": NUMBERS | {"threadpoolctl"},
     "document": NUMBERS | {"trimesh", "threadpoolctl", "platformdirs", "potpourri3d"},

@@ -7,10 +7,11 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from PySide6.QtWidgets import QLabel
 from window_tools import PATIENCE, Script, run_main, settled, undrawn
 
 from app.asking.jobs import Job
-from app.desks import report_desk
+from app.desks import report_desk, verdict_desk
 from app.keeping import measures_desk, own_measures_desk, pressure_desk
 from app.main_window import MainWindow
 
@@ -40,9 +41,22 @@ def gate(monkeypatch: pytest.MonkeyPatch) -> threading.Event:
 
 
 def stop(window: MainWindow, words: str) -> None:
-    """Leave a job as the status bar does."""
-    job: Job = next(each for each in window.jobs.at_work() if each.words == words)
+    """Leave a job as the status bar does; it is the only one with these words."""
+    job: Job
+    (job,) = [each for each in window.jobs.at_work() if each.words == words]
     window.jobs.leave(job)
+
+
+def run_gated(gate: threading.Event, script: Callable[[MainWindow], Script]) -> None:
+    """Play a script and open the gate at its end, whatever fails: the window's end waits for all jobs."""
+
+    def gated(window: MainWindow) -> Script:
+        try:
+            yield from script(window)
+        finally:
+            gate.set()
+
+    run_main([], gated)
 
 
 def test_what_is_stopped_says_so_and_is_worked_out_when_it_is_looked_at_again(gate: threading.Event) -> None:
@@ -69,7 +83,7 @@ def test_what_is_stopped_says_so_and_is_worked_out_when_it_is_looked_at_again(ga
         window.report_desk.open()
         yield window.report_desk.page.does["pdf"].isEnabled
 
-    run_main([], script)
+    run_gated(gate, script)
 
 
 def test_a_measure_of_ones_own_that_is_stopped_is_measured_at_the_next_change(gate: threading.Event) -> None:
@@ -88,7 +102,7 @@ def test_a_measure_of_ones_own_that_is_stopped_is_measured_at_the_next_change(ga
         window.own_measures_desk._follow()
         yield lambda: bool(form.value.text())
 
-    run_main([], script)
+    run_gated(gate, script)
 
 
 def test_what_fails_is_told_and_waits_no_longer(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -110,3 +124,22 @@ def test_what_fails_is_told_and_waits_no_longer(monkeypatch: pytest.MonkeyPatch)
         yield lambda: window.report_desk.page.state.text() == "The sheet could not be made."
 
     run_main([], script)
+
+
+def test_the_bust_girth_of_the_strip_is_measured_beside_the_window(monkeypatch: pytest.MonkeyPatch) -> None:
+    threads = []
+
+    def measured(_: object) -> tuple[float, float]:
+        threads.append(threading.current_thread())
+        return 900.0, 880.0
+
+    monkeypatch.setattr(verdict_desk, "bust_girths", measured)
+
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        yield lambda: any("900" in value.text() for value in window.strip.findChildren(QLabel))
+
+    run_main([], script)
+    assert threads
+    assert threading.main_thread() not in threads

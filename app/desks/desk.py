@@ -193,6 +193,9 @@ class Desk(QObject):
         view.set_after(worn)
         view.set_layer("bands", worn)
         view.set_layer("landmarks", step == "landmarks")
+        view.set_layer(
+            "colours", not worn
+        )  # nipples and seams help to place landmarks; lines show best on clay
 
     def show_model(self) -> None:
         """Show how the model works in the place of the lines; what it does is seen beside it."""

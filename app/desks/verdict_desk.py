@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-from weakref import WeakKeyDictionary
+from typing import TYPE_CHECKING, cast
+from weakref import WeakKeyDictionary, WeakSet
 
 from PySide6.QtCore import QObject, Signal
 
@@ -11,6 +11,7 @@ from app.presenting.assessment import IDLE, AssessmentView, assessment_view
 from app.presenting.bust import bust_girths
 from app.presenting.faults import out_of_date
 from app.presenting.verdict import StripVerdict, strip_verdict
+from app.wording.words import tr
 from core.assessment import BAD, CAUTION, GOOD, PENDING, assessment_of
 from core.cutting import CutList, cut_list
 from core.live import Frame
@@ -35,6 +36,7 @@ class VerdictDesk(QObject):
         self._frame: Frame | None = None
         self._cuts: WeakKeyDictionary[Frame, CutList] = WeakKeyDictionary()
         self._girths: WeakKeyDictionary[Frame, tuple[float, float]] = WeakKeyDictionary()
+        self._measured: WeakSet[Frame] = WeakSet()  # their girths are known, being computed or given up
 
     def of(self, frame: Frame) -> AssessmentView:
         """Return the overall verdict of a frame, as far as it is known; pressures are computed in a job."""
@@ -53,10 +55,21 @@ class VerdictDesk(QObject):
         """Return the values of the strip; girth and pressure only once the body has come to rest."""
         if not frame.verdict.sound or frame.at_work or not self._window.is_at_rest():
             return strip_verdict(frame, view)
-        if frame not in self._girths:
-            self._girths[frame] = bust_girths(frame)
+        if frame not in self._measured:
+            self._measure(frame)
         pressed = self._window.pressure_desk.of(frame) if frame.stages.design.worn() else None
-        return strip_verdict(frame, view, self._girths[frame], pressed)
+        return strip_verdict(frame, view, self._girths.get(frame), pressed)
+
+    def _measure(self, frame: Frame) -> None:
+        """Compute the bust girths of a frame in a job: of a fine scan they take more than a second."""
+        self._measured.add(frame)
+
+        def show(girths: object) -> None:
+            self._girths[frame] = cast(tuple[float, float], girths)
+            self.refresh()
+
+        show_failure, words = self._window.desk.show_failure, tr("Measuring the bust girth")
+        self._window.jobs.run(words, lambda progress: bust_girths(frame), show, show_failure)
 
     def show_frame(self, frame: Frame) -> None:
         """Show the verdict of a frame."""

@@ -43,6 +43,7 @@ class ScanView:
     notes: tuple[str, ...] = ()
     told: frozenset[str] = frozenset()
     edits: EditsView | None = None
+    coloured: bool = False
 
 
 class ScanPanel(QWidget):
@@ -82,7 +83,8 @@ class ScanPanel(QWidget):
         if view is None:
             return
         self._file.setText(view.file)
-        self._triangles.setText(tr("{count} triangles").format(count=number(view.triangles, 0)))
+        words = tr("{count} triangles with colours") if view.coloured else tr("{count} triangles")
+        self._triangles.setText(words.format(count=number(view.triangles, 0)))
         self.units.set_choice(view.unit)
         self.ups.set_choice(view.up)
         self.fronts.set_choice(view.front)

@@ -92,6 +92,10 @@ class ViewTools(Toolbar):
         self._add("section", "section-plane", tr("Section plane"), "P", checkable=True)
         self._add("map", "palette", tr("Map on the body"), "C", checkable=True)
         self._add_action("next-map", tr("Next map"), "Shift+C")
+        colours = self._add_action("colours", tr("Scan colours"), "U")
+        colours.setCheckable(True)
+        colours.setEnabled(False)
+        colours.triggered.connect(lambda on: self.toggled.emit("colours", on))
         self._add("picture", "camera", tr("Save a picture"), "Ctrl+Shift+P")
         self.actions_by_name["picture"].triggered.connect(self.picture_asked)
 

@@ -115,6 +115,7 @@ def scan_view(source: ScanSource, body: Body, upright: bool = True) -> ScanView:
         _notes(body),
         frozenset(key for key in ("unit", "up", "front") if getattr(source, key) is not None),
         _edits_view(source, body) if upright else None,
+        body.colours is not None,
     )
 
 

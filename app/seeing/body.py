@@ -10,7 +10,7 @@ from scipy import sparse
 
 from app.seeing.camera import View
 from app.seeing.look import Look
-from app.seeing.paint import Colours, clay_colours, map_colours
+from app.seeing.paint import Colours, clay_colours, map_colours, scan_colours
 from app.seeing.piece import CELL, NONE, Piece, Singles, pieces_of
 from app.seeing.skin import skin_of
 from app.seeing.skin_part import DIFFUSE, SkinPart
@@ -26,10 +26,18 @@ class BodyActor:
     ``points`` are the moved positions of the body's n vertices, (n, 3) [mm], shown or not. What moves is
     drawn apart from what stands still, so that little is handed to the graphics when it does: ``moving`` are
     the vertices of which that is known already, shape (k,). Of much that stands still a rough copy is drawn
-    where nobody sees the difference, see ``set_detail``, and met by sights.
+    where nobody sees the difference, see ``set_detail``, and met by sights. ``scanned`` are the colours of
+    the scan, shape (n, 4), if it has any; they are shown when ``set_scanned`` asks for it.
     """
 
-    def __init__(self, plotter: pv.BasePlotter, mesh: Mesh, look: Look, moving: Indices = NONE) -> None:
+    def __init__(
+        self,
+        plotter: pv.BasePlotter,
+        mesh: Mesh,
+        look: Look,
+        moving: Indices = NONE,
+        scanned: Colours | None = None,
+    ) -> None:
         self.rest = mesh
         self.points = np.array(mesh.vertices)
         self._shift, self._nowhere = np.zeros(mesh.vertices.shape), np.zeros(mesh.vertices.shape)
@@ -38,6 +46,7 @@ class BodyActor:
         self._look = look
         self._occlusion = np.ones(len(mesh.vertices))
         self._map: Floats | None = None
+        self._scanned, self._is_scanned = scanned, False
         self._before = False
         self._visible = True
         rest = self._skin.mesh
@@ -63,6 +72,12 @@ class BodyActor:
         """Darken folds: openness to the sky of each body vertex, shape (n,) [1]."""
         self._occlusion = np.asarray(occlusion)
         self.set_look(self._look)
+
+    def set_scanned(self, shown: bool) -> None:
+        """Show the colours of the scan, where it has any, or the material."""
+        if self._scanned is not None and shown != self._is_scanned:
+            self._is_scanned = shown
+            self.set_look(self._look)
 
     def set_visible(self, visible: bool) -> None:
         """Show or hide it."""
@@ -174,8 +189,8 @@ class BodyActor:
         return None if piece is None else SkinPart(self._plotter, piece, name, inside_seen)
 
     def _light(self) -> None:
-        """Light a map more evenly than clay, so that its colours can be told in the shade too."""
-        evenly = 0.0 if self._map is None else _EVENLY
+        """Light a map and a scan more evenly than clay, so that colours can be told in the shade too."""
+        evenly = _EVENLY if self._map is not None or self._is_scanned else 0.0
         for part in self._parts:
             part.light(self._look.ambient + evenly, DIFFUSE - evenly)
 
@@ -190,7 +205,10 @@ class BodyActor:
         source, plate = self._skin.source[rows], self._skin.plate[rows]
         sky = self._occlusion[source]
         if self._map is None:
-            self._colours[rows] = clay_colours(sky, plate, self._look)
+            clay = clay_colours(sky, plate, self._look)
+            if self._scanned is not None and self._is_scanned:
+                clay = scan_colours(clay, self._scanned[source], sky)
+            self._colours[rows] = clay
         else:
             self._colours[rows] = map_colours(self._map[source], sky, plate, self._look)
 

@@ -1,4 +1,4 @@
-"""The colours of skin: clay that is darker in folds, or a map of values in which the folds still show."""
+"""The colours of skin: clay that is darker in folds, those of the scan, or a map of values with its folds."""
 
 from __future__ import annotations
 
@@ -46,6 +46,14 @@ def clay_colours(occlusion: Floats, plate: Flags, look: Look) -> Colours:
         colours[:, k] = np.round(deep[k] + (clay[k] - deep[k]) * open_sky)
     colours[plate] = np.round(rgb(look.plaster))
     return colours
+
+
+def scan_colours(clay: Colours, scanned: Colours, occlusion: Floats) -> Colours:
+    """Return the colours of a scan, (n, 4), a little darker in folds, and ``clay`` where it has none."""
+    shade = 1.0 - FOLDS + FOLDS * np.clip(occlusion, 0.0, 1.0)
+    known = scanned[:, 3] > 0
+    clay[known] = np.round(scanned[known, :3] * shade[known, None])
+    return clay
 
 
 def map_colours(colours: Floats, occlusion: Floats, plate: Flags, look: Look) -> Colours:

@@ -16,6 +16,7 @@ from app.seeing.control import ControlActor
 from app.seeing.framing import NOBODY, depth_range, framing_bust
 from app.seeing.look import Look
 from app.seeing.material import CLAY, look_of
+from app.seeing.paint import Colours
 from app.seeing.piece import NONE
 from app.seeing.ribbon import Surface
 from app.seeing.section import SectionSheet
@@ -23,8 +24,8 @@ from app.seeing.stage import Stage
 from app.seeing.trace import MeasureTrace, Trace
 from core.mesh import Flags, Floats, Indices, Mesh, Points
 
-PARTS = ("body", "bands", "control", "floor", "ghost")
-"""What ``Scene.set_visible`` knows; the ghost is the fringe of the body at rest behind the moved one."""
+PARTS = ("body", "bands", "control", "floor", "ghost", "colours")
+"""What ``Scene.set_visible`` knows; the ghost is the body at rest as a fringe, the colours are the scan's."""
 
 
 class Scene:
@@ -46,7 +47,7 @@ class Scene:
         self._ghost: Ghost | None = None
         self._control: ControlActor | None = None
         self._control_points: tuple[Points, Points] | None = None
-        self._visible = dict.fromkeys(PARTS, True) | {"control": False, "ghost": False}
+        self._visible = dict.fromkeys(PARTS, True) | {"control": False, "ghost": False, "colours": False}
         self._before = False
         self._material = CLAY
         self._view = View()
@@ -55,12 +56,12 @@ class Scene:
 
     # -- what is shown
 
-    def show_body(self, mesh: Mesh, moving: Indices = NONE) -> None:
-        """Show a body at rest, and nothing on it; ``moving`` (k,) are vertices that will move, if known."""
+    def show_body(self, mesh: Mesh, moving: Indices = NONE, scanned: Colours | None = None) -> None:
+        """Show a body at rest alone; vertices ``moving`` (k,) may move, ``scanned`` (n, 4) its colours."""
         self.bands.clear()
         self._trace.show()
         self._drop_control()
-        self.body = BodyActor(self.plotter, mesh, self._look, moving)
+        self.body = BodyActor(self.plotter, mesh, self._look, moving, scanned)
         self._surface = Surface(mesh)
         low, high = self._box().T
         self._stage.stand(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), low[2])
@@ -279,6 +280,7 @@ class Scene:
     def _apply_visible(self) -> None:
         if self.body is not None:
             self.body.set_visible(self._visible["body"])
+            self.body.set_scanned(self._visible["colours"])
             self._stage.show_floor(self._visible["floor"])
             if self._visible["ghost"] and self._ghost is None:
                 self._ghost = Ghost(self.plotter, self.body.rest)

@@ -13,7 +13,7 @@ from core.live import Frame
 WAYS = ("before", "after", "wipe", "side")
 """How the two bodies of a frame can be looked at."""
 
-_LAYERS = ("control", "bands", "ghost")
+_LAYERS = ("control", "bands", "ghost", "colours")
 
 
 class Beside:

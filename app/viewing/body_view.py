@@ -11,7 +11,7 @@ from core.live import Frame
 from core.mesh import Floats, Indices
 from core.pipeline import Stages
 
-SCENE_PARTS = {"control-mesh": "control", "bands": "bands", "ghost": "ghost"}
+SCENE_PARTS = {"control-mesh": "control", "bands": "bands", "ghost": "ghost", "colours": "colours"}
 """Layers of the tools by what the scene calls them."""
 
 
@@ -55,7 +55,7 @@ class BodyView:
         """Show a body on which nothing lies yet; ``moving`` are the vertices that will move, if known."""
         self.body, self.frame = body, None
         scene = self.viewport.scene
-        scene.show_body(body.mesh, moving)
+        scene.show_body(body.mesh, moving, body.colours)
         scene.measure.before(not self.after)
         if not self.after:
             scene.before(True)

@@ -3,13 +3,8 @@
 from __future__ import annotations
 
 import base64
-import codecs
-import io
 import json
-import re
-import struct
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,9 +12,13 @@ import numpy.typing as npt
 
 from core.errors import ScanError
 from core.mesh import Faces, Floats, Indices
-from core.progress import Progress, quiet
+from core.progress import Progress
+from core.reading.colours import UNREADABLE, coloured, full_of, sampled, texture
+from core.reading.gltf_buffers import MOST_MARKS, MOST_NODES, cut_short, marks
 from core.reading.raw_scan import (
-    AGAIN,
+    FREE,
+    TIMES,
+    Colours,
     RawScan,
     check_size,
     fans,
@@ -33,11 +32,8 @@ from core.reading.raw_scan import (
 _KINDS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
-_MOST_NODES, _DEEPEST = 10_000, 100
-_MOST_MARKS = 500_000
-_STEP = 1 << 20
+_DEEPEST = 100
 _WHOLE = "Put that file beside it, or export all as one GLB file."
-_OUTSIDE = re.compile(rb'"uri"\s*:\s*"(?!data:)')
 
 Json = Any
 Matrix = Floats
@@ -50,87 +46,18 @@ def read_gltf(name: str, data: bytes, progress: Progress) -> RawScan:
     Source: Khronos, glTF 2.0 specification.
     """
     document, binary = _glb(name, data) if data[:4] == b"glTF" else (data, memoryview(b""))
-    if _marks(document) > _MOST_MARKS:
+    if marks(document) > MOST_MARKS:
         raise too_much(name)
-    reader = _Reader(name, json.loads(document), binary)
+    reader = _Reader(name, json.loads(document), binary, len(data))
     parts, points, triangles = list[RawScan](), 0, 0
     for primitive, matrix in reader.placed():
         progress("reading", len(parts) / (len(parts) + 1))
         parts.append(reader.part(primitive, matrix))
         points, triangles = points + len(parts[-1].vertices), triangles + len(parts[-1].faces)
         check_size(name, points, triangles, len(data))
-        if len(parts) > _MOST_NODES:
+        if len(parts) > MOST_NODES:
             raise too_much(name)
     return joined(parts)
-
-
-def with_buffers(path: Path, data: bytes, most: int, progress: Progress = quiet) -> bytes:
-    """Return a glTF file as text with what it keeps in files beside it, joined as GLB of ``most`` bytes.
-
-    Of each file no more is read than the text says it uses. Names that lead out of the folder, and files
-    that are not there or too large, stay as they are. Raises OSError, ScanError, Cancelled.
-    """
-    if not data[:1000].lstrip(codecs.BOM_UTF8 + b" \t\r\n").startswith(b"{") or not _OUTSIDE.search(data):
-        return data
-    if _marks(data) > _MOST_MARKS:
-        return data
-    try:
-        document, most = json.loads(data), most - len(data)
-        kept, joins, where, total = [{"byteLength": 0}], list[tuple[Path, int]](), dict[int, Any](), 0
-        for k, buffer in enumerate(document["buffers"][:_MOST_NODES]):
-            beside, size = _beside(path, buffer.get("uri")), int(buffer["byteLength"])
-            if beside is None or not 0 <= size <= most - total:
-                where[k] = len(kept), 0
-                kept.append(buffer)
-                continue
-            where[k] = 0, total
-            joins.append((beside, size))
-            total += size + -size % 4
-        kept[0]["byteLength"] = total
-        for view in document["bufferViews"]:
-            view["buffer"], start = where[view["buffer"]]
-            view["byteOffset"] = view.get("byteOffset", 0) + start
-        text = json.dumps({**document, "buffers": kept}).encode()
-    except (ValueError, KeyError, TypeError, AttributeError, ArithmeticError, RecursionError):
-        return data  # the reader tells what is wrong with it
-    return _joined_glb(text, joins, total, progress) if joins else data
-
-
-def _joined_glb(text: bytes, files: list[tuple[Path, int]], total: int, progress: Progress) -> bytes:
-    """Return a GLB file of a description and the first bytes of ``files``, which it holds only once."""
-    text += b" " * (-len(text) % 4)
-    out = io.BytesIO()
-    out.write(struct.pack("<4sII", b"glTF", 2, 28 + len(text) + total))
-    out.write(struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", total, b"BIN\0"))
-    for file, size in files:
-        left = size
-        with file.open("rb") as content:
-            while left and (piece := content.read(min(left, _STEP))):
-                progress("reading", out.tell() / (28 + len(text) + total))
-                left -= out.write(piece)
-        if left:
-            raise _cut_short(file.name)
-        out.write(b"\0" * (-size % 4))
-    return out.getvalue()
-
-
-def _beside(path: Path, uri: Any) -> Path | None:
-    """Return the file in the folder of ``path`` that a plain name means, None if there is none."""
-    spelled = uri.encode() if isinstance(uri, str) else b""
-    name = re.sub(rb"%([\da-fA-F]{2})", lambda code: bytes.fromhex(code[1].decode()), spelled).decode()
-    if not re.fullmatch(r"[^/\\:\0]{1,255}", name):
-        return None
-    file = (path.parent / name).resolve()
-    return file if file.parent == path.parent.resolve() and file.is_file() else None
-
-
-def _marks(document: bytes) -> int:
-    """Return how many values a text of JSON may hold, roughly."""
-    return sum(document.count(mark) for mark in (b"[", b"{", b","))
-
-
-def _cut_short(name: str) -> ScanError:
-    return ScanError(f"{name} is cut short: its header promises more than the file holds.", AGAIN)
 
 
 def _packed(name: str) -> ScanError:
@@ -147,23 +74,25 @@ def _glb(name: str, data: bytes) -> tuple[bytes, memoryview]:
     while at + 8 <= len(data):
         size = int.from_bytes(data[at : at + 4], "little")
         if at + 8 + size > len(data):
-            raise _cut_short(name)
+            raise cut_short(name)
         chunks.setdefault(data[at + 4 : at + 8], whole[at + 8 : at + 8 + size])
         at += 8 + size
     return bytes(chunks[b"JSON"]), chunks.get(b"BIN\0", memoryview(b""))
 
 
 class _Reader:
-    """What a file describes, taken apart on demand."""
+    """What a file of ``size`` bytes describes, taken apart on demand."""
 
-    def __init__(self, name: str, document: Json, binary: memoryview) -> None:
+    def __init__(self, name: str, document: Json, binary: memoryview, size: int) -> None:
         self.name, self.json = name, document
         if document["asset"]["version"].split(".")[0] != "2":
             raise ScanError(f"{name} is a glTF file of an old kind.", "Export it as glTF 2.0.")
         needed = document.get("extensionsRequired", [])
         if any("draco" in each or "meshopt" in each for each in needed):
             raise _packed(name)
-        self._buffers = [self._buffer(each, binary) for each in document.get("buffers", [])[:_MOST_NODES]]
+        self._pixels: dict[int, Colours | None] = {}
+        self._size = size
+        self._buffers = [self._buffer(each, binary) for each in document.get("buffers", [])[:MOST_NODES]]
 
     def _buffer(self, buffer: Json, binary: memoryview) -> bytes | memoryview:
         uri = buffer.get("uri")
@@ -187,7 +116,7 @@ class _Reader:
         while waiting:
             k, above, depth = waiting.pop()
             visited += 1
-            if visited > _MOST_NODES or depth > _DEEPEST:
+            if visited > MOST_NODES or depth > _DEEPEST:
                 raise too_much(self.name)
             matrix = above @ _matrix(nodes[k])
             if "mesh" in nodes[k]:
@@ -208,7 +137,45 @@ class _Reader:
         normals = None
         if "NORMAL" in named:
             normals = vectors(self._values(named["NORMAL"])) @ np.linalg.pinv(turn)
-        return RawScan(vertices @ turn.T + matrix[:3, 3], faces, normals)
+        colours, notes = None, tuple[str, ...]()
+        try:
+            colours = self._colours(primitive, len(vertices))
+        except Exception:  # malformed in any way, they leave the shape as it is
+            colours, notes = None, (UNREADABLE,)
+        return RawScan(vertices @ turn.T + matrix[:3, 3], faces, normals, colours, notes)
+
+    def _colours(self, primitive: Json, count: int) -> Colours | None:
+        """Return the colours of the vertices of a part, else those of its texture there, None without any."""
+        named = primitive["attributes"]
+        if "COLOR_0" in named:
+            values = self._values(named["COLOR_0"], count)
+            return coloured(values[:, :3].astype(np.float64), full_of(values.dtype) or 1.0)
+        if "material" not in primitive:
+            return None
+        surface = self.json["materials"][primitive["material"]].get("pbrMetallicRoughness", {})
+        used = surface.get("baseColorTexture")
+        if used is None:
+            return None
+        places = self._values(named[f"TEXCOORD_{used.get('texCoord', 0)}"], count)
+        return sampled(self._image(self.json["textures"][used["index"]]["source"]), places.astype(np.float64))
+
+    def _image(self, index: int) -> Colours:
+        """Return the pixels of an image, tried once. Raises ValueError."""
+        if index not in self._pixels:
+            self._pixels[index] = None
+            image = self.json["images"][index]
+            if "bufferView" in image:
+                view = self.json["bufferViews"][image["bufferView"]]
+                start = view.get("byteOffset", 0)
+                data = bytes(self._buffers[view["buffer"]][start : start + view["byteLength"]])
+            else:
+                data = bytes(self._buffer(image, memoryview(b"")))
+            held = sum(pixels.nbytes for pixels in self._pixels.values() if pixels is not None)
+            self._pixels[index] = texture(data, FREE + TIMES * self._size - held)
+        pixels = self._pixels[index]
+        if pixels is None:
+            raise ValueError("an image that cannot be read")
+        return pixels
 
     def _faces(self, primitive: Json, count: int) -> Faces:
         mode = primitive.get("mode", _TRIANGLES)
@@ -221,9 +188,11 @@ class _Reader:
             return corners.reshape(-1, 3)
         return (strips if mode == _STRIP else fans)(corners, np.array([len(corners)]))
 
-    def _values(self, index: int) -> npt.NDArray[np.generic]:
-        """Return the rows of an accessor, shape (count, width)."""
+    def _values(self, index: int, needed: int | None = None) -> npt.NDArray[np.generic]:
+        """Return the rows of an accessor, shape (count, width). Raises ValueError if there are others."""
         accessor = self.json["accessors"][index]
+        if needed not in (None, accessor["count"]):
+            raise ValueError("values of other vertices")
         kind, width = np.dtype(_KINDS[accessor["componentType"]]), _WIDTHS[accessor["type"]]
         if "sparse" in accessor or "bufferView" not in accessor:
             raise ScanError(f"{self.name} is written in a way that Busk does not read.", "Export it as PLY.")
@@ -236,7 +205,7 @@ class _Reader:
             or stride < row
             or start + max(count - 1, 0) * stride + row * (count > 0) > len(buffer)
         ):
-            raise _cut_short(self.name)
+            raise cut_short(self.name)
         check_size(self.name, count // (1 if width == 3 else 3))
         values = np.ndarray((count, width), kind, buffer, start, (stride, kind.itemsize)).copy()
         if accessor.get("normalized") and kind.kind in "iu":

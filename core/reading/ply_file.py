@@ -12,10 +12,12 @@ import numpy.typing as npt
 from core.errors import ScanError
 from core.mesh import Faces, Floats, Indices, rows_of
 from core.progress import Progress
-from core.reading.ply_header import CORNERS, NEEDED, NORMALS, PLACES, Element, Kind, read_header
+from core.reading.colours import coloured, full_of
+from core.reading.ply_header import COLOURS, CORNERS, NEEDED, NORMALS, PLACES, Element, Kind, read_header
 from core.reading.raw_scan import (
     AGAIN,
     BLOCK,
+    Colours,
     RawScan,
     all_faces,
     check_size,
@@ -100,8 +102,8 @@ class _Content:
 def read_ply(name: str, data: bytes, progress: Progress) -> RawScan:
     """Read a PLY file. Raises ScanError, ValueError if it is damaged.
 
-    Polygons of any number of corners and strips of triangles become triangles; colours and all else that is
-    no position, corner or normal is passed over. Source: Turk 1994, the PLY polygon file format.
+    Polygons of any number of corners and strips of triangles become triangles; all that is no position,
+    corner, normal or colour of a vertex is passed over. Source: Turk 1994, the PLY polygon file format.
     """
     order, elements, start = read_header(name, data)
     least = sum(each.rows * each.least(not order) for each in elements)
@@ -214,6 +216,15 @@ class _Table:
             columns[:, k] = self.content.column(*known[name]) if self.element.rows else 0.0
         return columns
 
+    def colours(self) -> Colours | None:
+        """Return the colours of the rows, None without any."""
+        kinds = {each.name: each.item for each in self.element.properties}
+        for names in COLOURS:
+            values = self.columns(names)
+            if values is not None:
+                return coloured(values, full_of(kinds[names[0]]))
+        return None
+
     def corners(self) -> tuple[Indices, Indices]:
         """Return the list of vertices, row after row, and how many each row has."""
         for each, at in zip(self.element.properties, self.spots, strict=True):
@@ -245,4 +256,5 @@ def _scan(name: str, found: dict[str, _Table], size: int) -> RawScan:
         strip = np.cumsum(corners < 0) + np.repeat(np.arange(len(counts)), counts)
         real = corners >= 0
         faces.append(strips(corners[real], np.bincount(strip[real])))
-    return RawScan(vertices, all_faces(faces), found["vertex"].columns(NORMALS))
+    rows = found["vertex"]
+    return RawScan(vertices, all_faces(faces), rows.columns(NORMALS), rows.colours())

@@ -25,7 +25,12 @@ _HEAD_BYTES = 1 << 20
 _MOST_ELEMENTS, _MOST_PROPERTIES = 1000, 1000
 
 PLACES, NORMALS, CORNERS = ("x", "y", "z"), ("nx", "ny", "nz"), "vert"
-NEEDED = {"vertex": (*PLACES, *NORMALS), "face": (CORNERS,), "tristrips": (CORNERS,)}
+COLOURS = ("red", "green", "blue"), ("diffuse_red", "diffuse_green", "diffuse_blue")
+NEEDED = {
+    "vertex": (*PLACES, *NORMALS, *COLOURS[0], *COLOURS[1]),
+    "face": (CORNERS,),
+    "tristrips": (CORNERS,),
+}
 """Elements that are read, and what the names of their properties begin with."""
 
 Kind = np.dtype[np.generic]

@@ -26,16 +26,23 @@ BLOCK = 1 << 18
 AGAIN = "Export the scan again, or copy the file again."
 
 
+Colours = npt.NDArray[np.uint8]
+"""Red, green, blue and 255 at each vertex, or 0 where there is no colour, shape (n, 4)."""
+
+
 @dataclass(frozen=True, eq=False)
 class RawScan:
     """Vertices, shape (n, 3), and triangles, shape (m, 3), none for a point cloud [file units].
 
-    ``normals``, shape (n, 3) [1], if the file holds one for every vertex.
+    ``normals``, shape (n, 3) [1], if the file holds one for every vertex; ``colours``, shape (n, 4), if it
+    holds any. ``notes`` are sentences about what could not be read beside the shape.
     """
 
     vertices: Points
     faces: Faces
     normals: Points | None = None
+    colours: Colours | None = None
+    notes: tuple[str, ...] = ()
 
 
 def check_size(name: str, points: int, triangles: int = 0, size: int | None = None) -> None:
@@ -68,17 +75,25 @@ def too_much(name: str) -> ScanError:
 
 
 def joined(parts: list[RawScan]) -> RawScan:
-    """Return several parts of a file as one scan; it has normals if all parts have."""
+    """Return several parts of a file as one scan; it has normals if all parts have, colours if any has."""
     if len(parts) == 1:
         return parts[0]
     starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
     normals = [part.normals for part in parts if part.normals is not None]
+    colours = None
+    if any(part.colours is not None for part in parts):
+        colours = np.zeros((int(starts[-1]), 4), dtype=np.uint8)
+        for part, start in zip(parts, starts, strict=False):
+            if part.colours is not None:
+                colours[start : start + len(part.vertices)] = part.colours
     return RawScan(
         np.concatenate([np.empty((0, 3)), *(part.vertices for part in parts)]),
         np.concatenate(
             [no_faces(), *(part.faces + start for part, start in zip(parts, starts, strict=False))]
         ),
         np.concatenate(normals) if normals and len(normals) == len(parts) else None,
+        colours,
+        tuple(dict.fromkeys(note for part in parts for note in part.notes)),
     )
 
 

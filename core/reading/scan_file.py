@@ -14,8 +14,10 @@ import numpy as np
 from core.errors import ScanError
 from core.mesh import Faces, Points
 from core.progress import Cancelled, Progress, quiet
-from core.reading.gltf_file import read_gltf, with_buffers
+from core.reading.gltf_buffers import with_buffers
+from core.reading.gltf_file import read_gltf
 from core.reading.obj_file import read_obj
+from core.reading.obj_texture import with_texture
 from core.reading.off_file import begins_with_points, read_off, read_points
 from core.reading.ply_file import read_ply
 from core.reading.raw_scan import AGAIN, RawScan, check_packed, check_size
@@ -59,7 +61,7 @@ _STEP = 1 << 20
 
 
 def scan_bytes(path: Path, progress: Progress = quiet) -> bytes:
-    """Return what a scan file holds, glTF with what it keeps beside it. Raises ScanError, Cancelled."""
+    """Return what a scan file holds and keeps in files beside it. Raises ScanError, Cancelled."""
     try:
         kind = path.stat()
         if not stat.S_ISREG(kind.st_mode):  # a pipe or a device may never end
@@ -67,7 +69,10 @@ def scan_bytes(path: Path, progress: Progress = quiet) -> bytes:
         if kind.st_size > LARGEST_FILE:
             raise ScanError(f"{path.name} is too large.", _THINNER)
         with path.open("rb") as file:
-            return with_buffers(path, file.read(kind.st_size), LARGEST_FILE, progress)
+            data = file.read(kind.st_size)
+        if path.suffix.lower() == ".obj":
+            return with_texture(path, data, LARGEST_FILE, progress)
+        return with_buffers(path, data, LARGEST_FILE, progress)
     except FileNotFoundError:
         raise ScanError(f"There is no file {path}.", "Check the name, or choose another scan.") from None
     except (OSError, ValueError) as problem:

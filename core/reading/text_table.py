@@ -125,7 +125,7 @@ class Table:
 class Growing:
     """An array that grows at its end, without a copy of all of it when it is whole."""
 
-    def __init__(self, kind: Literal["d", "q"]) -> None:
+    def __init__(self, kind: Literal["d", "q", "B"]) -> None:
         self._held = array(kind)
 
     def __len__(self) -> int:

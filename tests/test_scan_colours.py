@@ -1,0 +1,157 @@
+"""Colours of scans: read from every format that has them, laid on the body, no reason to refuse it."""
+
+import io
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from coloured_scans import (
+    BLUE,
+    COLOURED,
+    MTL,
+    RED,
+    SAMPLE,
+    coloured_ply,
+    painted_sample,
+    picture,
+    textured_gltf,
+    textured_obj,
+)
+from PIL import Image
+from scan_files import HOUSES
+
+from core.body import body_of, read_scan
+from core.cleaning.edits import ScanEdits
+from core.design import Design, ScanSource
+from core.document import Document
+from core.edited_body import edited
+from core.pipeline import read_body
+from core.project import ScanFile, open_project, save_project
+from core.reading.colours import UNREADABLE, texture
+from core.reading.raw_scan import RawScan
+from core.reading.scan_file import read_raw, scan_bytes
+
+
+def check(scan: RawScan, off: int = 1) -> None:
+    """Each vertex has the colour of its side, whatever order the file has them in."""
+    assert scan.colours is not None
+    assert scan.notes == ()
+    right = np.where(np.abs(scan.vertices[:, 1:2]) < 1.0, RED, BLUE)
+    assert (scan.colours[:, 3] == 255).all()
+    assert np.abs(scan.colours[:, :3].astype(int) - right).max() <= off
+
+
+@pytest.mark.parametrize("name", COLOURED)
+def test_colours_are_read_at_the_vertices(name: str) -> None:
+    check(read_raw(name, COLOURED[name]))
+
+
+def test_vertices_without_a_colour_beside_others_with_one_have_none() -> None:
+    assert read_raw("groups.obj", HOUSES["groups.obj"]).colours[:, 3].tolist() == [255] * 5 + [0] * 5
+    assert read_raw("odd.ply", coloured_ply().replace(b"green", b"grain")).colours is None
+
+
+@pytest.mark.parametrize("kind", ["PNG", "JPEG"])
+def test_a_texture_beside_an_obj_file_goes_with_it(tmp_path, kind: str) -> None:
+    (tmp_path / "house.obj").write_bytes(textured_obj())
+    (tmp_path / "house.mtl").write_bytes(MTL)
+    (tmp_path / "skin.png").write_bytes(picture(kind))
+    data = scan_bytes(tmp_path / "house.obj")
+    check(read_raw("elsewhere.obj", data), off=3)
+    assert data.startswith(textured_obj())  # the shape stays to the letter
+    plain = read_raw("house.obj", textured_obj())
+    assert np.array_equal(read_raw("house.obj", data).faces, plain.faces)
+    assert plain.colours is None
+
+
+def test_a_texture_beside_a_gltf_file_goes_with_it(tmp_path) -> None:
+    document = json.loads(textured_gltf(uri="the%20skin.png"))
+    (tmp_path / "house.gltf").write_text(json.dumps(document))
+    (tmp_path / "the skin.png").write_bytes(picture())
+    check(read_raw("elsewhere.gltf", scan_bytes(tmp_path / "house.gltf")))
+
+
+@pytest.mark.parametrize(
+    "image", [None, b"", b"\x89PNG\r\n\x1a\nbroken", picture()[:60], b"not an image" * 99]
+)
+def test_a_broken_texture_costs_the_colours_alone(tmp_path, image: bytes | None) -> None:
+    (tmp_path / "house.obj").write_bytes(textured_obj())
+    (tmp_path / "house.mtl").write_bytes(MTL)
+    if image is not None:
+        (tmp_path / "skin.png").write_bytes(image)
+    scans = [read_raw("house.obj", scan_bytes(tmp_path / "house.obj"))]
+    scans += [read_raw("a.gltf", textured_gltf(image))] if image is not None else []
+    for scan in scans:
+        assert scan.colours is None
+        assert scan.notes == (UNREADABLE,)
+        assert len(scan.vertices) >= 10
+
+
+def test_names_that_lead_out_of_the_folder_are_not_followed(tmp_path) -> None:
+    inside = tmp_path / "scan"
+    inside.mkdir()
+    (tmp_path / "skin.png").write_bytes(picture())
+    (inside / "house.obj").write_bytes(textured_obj())
+    for name in (b"../skin.png", str(tmp_path / "skin.png").encode()):
+        (inside / "house.mtl").write_bytes(b"newmtl skin\nmap_Kd " + name)
+        assert read_raw("house.obj", scan_bytes(inside / "house.obj")).notes == (UNREADABLE,)
+    (inside / "house.mtl").unlink()
+    (inside / "house.mtl").symlink_to(tmp_path / "house.mtl")
+    (tmp_path / "house.mtl").write_bytes(MTL)
+    assert scan_bytes(inside / "house.obj") == textured_obj()
+
+
+def test_an_image_of_far_more_pixels_than_bytes_is_no_texture() -> None:
+    with pytest.raises(ValueError, match="cannot be read"):
+        texture(picture(), 4 * 16 * 8 - 1)
+    assert texture(picture(), 4 * 16 * 8).shape == (8, 16, 3)
+    packed = io.BytesIO()
+    Image.new("1", (6000, 6000)).save(packed, "PNG")  # 5 kB
+    assert read_raw("a.gltf", textured_gltf(packed.getvalue())).notes == (UNREADABLE,)
+
+
+@pytest.fixture(scope="module")
+def painted(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("painted") / "painted.ply"
+    path.write_bytes(painted_sample())
+    return path
+
+
+def test_colours_follow_cleaning_cropping_mirroring_and_filling(painted) -> None:
+    body = read_scan(painted)
+    assert body.colours is not None
+    left = body.mesh.vertices[:, 0] > 1.0
+    assert (body.colours[left, :3] == RED).all()
+    assert (body.colours[body.mesh.vertices[:, 0] < -1.0, :3] == BLUE).all()
+    low, high = body.heights
+    cropped = edited(body, ScanEdits(low=60.0, high=high - low - 40.0))
+    assert len(cropped.mesh.vertices) < len(body.mesh.vertices)
+    assert (cropped.colours[cropped.mesh.vertices[:, 0] > 5.0, :3] == RED).all()
+    mirrored = edited(body, ScanEdits(kept="left"))
+    away = np.abs(mirrored.mesh.vertices[:, 0]) > 10.0
+    assert (mirrored.colours[away, :3] == RED).all()  # both halves are those of the left side
+    centre = body.mesh.vertices[np.argmin(body.mesh.vertices[:, 1])]
+    keep = np.linalg.norm(body.mesh.vertices - centre, axis=1)[body.mesh.faces].min(axis=1) > 20.0
+    holed = replace(body, mesh=type(body.mesh)(body.mesh.vertices, body.mesh.faces[keep]))
+    filled = edited(holed, ScanEdits(fill_all=True))
+    assert len(filled.estimated)
+    assert not filled.colours[filled.estimated, 3].any()  # an estimate has no colour
+    assert len(filled.colours) == len(filled.mesh.vertices)
+
+
+def test_colours_are_saved_with_the_project(painted, tmp_path) -> None:
+    scan = ScanFile(painted.name, scan_bytes(painted))
+    document = Document.of(Design(ScanSource(str(painted))))
+    saved = save_project(tmp_path / "a.busk", document, scan, None)
+    painted_body = read_body(open_project(tmp_path / "a.busk").design.scan)[1]
+    assert saved.design.scan.member
+    assert np.array_equal(painted_body.colours, read_scan(painted).colours)
+
+
+def test_a_scan_of_one_colour_shows_none(painted) -> None:
+    scan = read_raw(SAMPLE.name, SAMPLE.read_bytes())
+    lines = [f"v {x} {y} {z} 0.7 0.7 0.7" for x, y, z in scan.vertices.tolist()]
+    lines += [f"f {a} {b} {c}" for a, b, c in (scan.faces + 1).tolist()]
+    assert body_of("grey.obj", "\n".join(lines).encode()).colours is None
