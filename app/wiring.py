@@ -137,6 +137,8 @@ def _connect_panels(window: MainWindow) -> None:
     window.scan.open_asked.connect(desk.open)
     window.scan.told.connect(scan_desk.tell)
     window.scan.edits.edited.connect(scan_desk.edit)
+    window.scan.lean.leaned.connect(scan_desk.lean)
+    window.scan.lean.up_chosen.connect(scan_desk.stand_upright)
     window.scan.front_asked.connect(scan_desk.ask)
 
 

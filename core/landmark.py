@@ -51,11 +51,13 @@ class Landmark:
 class Hint:
     """What a body seems to be that no customer's should be: its ``kind``, and a sentence for the user.
 
-    Kinds are "size", "clothes", "flat" and "lean".
+    Kinds are "size", "clothes", "flat" and "lean"; ``up`` is the up direction "x,y,z" of the file that
+    corrects a lean.
     """
 
     kind: str
     sentence: str
+    up: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +73,11 @@ class Landmarks:
     underbust_level: float
     warnings: tuple[str, ...] = ()
     hints: tuple[Hint, ...] = ()
+
+    @property
+    def upright(self) -> str:
+        """The up direction "x,y,z" of the file that sets a leaning body upright; empty for any other."""
+        return next((hint.up for hint in self.hints if hint.up), "")
 
     def position(self, name: str) -> Points:
         """Return where landmark ``name`` is, shape (3,) [mm]."""

@@ -14,7 +14,9 @@ from altered_bodies import smooth_step
 from core.body import Body
 from core.detect import detection
 from core.errors import LandmarkError
-from core.finding.likeness import Build, build_of, clothes_hint, flat_hint, lean_hint, refuse_angular
+from core.finding.build import Build, build_of
+from core.finding.lean import lean_hint
+from core.finding.likeness import clothes_hint, flat_hint, refuse_angular
 from core.landmark import CERTAIN, Landmarks
 from core.landmarks import find_landmarks
 from core.mesh import Mesh, Points
@@ -81,8 +83,8 @@ def test_a_form_at_half_scale_in_cm_is_not_taken_for_one_in_inches():
 def test_a_lean_is_told_with_its_angle_and_the_up_that_corrects_it(degrees):
     pose = Pose("cm", "+y", "+z", 10.0 * np.array(Y_UP), True, "", 1.0)
     (hint,) = lean_hint(leant(degrees), pose)
-    told = hint.sentence.split("--up ")[1].split(" to ")[0]
-    x, y, z = (float(number) for number in told.split(","))
+    assert f"--up {hint.up} " in hint.sentence
+    x, y, z = (float(number) for number in hint.up.split(","))
     true = np.array([0.0, np.cos(np.radians(degrees)), np.sin(np.radians(degrees))])
     assert np.array([x, y, z]) @ true > np.cos(np.radians(5.0))
     assert ("forward" in hint.sentence) == (degrees > 0.0)

@@ -95,9 +95,11 @@ class LandmarkDesk(QObject):
         if tone_of(worst.confidence) == "bad" or stages.landmarks.warnings:
             said, *more = landmark_doubts(stages.landmarks)
             spoken_of = first_doubt(stages.landmarks)
-            look = (tr("Look at it"), lambda: self._look_at(spoken_of))
+            actions = [(tr("Look at it"), lambda: self._look_at(spoken_of))]
+            if up := stages.landmarks.upright:
+                actions.insert(0, (tr("Stand upright"), lambda: self._stand_upright(up)))
             self._window.notices.show_notice(
-                "warn", said, joined(map(say, more)), [look], lasting=True, about=_DOUBT
+                "warn", said, joined(map(say, more)), actions, lasting=True, about=_DOUBT
             )
 
     def show_stuck(self, stuck: StuckError) -> None:
@@ -112,6 +114,10 @@ class LandmarkDesk(QObject):
         """Let pins that were put down stand where the landmarks are, once these are found."""
         if not self._carried and frame.stages.design is self._session.design:
             self._window.view.pins.drop_back()
+
+    def _stand_upright(self, up: str) -> None:
+        self._window.notices.withdraw(_DOUBT)
+        self._window.scan_desk.stand_upright(up)
 
     def _look_at(self, landmark: str) -> None:
         self._window.desk.go_to("landmarks")

@@ -22,6 +22,7 @@ from core.body import Body
 from core.cleaning.edits import ScanEdits
 from core.design import Design, ScanSource
 from core.pipeline import Stages, StuckError
+from core.standing.lean_angles import corrected_up
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -55,7 +56,7 @@ class ScanDesk(QObject):
     def show_found(self, stages: Stages) -> None:
         """Show what was understood of the scan, and found on it."""
         window = self._window
-        window.scan.set_scan(scan_view(stages.design.scan, stages.body))
+        window.scan.set_scan(scan_view(stages.design.scan, stages.body, landmarks=stages.landmarks))
         window.rail.set_state("scan", "done" if stages.body.pose.sure else "look", 1)
         window.landmark_desk.show_found(stages)
 
@@ -122,6 +123,21 @@ class ScanDesk(QObject):
             text, scan = tr("{axis} is front").format(axis=value), scan.set_up(up=up, front=value)
         self._read_again(scan, text)
 
+    def lean(self, forward: float, left: float) -> None:
+        """Correct a lean of the body in its file, forward and to its left [degrees]."""
+        body = self._shown_body()
+        if body is not None:
+            self._rotate(corrected_up(body.pose, forward, left), tr("Correct lean"))
+
+    def stand_upright(self, up: str) -> None:
+        """Set a leaning body upright, with the direction of the file that is up."""
+        self._rotate(up, tr("Stand upright"))
+
+    def _rotate(self, up: str, text: str) -> None:
+        design = self.stuck.design if self.stuck else self._session.design
+        if design is not None:
+            self._read_again(design.scan.set_up(up=up), text)
+
     def edit(self, edits: ScanEdits, text: str) -> None:
         """Edit the scan as one undo step named ``text``."""
         design = self.stuck.design if self.stuck else self._session.design
@@ -132,7 +148,8 @@ class ScanDesk(QObject):
         """Show the scan as it is after an edit that was refused."""
         frame, design = self._session.frame, self._session.design
         if frame is not None and design is not None and not self.stuck:
-            self._window.scan.set_scan(scan_view(frame.stages.design.scan, frame.stages.body))
+            stages = frame.stages
+            self._window.scan.set_scan(scan_view(stages.design.scan, stages.body, landmarks=stages.landmarks))
 
     def _read_again(self, scan: ScanSource, text: str) -> None:
         if self.stuck:
@@ -174,9 +191,12 @@ class ScanDesk(QObject):
 
     # -- inside
 
-    def _shown_up(self) -> str:
+    def _shown_body(self) -> Body | None:
         frame = self._session.frame
-        body = self.stuck.body if self.stuck else frame.stages.body if frame is not None else None
+        return self.stuck.body if self.stuck else frame.stages.body if frame is not None else None
+
+    def _shown_up(self) -> str:
+        body = self._shown_body()
         return body.pose.up if body is not None else "+z"
 
     def _forget_question(self) -> None:

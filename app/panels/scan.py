@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QScrollArea, QVBoxLay
 from app.dress.parts import EmptyState, Segment, button, hairline, sentence
 from app.dress.theme import label, set_tag
 from app.dress.tip import set_tip
+from app.panels.lean_editor import LeanEditor, LeanView
 from app.panels.scan_edits import EditsView, ScanEditor
 from app.wording.scan_formats import KINDS
 from app.wording.words import number, say, tr
@@ -29,7 +30,7 @@ class ScanView:
     """What is shown of a scan: ``reason`` why this ``unit``; ``up`` and ``front`` are axes of the file.
 
     ``notes`` are further sentences on it; ``told`` names what was not found but told: unit, up, front.
-    ``edits`` is None for a scan that cannot be edited, as it is not upright.
+    ``edits`` and ``lean`` are None for a scan that cannot be edited, as it is not upright.
     """
 
     file: str
@@ -44,12 +45,14 @@ class ScanView:
     told: frozenset[str] = frozenset()
     edits: EditsView | None = None
     coloured: bool = False
+    lean: LeanView | None = None
 
 
 class ScanPanel(QWidget):
     """The facts of the scan; ``told`` with "unit", "up" or "front" and what it is, an empty key forgets all.
 
-    ``open_asked`` for another file; ``front_asked`` when the pictures are wanted. ``edits`` edits the scan.
+    ``open_asked`` for another file; ``front_asked`` when the pictures are wanted. ``edits`` edits the scan,
+    ``lean`` its lean.
     """
 
     told = Signal(str, str)
@@ -97,6 +100,8 @@ class ScanPanel(QWidget):
         self._notes.setVisible(bool(view.notes))
         done = [each for each in view.repairs if not _stays(each)]
         self._repairs.setText(_listed(done) or tr("Nothing had to be repaired."))
+        self.lean.setEnabled(view.lean is not None)
+        self.lean.show_lean(view.lean or LeanView(0.0, 0.0))
         self.edits.setVisible(view.edits is not None)
         if view.edits is not None:
             self.edits.show_edits(view.edits)
@@ -109,7 +114,7 @@ class ScanPanel(QWidget):
         column.setSpacing(3)
         self._file, self._triangles = sentence("", "name"), label("", "secondary")
         self._notes, self._reason = sentence(), sentence()
-        self._repairs, self.edits = sentence(), ScanEditor()
+        self._repairs, self.edits, self.lean = sentence(), ScanEditor(), LeanEditor()
         self._repairs.setTextFormat(Qt.TextFormat.RichText)
         self.units = self._choices("unit", [(unit, tr(unit)) for unit in UNITS])
         axes = [(axis, axis.replace("-", "\N{MINUS SIGN}")) for axis in AXES]
@@ -122,6 +127,7 @@ class ScanPanel(QWidget):
         self._group(column, tr("How the body stands in the file"), self._ways())
         self._group(column, tr("Axis of the file that points up"), self.ups)
         self._group(column, tr("Axis of the file that the chest faces"), self.fronts)
+        self._group(column, tr("Lean of the body in the file"), self.lean)
         self._group(column, tr("Why"), self._reason)
         column.addWidget(self.edits)
         self._group(column, tr("Repairs"), self._repairs)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 
 from app.panels.landmark_row import LandmarkView
+from app.panels.lean_editor import LeanView
 from app.panels.scan import ScanView
 from app.panels.scan_edits import EditsView, HoleView
 from app.wording.lengths import length
@@ -13,8 +14,9 @@ from core.body import Body
 from core.cleaning.holes import NAMED, hole_sentence, hole_sentences
 from core.design import ScanSource
 from core.doubts import ESSENTIAL, edit_doubts
-from core.landmark import CERTAIN, NAMES, Landmark
+from core.landmark import CERTAIN, NAMES, Landmark, Landmarks
 from core.mesh import Points
+from core.standing.lean_angles import lean_angles
 
 GROUPS = {
     "bust_point": "bust",
@@ -100,7 +102,9 @@ def landmark_view(name: str, mark: Landmark | None, accepted: Collection[Spot] =
     )
 
 
-def scan_view(source: ScanSource, body: Body, upright: bool = True) -> ScanView:
+def scan_view(
+    source: ScanSource, body: Body, upright: bool = True, landmarks: Landmarks | None = None
+) -> ScanView:
     """Return the facts of the scan; one that is not ``upright`` cannot be edited."""
     pose = body.pose
     return ScanView(
@@ -116,6 +120,7 @@ def scan_view(source: ScanSource, body: Body, upright: bool = True) -> ScanView:
         frozenset(key for key in ("unit", "up", "front") if getattr(source, key) is not None),
         _edits_view(source, body) if upright else None,
         body.colours is not None,
+        LeanView(*lean_angles(pose), landmarks.upright if landmarks else "") if upright else None,
     )
 
 

@@ -3,43 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
+from core.finding.body_scale import size_hint
+from core.finding.build import Build
 from core.finding.bust_check import refusal
+from core.finding.lean import lean_hint
 from core.landmark import SIDES, Hint, Landmark, Landmarks
-from core.mesh import Floats, Mesh, Points
+from core.mesh import Mesh, Points
 from core.sections import hull_corners
-from core.slicing.trunk_guide import guide_of
-from core.standing.body_size import MILLIMETRES
 from core.standing.upright import Pose
 from core.trunk import Level, stable_level, trunk_levels
 
 ANGULAR = 0.91
 """A section fills this share of the rectangle around it [1] if it is angular: those of bodies fill 0.89."""
-
-TYPICAL = {"neck": 96.0, "length": 316.0, "waist": 696.0}
-"""Width of the neck, height from waist to foot of the neck, girth of the waist of women [mm], medians."""
-
-SPREAD = np.array([[0.0176, 0.0005, 0.0037], [0.0005, 0.0081, 0.0020], [0.0037, 0.0020, 0.0124]])
-"""How these vary together from one woman to another: covariance of their natural logarithms."""
-
-UNLIKELY, HALVED = 0.20, 0.10
-"""So far is the size off [logarithm of the scale] if it is doubted; less if the file may hold a form at half
-scale, which only lengths in inches can be mistaken for."""
-
-HALF_SCALE = (280.0, 520.0)
-"""Waists of dress forms at half scale [mm]."""
-
-NECK = 180.0
-"""What is narrower than this above the arm-pits is a neck [mm]."""
-
-BACK, UPRIGHT, LEANS = 190.0, 9.0, 11.5
-"""So far below the arm-pits [mm] a back slopes backward on its way up by so much [degrees]; one that does so
-much more or less leans."""
 
 FLAT_GIRTH, FLAT_DEPTH = 0.11, 34.0
 """A bust that is wider than the trunk under it by less than this part and stands out by less [mm] is flat."""
@@ -63,25 +42,6 @@ DOUBTED = 0.45
 
 UNCLEAR = ("flat", "clothes")
 """The kinds of hints that make landmarks of the bust doubtful."""
-
-
-@dataclass(frozen=True, eq=False)
-class Build:
-    """A trunk from below the waist to the arm-pits [mm]: its ``levels``, ascending, and those heights."""
-
-    mesh: Mesh
-    levels: list[Level]
-    armpit: float
-
-
-def build_of(mesh: Mesh, landmarks: Landmarks) -> Build:
-    """Measure the trunk around the landmarks of the bust."""
-    pits = [mark.position[2] for name, mark in landmarks.points.items() if name.startswith("armpit")]
-    armpit = float(np.mean(pits)) if pits else landmarks.bust_level + 60.0
-    low = max(float(mesh.vertices[:, 2].min()) + 5.0, armpit - 260.0)
-    heights = np.linspace(low, armpit - 15.0, 24) if armpit - low > 80.0 else np.empty(0)
-    levels = [level for level in trunk_levels(mesh, heights) if len(level.points) > 20]
-    return Build(mesh, levels, armpit)
 
 
 def refuse_angular(build: Build, landmarks: Landmarks) -> None:
@@ -166,108 +126,6 @@ def doubted(points: Mapping[str, Landmark], found: tuple[Hint, ...]) -> float:
     """Return the most that landmarks of the bust may claim (0..1) with these hints."""
     by_hand = all(points[f"bust_point_{side}"].by_hand for side in SIDES)
     return DOUBTED if not by_hand and any(hint.kind in UNCLEAR for hint in found) else 1.0
-
-
-def size_hint(build: Build, pose: Pose) -> tuple[Hint, ...]:
-    """Return a hint where neck, length and waist are those of a body of another size."""
-    lengths = _lengths(build)
-    known = [k for k, name in enumerate(TYPICAL) if name in lengths]
-    if "length" not in lengths:
-        return ()
-    over = np.array([np.log(lengths[name] / TYPICAL[name]) for name in TYPICAL if name in lengths])
-    weight = np.linalg.inv(SPREAD[np.ix_(known, known)]).sum(axis=0)
-    scale = float(weight @ np.clip(over, -0.6, 0.6) / weight.sum())
-    in_cm = lengths["waist"] * MILLIMETRES["cm"] / MILLIMETRES[pose.unit]
-    form = pose.unit == "inch" and HALF_SCALE[0] < in_cm < HALF_SCALE[1]
-    if not (abs(scale) > UNLIKELY or (form and scale > HALVED)):
-        return ()
-    unit, length, percent = pose.unit, lengths["length"], 100.0 * abs(np.expm1(scale))
-    if form:
-        sentence = (
-            f"In inches, the body is unusually large: {length:.0f} mm from waist to neck. In cm, it would be "
-            f"a dress form at half scale, with a waist girth of {in_cm:.0f} mm. Check the unit."
-        )
-    elif scale > 0.0:
-        sentence = (
-            f"In {unit}, the body is unusually large: {length:.0f} mm from waist to neck, about "
-            f"{percent:.0f} % more than usual. Check the unit."
-        )
-    else:
-        sentence = (
-            f"In {unit}, the body is unusually small: {length:.0f} mm from waist to neck, about "
-            f"{percent:.0f} % less than usual. Check the unit."
-        )
-    return (Hint("size", sentence),)
-
-
-def _lengths(build: Build) -> dict[str, float]:
-    """Return those of the lengths in ``TYPICAL`` that the scan shows [mm]."""
-    lengths: dict[str, float] = {}
-    guide = guide_of(build.mesh)
-    shown = guide.tape > 0.0
-    if not shown.any():
-        return lengths
-    tape = gaussian_filter1d(np.interp(guide.z, guide.z[shown], guide.tape[shown]), 3.0)
-    low = np.flatnonzero((guide.z < build.armpit - 60.0) & (guide.z > build.armpit - 400.0))
-    slimmest = int(np.argmin(tape[low])) if len(low) else 0
-    if slimmest <= 3:  # below a waist the trunk widens again
-        return lengths
-    waist = float(guide.z[low[slimmest]])
-    lengths["waist"] = float(tape[low[slimmest]])
-    heights, widths = _widths(build)
-    narrow = np.flatnonzero((widths > 0.0) & (widths < NECK))[:10]
-    if len(narrow):
-        neck = narrow[np.argmin(widths[narrow])]
-        lengths["neck"] = float(widths[neck])
-        shoulders = np.flatnonzero(widths[:neck] > 1.9 * widths[neck])
-        if len(shoulders):
-            lengths["length"] = float(heights[shoulders[-1]] - waist)
-    return lengths
-
-
-def _widths(build: Build) -> tuple[Floats, Floats]:
-    """Return heights every 6 mm above the arm-pits, and how wide the skin is there, arms included [mm]."""
-    v, step = build.mesh.vertices, 6.0
-    edges = np.arange(build.armpit + 20.0, float(v[:, 2].max()) + step, step)
-    row = np.searchsorted(edges, v[:, 2])
-    order = np.argsort(row, kind="stable")
-    bounds = np.searchsorted(row[order], np.arange(1, len(edges) + 1))
-    x = v[order, 0]
-    spans = [float(np.ptp(x[a:b])) if b - a > 8 else 0.0 for a, b in pairwise(bounds)]
-    return edges[: len(spans)] + 0.5 * step, np.array(spans)
-
-
-def lean_hint(build: Build, pose: Pose) -> tuple[Hint, ...]:
-    """Return a hint where the trunk leans in a file that is level, and the up that would correct it."""
-    levels = [level for level in build.levels if level.z > build.armpit - BACK]
-    if len(levels) < 8 or pose.tilt > 0.0:
-        return ()
-    slope = np.polyfit([level.z for level in levels], [_back(level) for level in levels], 1)[0]
-    lean = UPRIGHT - float(np.degrees(np.arctan(slope)))
-    if abs(lean) < LEANS:
-        return ()
-    angle = np.radians(lean)
-    up = pose.file_to_mm[:3, :3].T @ np.array([0.0, -np.sin(angle), np.cos(angle)])
-    direction = ",".join(f"{number:.3f}" for number in up / np.linalg.norm(up))
-    forward, lean = lean > 0.0, abs(lean)
-    if forward:
-        sentence = (
-            f"The trunk leans forward by about {lean:.0f} degrees, and girths are measured level. "
-            f"To set it upright, turn the scan, or give --up {direction} to the command."
-        )
-    else:
-        sentence = (
-            f"The trunk leans backward by about {lean:.0f} degrees, and girths are measured level. "
-            f"To set it upright, turn the scan, or give --up {direction} to the command."
-        )
-    return (Hint("lean", sentence),)
-
-
-def _back(level: Level) -> float:
-    """Return how far back a level reaches near its middle [mm]."""
-    x, y = level.points[:, 0], level.points[:, 1]
-    low, high = x.min(), x.max()
-    return float(y[np.abs(x - 0.5 * (low + high)) < 0.25 * (high - low)].max(initial=y.min()))
 
 
 def _filling(level: Level) -> float:
