@@ -14,6 +14,7 @@ from altered_bodies import smooth_step
 from core.body import Body
 from core.detect import detection
 from core.errors import LandmarkError
+from core.finding.body_scale import size_hint, whole_figure
 from core.finding.build import Build, build_of
 from core.finding.lean import lean_hint
 from core.finding.likeness import clothes_hint, flat_hint, refuse_angular
@@ -77,6 +78,23 @@ def test_a_form_at_half_scale_in_cm_is_not_taken_for_one_in_inches():
     again = find_landmarks(body_of(0.5 * 2.54 * sample().vertices, "inch"))
     assert kinds(again) == ["size"]
     assert "half scale" in again.hints[0].sentence
+
+
+def test_a_small_body_in_inches_is_not_called_large():
+    factor, marks = np.array([1.25, 1.25, 0.5]), found()
+    points = {name: replace(mark, position=factor * mark.position) for name, mark in marks.points.items()}
+    body = body_of(factor * sample().vertices, "inch")
+    (hint,) = size_hint(build_of(body.mesh, replace(marks, points=points)), body.pose)
+    assert "unusually small" in hint.sentence
+
+
+def test_the_stature_is_that_of_a_whole_figure_alone():
+    heights = np.arange(1230.0, 1640.0, 6.0)
+    widths = np.interp(heights, [1230, 1330, 1380, 1400, 1500, 1640], [420, 340, 110, 110, 155, 60])
+    assert whole_figure(heights, widths, 1220.0, 0.0) == pytest.approx(1640.0, abs=6.0)
+    assert whole_figure(heights, widths, 1220.0, 900.0) == 0.0, "cut at the hips"
+    cut = heights < 1400.0
+    assert whole_figure(heights[cut], widths[cut], 1220.0, 820.0) == 0.0, "cut at the neck"
 
 
 @pytest.mark.parametrize("degrees", [17.0, -17.0])

@@ -20,7 +20,7 @@ TYPICAL = {"neck": 96.0, "length": 316.0, "waist": 696.0}
 SPREAD = np.array([[0.0176, 0.0005, 0.0037], [0.0005, 0.0081, 0.0020], [0.0037, 0.0020, 0.0124]])
 """How these vary together from one woman to another: covariance of their natural logarithms."""
 
-UNLIKELY, HALVED = 0.20, 0.10
+UNLIKELY, HALVED = 0.18, 0.10
 """So far is the size off [logarithm of the scale] if it is doubted; less if the file may hold a form at half
 scale, which only lengths in inches can be mistaken for."""
 
@@ -30,21 +30,37 @@ HALF_SCALE = (280.0, 520.0)
 NECK = 180.0
 """What is narrower than this above the arm-pits is a neck [mm]."""
 
+STATURES = 1400.0, 1880.0
+"""Statures of women, but for one in a thousand [mm]."""
+
+HEAD, LEGS = 1.4, (2.4, 3.8)
+"""A head is so much wider than the neck; from foot to arm-pit is so many times from there to the top [1]."""
+
 
 def size_hint(build: Build, pose: Pose) -> tuple[Hint, ...]:
-    """Return a hint where neck, length and waist are those of a body of another size."""
-    lengths = _lengths(build)
+    """Return a hint where stature, or neck, length and waist, are those of a body of another size."""
+    heights, widths = _widths(build)
+    low, unit = float(build.mesh.vertices[:, 2].min()), pose.unit
+    stature = whole_figure(heights, widths, build.armpit, low)
+    if stature and not STATURES[0] < stature < STATURES[1]:
+        sentence = (
+            f"In {unit}, the body is {stature:.0f} mm tall, which is rare among adults. Check the unit."
+        )
+        return (Hint("size", sentence),)
+    lengths = _lengths(build, heights, widths)
+    return _torso_hint(lengths, unit) if "length" in lengths else ()
+
+
+def _torso_hint(lengths: dict[str, float], unit: str) -> tuple[Hint, ...]:
     known = [k for k, name in enumerate(TYPICAL) if name in lengths]
-    if "length" not in lengths:
-        return ()
     over = np.array([np.log(lengths[name] / TYPICAL[name]) for name in TYPICAL if name in lengths])
     weight = np.linalg.inv(SPREAD[np.ix_(known, known)]).sum(axis=0)
     scale = float(weight @ np.clip(over, -0.6, 0.6) / weight.sum())
-    in_cm = lengths["waist"] * MILLIMETRES["cm"] / MILLIMETRES[pose.unit]
-    form = pose.unit == "inch" and HALF_SCALE[0] < in_cm < HALF_SCALE[1]
-    if not (abs(scale) > UNLIKELY or (form and scale > HALVED)):
+    in_cm = lengths["waist"] * MILLIMETRES["cm"] / MILLIMETRES[unit]
+    form = unit == "inch" and HALF_SCALE[0] < in_cm < HALF_SCALE[1] and scale > HALVED
+    if not (abs(scale) > UNLIKELY or form):
         return ()
-    unit, length, percent = pose.unit, lengths["length"], 100.0 * abs(np.expm1(scale))
+    length, percent = lengths["length"], 100.0 * abs(np.expm1(scale))
     if form:
         sentence = (
             f"In inches, the body is unusually large: {length:.0f} mm from waist to neck. In cm, it would be "
@@ -63,7 +79,21 @@ def size_hint(build: Build, pose: Pose) -> tuple[Hint, ...]:
     return (Hint("size", sentence),)
 
 
-def _lengths(build: Build) -> dict[str, float]:
+def whole_figure(heights: Floats, widths: Floats, armpit: float, low: float) -> float:
+    """Return the height of a figure from its feet to the top of its head, 0 if the scan lacks either [mm].
+
+    ``widths`` of rows at ``heights`` above the arm-pits, both of shape (k,) [mm]; ``low`` is the lowest
+    level of the scan [mm]. Source: ours.
+    """
+    narrow = np.flatnonzero((widths > 0.0) & (widths < NECK))[:10]
+    if not len(narrow):
+        return 0.0
+    neck, top = narrow[np.argmin(widths[narrow])], float(heights[-1])
+    head = widths[neck:].max() > HEAD * widths[neck] and top - heights[neck] > 0.35 * (top - armpit)
+    return top - low if head and LEGS[0] < (armpit - low) / (top - armpit) < LEGS[1] else 0.0
+
+
+def _lengths(build: Build, heights: Floats, widths: Floats) -> dict[str, float]:
     """Return those of the lengths in ``TYPICAL`` that the scan shows [mm]."""
     lengths: dict[str, float] = {}
     guide = guide_of(build.mesh)
@@ -77,7 +107,6 @@ def _lengths(build: Build) -> dict[str, float]:
         return lengths
     waist = float(guide.z[low[slimmest]])
     lengths["waist"] = float(tape[low[slimmest]])
-    heights, widths = _widths(build)
     narrow = np.flatnonzero((widths > 0.0) & (widths < NECK))[:10]
     if len(narrow):
         neck = narrow[np.argmin(widths[narrow])]
