@@ -81,7 +81,7 @@ def test_a_form_at_half_scale_in_cm_is_not_taken_for_one_in_inches():
 
 
 def test_a_small_body_in_inches_is_not_called_large():
-    factor, marks = np.array([1.25, 1.25, 0.5]), found()
+    factor, marks = np.array([1.0, 1.0, 0.5]), found()
     points = {name: replace(mark, position=factor * mark.position) for name, mark in marks.points.items()}
     body = body_of(factor * sample().vertices, "inch")
     (hint,) = size_hint(build_of(body.mesh, replace(marks, points=points)), body.pose)
