@@ -7,8 +7,6 @@ them by the same weights (ours).
 
 from __future__ import annotations
 
-import re
-import unicodedata
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -17,6 +15,7 @@ import numpy.typing as npt
 from scipy import sparse
 
 from core.errors import LineError
+from core.length_text import millimetres, parse_length
 from core.mesh import Floats, Indices, Points, frozen
 
 RATIO_LIMITS = (0.5, 1.3)
@@ -97,33 +96,28 @@ def free_line(
     return Line(name, weights, frozen(lengths), spacing, back_length, constrains, tail_length)
 
 
-_LENGTH = re.compile(r"^\s*=?\s*([+-]?)\s*(\d+(?:[.,]\d+)?)\s*(%|mm|cm|in)?\s*$")
-_MM = {"mm": 1.0, "cm": 10.0, "in": 25.4}
-
-
 def typed_ratio(text: str, rest_mm: float, unit: str = "%") -> float | None:
     """Return what a designer writes for a length as ratio of the rest length [1], or None if it is no length.
 
     ``97%`` of the front part's rest length, ``-6%`` or ``-20mm`` (also cm, in) shorter or longer, ``400mm``
-    absolute; ``unit`` is that of a bare number. An absolute length is that of the front part, ``rest_mm`` at
-    rest: the one that is shown wherever it can be typed.
+    or ``15 3/4in`` absolute; ``unit`` is that of a bare number. An absolute length is that of the front part,
+    ``rest_mm`` at rest: the one that is shown wherever it can be typed.
     """
     typed = _typed(text, unit)
     if typed is None:
         return None
     sign, number, unit = typed
-    share = number / 100.0 if unit == "%" else number * _MM[unit] / rest_mm
+    length = millimetres(number, unit)
+    share = number / 100.0 if length is None else length / rest_mm
     return {"": share, "+": 1.0 + share, "-": 1.0 - share}[sign]
 
 
 def _typed(text: str, unit: str) -> tuple[str, float, str] | None:
     """Return sign, number and unit of a typed length, or None if it is none."""
-    # A Japanese keyboard writes full-width digits and signs: the normal form has them plain.
-    plain = unicodedata.normalize("NFKC", text).replace("\N{MINUS SIGN}", "-").lower()
-    match = _LENGTH.match(plain)
-    if match is None:
+    typed = parse_length(text.strip().removeprefix("="))
+    if typed is None or not (typed[2] in ("", "%") or millimetres(1.0, typed[2])):
         return None
-    return match.group(1), float(match.group(2).replace(",", ".")), match.group(3) or unit
+    return typed[0], typed[1], typed[2] or unit
 
 
 def length_ratio(text: str, name: str, rest_mm: float, whole_mm: float, unit: str = "%") -> float:

@@ -12,6 +12,7 @@ from PySide6.QtGui import QCursor, QKeyEvent
 from app.dress.theme import tone_of
 from app.dress.tip import show_tip
 from app.presenting.scan import kind_of, landmark_title, landmark_views, other_side, spot_of
+from app.wording.lengths import arrow_step
 from app.wording.words import joined, say, tr
 from core.body import Body
 from core.design import Design
@@ -26,9 +27,6 @@ if TYPE_CHECKING:
 
 LINKED = "landmarks/linked"
 """The setting of the window that both sides are placed together."""
-
-NEAR, FAR = 1.0, 5.0
-"""How far an arrow key moves a pin, alone and with Shift [mm]."""
 
 ARROWS = {
     Qt.Key.Key_Left: (-1, 0),
@@ -71,7 +69,7 @@ class LandmarkDesk(QObject):
             self.put_down()
             return True
         right, up = ARROWS.get(Qt.Key(event.key()), (0, 0))
-        far = FAR if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else NEAR
+        far = arrow_step(bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier))
         return bool(right or up) and self.nudge(far * right, far * up)
 
     # -- the session speaks

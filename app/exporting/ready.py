@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from app.exporting.outcome import Manner, Outcome
+from app.wording.lengths import length
 from app.wording.measure_titles import measure_title
 from app.wording.words import listed, number, say, tr
 from core import __version__
@@ -144,19 +145,19 @@ def _mesh(path: str, mesh: Mesh, manner: Manner) -> Ready:
 def _lines(path: str, outcome: Outcome, manner: Manner) -> Ready:
     curves = worn_curves(outcome.stages, outcome.points(manner.before), *outcome.looks)
     space = space_of(drawing_kind(path, CURVE_FORMATS), manner.unit, manner.axes)
-    told = listed(f"{curve.title} {number(curve.length)} mm" for curve in curves)
+    told = listed(f"{curve.title} {length(curve.length)}" for curve in curves)
     return Ready(told, _in_space(space), lambda at, _, hear: write_curves(at, curves, space))
 
 
 def _flat(path: str, outcome: Outcome, manner: Manner) -> Ready:
     drawn = strips(outcome.stages, outcome.control_points, *outcome.looks)
-    told = listed(f"{each.title} {number(each.length)} mm" for each in drawn)
+    told = listed(f"{each.title} {length(each.length)}" for each in drawn)
     heading = f"Busk {__version__} · {outcome.whose}"
     return Ready(told, "1:1", lambda at, _, hear: write_strips(at, drawn, heading, _strip_words))
 
 
 def _strip_words(text: str) -> str:
-    """Return what stands on a strip in the language in use."""
+    """Return what stands on a strip in the language in use; files keep millimetres."""
     marks = {
         SIDE_SEAM: tr("right side, seam"),
         CENTRE: tr("centre front"),
@@ -169,7 +170,7 @@ def _strip_words(text: str) -> str:
         SHOULDER: tr("shoulder"),
         SEWN: tr("back, at the under-bust band"),
     }
-    return marks.get(text) or say(text)
+    return marks.get(text) or say(text, "mm")
 
 
 def _measures(path: str, outcome: Outcome, manner: Manner) -> Ready:

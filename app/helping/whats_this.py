@@ -34,7 +34,7 @@ def _around(window: MainWindow) -> dict[QWidget, str]:
             "measured. The selected band can be pulled up or down to make its line shorter or longer."
         ),
         window.section_desk.panel: tr(
-            "The body cut by a plane, before and after, in millimetres. Move the plane by the handle on it "
+            "The body cut by a plane, before and after. Move the plane by the handle on it "
             "in the view, by the slider here, or by typing where it is."
         ),
         window.report_desk.page: tr(

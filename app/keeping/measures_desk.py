@@ -16,7 +16,8 @@ from app.presenting.measures import as_table, measure_views, measured_views
 from app.presenting.sizes import size_views
 from app.presenting.spread import spread_views
 from app.presenting.verdict import doubt_of
-from app.wording.words import number, tr
+from app.wording.lengths import length
+from app.wording.words import tr
 from core.body import Body
 from core.live import Frame
 from core.measures import Measures, before_after
@@ -160,7 +161,7 @@ class MeasuresDesk(QObject):
         self._show_sizes()
 
     def _allow(self, mm: float) -> None:
-        said = tr("Worn tight: {mm} mm off the under-bust").format(mm=number(mm, 1))
+        said = tr("Worn tight: {length} off the under-bust").format(length=length(mm))
         self._window.session.change({"worn_tight_mm": mm}, said)
         self._show_sizes()
 

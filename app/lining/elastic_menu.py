@@ -9,6 +9,7 @@ from PySide6.QtGui import QAction
 
 from app.dress.menu import Menu
 from app.dress.tip import set_tip
+from app.wording.lengths import width
 from app.wording.words import say, tr
 from core.design_elastics import Elastic
 from core.elastics import built_in, own_elastics
@@ -33,8 +34,7 @@ def fill_elastics(menu: Menu, chosen: str | None, kept: Iterable[Elastic], choos
         widths = menu.add_submenu(kind)
         _tick(widths.menuAction(), elsewhere in {each.name for each in elastics})
         for each in elastics:
-            words = tr("{width} mm").format(width=f"{each.width_mm:g}")
-            _add(widths, words, each.name == elsewhere, partial(choose, each))
+            _add(widths, width(each.width_mm), each.name == elsewhere, partial(choose, each))
     _group(menu, tr("Your own elastics"), {each.name: each for each in own}, elsewhere, choose)
     twice = tr("{name}, as in this project")
     titles = {
@@ -49,7 +49,7 @@ def fill_elastics(menu: Menu, chosen: str | None, kept: Iterable[Elastic], choos
 
 def kind_title(elastic: Elastic) -> str:
     """Return what an elastic that comes with Busk is called without its width."""
-    return say(elastic.name).removesuffix(f"{elastic.width_mm:g} mm").strip()
+    return say(elastic.name).removesuffix(width(elastic.width_mm)).strip()
 
 
 def _kinds(elastics: Iterable[Elastic]) -> dict[str, list[Elastic]]:

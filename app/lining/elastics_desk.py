@@ -13,7 +13,8 @@ from app.dress.ask import ask
 from app.keeping.dialogs import ask_save, ask_table
 from app.panels.elastics_sheet import ElasticsSheet
 from app.presenting.elastics import elastic_views
-from app.wording.words import number, tr
+from app.wording.lengths import length
+from app.wording.words import tr
 from core.design_elastics import Elastic
 from core.elastics import (
     ALLOWANCE,
@@ -143,8 +144,8 @@ class ElasticsDesk(QObject):
 
 def _assumed() -> str:
     """Return what goes into every length to cut though no table told it."""
-    words = tr("Its table tells no allowance for seams: {mm} mm go into every length to cut.")
-    return words.format(mm=number(ALLOWANCE, 0))
+    words = tr("Its table tells no allowance for seams: {length} go into every length to cut.")
+    return words.format(length=length(ALLOWANCE, 0))
 
 
 def _beside_ours(elastic: Elastic) -> Elastic:

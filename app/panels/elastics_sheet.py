@@ -23,6 +23,7 @@ from app.dress.sheet import Sheet
 from app.dress.theme import font, label, set_tag, tokens_of
 from app.dress.tip import set_tip
 from app.panels.notice import NoticeBar
+from app.wording.lengths import length_unit
 from app.wording.words import number, tr
 
 TOLD_AT = (0.2, 0.4, 0.6, 0.8)
@@ -133,7 +134,9 @@ class _Table(QTreeWidget):
     def __init__(self) -> None:
         super().__init__()
         at = [f"{number(100.0 * each, 0)} %" for each in TOLD_AT]
-        self.setHeaderLabels([tr("Elastic"), tr("mm wide"), *at, tr("allowance mm"), tr("from")])
+        lengths = (tr("{unit} wide"), tr("allowance {unit}"))
+        wide, allowance = (each.format(unit=length_unit()) for each in lengths)
+        self.setHeaderLabels([tr("Elastic"), wide, *at, allowance, tr("from")])
         self.setRootIsDecorated(False)
         self.setUniformRowHeights(True)
         self.setAccessibleName(tr("Elastics"))

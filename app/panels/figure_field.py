@@ -8,7 +8,7 @@ from PySide6.QtCore import QSize, Qt, Signal
 from app.dress.theme import font
 from app.dress.tip import set_tip
 from app.panels.typed_field import TypedField, read_figure
-from app.wording.lengths import read_length, shown_digits, shown_unit, shown_value
+from app.wording.lengths import length_number, read_length, shown_unit
 from app.wording.words import number, tr
 
 
@@ -32,9 +32,9 @@ class FigureField(TypedField):
         set_tip(self, name)
         self._make_room()
 
-    def set_unit(self, unit: str, digits: int, signed: bool) -> None:
-        """Show values in another unit."""
-        self._of, self._unit = unit, shown_unit(unit)
+    def set_unit(self, unit: str, digits: int, signed: bool, *, named: bool = True) -> None:
+        """Show values in another unit, which is not ``named`` where it is written beside the field."""
+        self._of, self._unit = unit, shown_unit(unit) if named else ""
         self._digits, self._signed = digits, signed
         self._make_room()
 
@@ -54,8 +54,8 @@ class FigureField(TypedField):
         return self.fontMetrics().horizontalAdvance(self._unit) + 3 if self._unit else 0
 
     def _words(self) -> str:
-        value, digits = shown_value(self._value, self._of), shown_digits(self._digits, self._of)
-        return number(value, digits, self._signed).replace(",", "")
+        written = length_number if self._of == "mm" else number
+        return written(self._value, self._digits, self._signed).replace(",", "")
 
     def _read(self, text: str) -> float:
         value = read_length(text) if self._of == "mm" else read_figure(text)

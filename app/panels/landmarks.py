@@ -13,6 +13,7 @@ from app.dress.parts import Disclosure, EmptyState, ToolButton, button, hairline
 from app.dress.theme import label, tokens_of
 from app.dress.tip import set_tip
 from app.panels.landmark_row import LandmarkRow, LandmarkView
+from app.wording.lengths import arrow_step, length
 from app.wording.words import joined, say, tr
 
 
@@ -21,8 +22,13 @@ def keys_in_words() -> list[tuple[str, str]]:
     return [
         ("↑ ↓", tr("The landmark above or below")),
         ("Enter", tr("Move its pin by keys, then put it down")),
-        ("← → ↑ ↓", tr("Move the pin by 1 mm, with Shift by 5 mm")),
+        ("← → ↑ ↓", tr("Move the pin by {step}, with Shift by {far}").format(**_steps())),
     ]
+
+
+def _steps() -> dict[str, str]:
+    """Return what arrow keys move a pin by, alone and with Shift."""
+    return {"step": length(arrow_step(), 0), "far": length(arrow_step(far=True), 0)}
 
 
 class _Area(QScrollArea):
@@ -186,7 +192,10 @@ class LandmarksPanel(QWidget):
             view = self.rows[name].view
             self._rule_title.setText(view.title)
             self._rule.setText(view.words())
-            drag = tr("Drag its pin to correct it, or press Enter and use the arrow keys: 1 mm, Shift 5 mm.")
+            drag = tr(
+                "Drag its pin to correct it, or press Enter and use the arrow keys: {step}, Shift {far}."
+            )
+            drag = drag.format(**_steps())
             self._hint.setText(tr("Puts a pin in the middle of the view.") if absent else drag)
             self._hint.setVisible(self._placing or not absent)
             if view.group == "further":

@@ -14,6 +14,7 @@ from app.dress.theme import label
 from app.dress.tip import set_tip
 from app.panels.legend_bar import LegendBar, Mark
 from app.showing.live_plot import PullTitle, Quantity
+from app.wording.lengths import shown_unit
 from app.wording.words import tr
 
 WIDTH = 152
@@ -64,7 +65,9 @@ class Legend(FloatingPanel):
         column.setSpacing(4)
         head = QHBoxLayout()
         head.setSpacing(4)
-        self.title = PullTitle([Quantity(kind.name, kind.title, kind.unit, 0.0) for kind in kinds])
+        self.title = PullTitle(
+            [Quantity(kind.name, kind.title, shown_unit(kind.unit), 0.0) for kind in kinds]
+        )
         self.title.chosen.connect(self.chosen)
         self._add_to(self.title.menu)
         close = ToolButton("x", tr("Close the map  C"), size=14, room=24)
@@ -91,9 +94,9 @@ class Legend(FloatingPanel):
     def show_map(self, name: str) -> None:
         """Show another map's title and words; nothing is emitted."""
         self._kind = kind = self._kinds[name]
-        self.title.show_quantity(Quantity(kind.name, kind.title, kind.unit, 0.0))
+        self.title.show_quantity(Quantity(kind.name, kind.title, shown_unit(kind.unit), 0.0))
         self.show_note(kind.note)
-        self.bar.set_numbers(kind.digits, kind.both_ways, kind.marks)
+        self.bar.set_numbers(kind.unit, kind.digits, kind.both_ways, kind.marks)
 
     def show_note(self, note: str) -> None:
         """Say under the bar what the values are."""

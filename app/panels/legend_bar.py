@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QWidget
 from app.dress.theme import font, tokens_of
 from app.dress.tip import set_tip
 from app.panels.figure_field import FigureField
+from app.wording.lengths import shown_digits, shown_value
 from app.wording.words import number, tr
 
 Mark = tuple[float, str, str]
@@ -45,7 +46,7 @@ class LegendBar(QWidget):
         self._value: float | None = None
         self._grip: tuple[bool, float, tuple[float, float]] | None = None
         self._by_hand = False
-        self._digits, self._signed = 1, False
+        self._unit, self._digits, self._signed = "", 1, False
         self._marks: tuple[Mark, ...] = ()
         self._bar = QRectF(BAR)
         ends = tr("Highest value of the colours"), tr("Lowest value of the colours")
@@ -74,11 +75,11 @@ class LegendBar(QWidget):
         self.setFixedHeight(self.sizeHint().height())
         self.update()
 
-    def set_numbers(self, digits: int, signed: bool, marks: Sequence[Mark]) -> None:
-        """Write the numbers and limits of another map."""
-        self._digits, self._signed, self._marks = digits, signed, tuple(marks)
+    def set_numbers(self, unit: str, digits: int, signed: bool, marks: Sequence[Mark]) -> None:
+        """Write the numbers and limits of another map, whose values are in ``unit``."""
+        self._unit, self._digits, self._signed, self._marks = unit, digits, signed, tuple(marks)
         for field in (self.high, self.low):
-            field.set_unit("", digits, signed)
+            field.set_unit(unit, digits, signed, named=False)
         self.show_ends()
 
     def set_range(self, low: float, high: float, stops: Sequence[str], by_hand: bool) -> None:
@@ -115,18 +116,17 @@ class LegendBar(QWidget):
         painter.drawRoundedRect(self._bar.adjusted(0.5, 0.5, -0.5, -0.5), 3.0, 3.0)
         painter.setFont(font("caption", tabular=True))
         low, high = self.range_
-        digits = self._digits
-        if any(abs(value - round(value, digits)) > 1e-6 for value in np.linspace(low, high, TICKS)):
+        digits = shown_digits(self._digits, self._unit)
+        shown = [shown_value(float(value), self._unit) for value in np.linspace(low, high, TICKS)]
+        if any(abs(value - round(value, digits)) > 1e-6 for value in shown):
             digits += 1  # rounded they would look uneven
-        for value in np.linspace(low, high, TICKS):
+        for value, written in zip(np.linspace(low, high, TICKS), shown, strict=True):
             y = self.y_of(float(value))
             painter.setPen(QPen(QColor(tokens.control), 1.0))
             painter.drawLine(QPointF(self._bar.right() + 1, y), QPointF(self._bar.right() + 4, y))
             if low < value < high:
                 painter.setPen(QColor(tokens.text_quiet))
-                painter.drawText(
-                    QRectF(27, y - 10, 60, 20), _LEFT, number(float(value), digits, self._signed)
-                )
+                painter.drawText(QRectF(27, y - 10, 60, 20), _LEFT, number(written, digits, self._signed))
         self._paint_marks(painter)
         if self._value is not None:
             self._paint_value(painter, self._value)
@@ -151,7 +151,8 @@ class LegendBar(QWidget):
         painter.setBrush(QColor(tokens.ink))
         painter.drawRoundedRect(pill, 4.0, 4.0)
         painter.setPen(QColor(tokens.on_ink))
-        painter.drawText(pill, Qt.AlignmentFlag.AlignCenter, number(value, self._digits, self._signed))
+        written = number(shown_value(value, self._unit), shown_digits(self._digits, self._unit), self._signed)
+        painter.drawText(pill, Qt.AlignmentFlag.AlignCenter, written)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         if event.button() == Qt.MouseButton.LeftButton:

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QApplication, QFrame, QScrollArea, QVBoxLayout, QW
 from app.dress.parts import EmptyState, sentence
 from app.panels.line_head import LineHead
 from app.panels.line_row import LineRow, LineView
+from app.wording.lengths import length_unit
 from app.wording.words import tr
 
 __all__ = ["LineView", "LinesPanel"]
@@ -23,7 +24,7 @@ def keys_in_words() -> list[tuple[str, str]]:
         ("↑ ↓", tr("The line above or below")),
         ("← →, - +", tr("Shorter or longer by 0.1 %, with Shift 1 %, with Alt 0.01 %")),
         ("Backspace", tr("Back to the length at rest")),
-        ("Enter", tr("Type the length in percent, Tab: in millimetres")),
+        ("Enter", tr("Type the length in percent, Tab: in {unit}").format(unit=length_unit())),
         ("Esc", tr("Put back what is being dragged")),
     ]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.wording.lengths import length_number, shown_digits, shown_unit, shown_value
+from app.wording.lengths import decimal_length, shown_digits, shown_unit, shown_value
 from app.wording.words import colon, number, tr
 from core.measuring.plus_minus import digits, rounded
 
@@ -128,7 +128,7 @@ def plus_minus(off: float) -> str:
 
 def length_off(off: float) -> str:
     """Return how far a length [mm] may be off as it is written, in the unit in use."""
-    return f"± {length_number(rounded(off), digits(off))}"
+    return f"± {decimal_length(rounded(off), digits(off))}"
 
 
 def digits_of(unit: str) -> int:

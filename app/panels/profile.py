@@ -18,11 +18,11 @@ from app.panels.figure_field import FigureField
 from app.showing.live_plot import PullTitle, Quantity
 from app.showing.profile_band import paint_band
 from app.showing.profile_plot import Drawn, ProfilePlot
-from app.wording.lengths import length
+from app.wording.lengths import arrow_step, length, length_unit
 from app.wording.words import tr
 
 STEPS = 2
-"""Steps of the slider in a millimetre."""
+"""Places of the slider in a step of an arrow key."""
 
 NARROW, WIDE = 196, 244
 """Least and largest width of the plot, which leaves the body the rest of the view [px]."""
@@ -62,7 +62,7 @@ class ProfilePanel(FloatingPanel):
         column.setSpacing(SPACING)
         column.addLayout(self._head())
         self.plot = ProfilePlot()
-        self.plot.setAccessibleName(tr("Curves of the section in millimetres"))
+        self.plot.setAccessibleName(tr("Curves of the section, in {unit}").format(unit=length_unit()))
         set_tip(self.plot, tr("Wheel: zoom. Drag: move. Double click: all that changed."))
         column.addWidget(self.plot)
         column.addLayout(self._place_row())
@@ -124,9 +124,10 @@ class ProfilePanel(FloatingPanel):
         row.setSpacing(6)
         self.slider = PlaneSlider()
         self.slider.setAccessibleName(tr("Place of the section plane"))
-        set_tip(self.slider, tr("Move the section plane [mm]; ← → 0.5 mm"))
+        set_tip(self.slider, tr("Move the section plane; ← → {step}").format(step=length(arrow_step(), 0)))
+        self.slider.setSingleStep(STEPS)
         self.slider.setPageStep(10 * STEPS)
-        self.slider.valueChanged.connect(lambda value: self.moved.emit(value / STEPS))
+        self.slider.valueChanged.connect(lambda value: self.moved.emit(value * _place()))
         self._axis = label("", "caption")
         self.place = FigureField("mm", tr("Place of the section plane"), widest="−888.8")
         self.place.entered.connect(self.moved)
@@ -172,8 +173,8 @@ class ProfilePanel(FloatingPanel):
         self.place.show_value(at)
         speak_value(self.slider, f"{axis} = {length(at)}")
         self.slider.blockSignals(True)
-        self.slider.setRange(round(low * STEPS), round(high * STEPS))
-        self.slider.setValue(round(at * STEPS))
+        self.slider.setRange(round(low / _place()), round(high / _place()))
+        self.slider.setValue(round(at / _place()))
         self.slider.blockSignals(False)
 
     def show_curves(self, drawn: Drawn, readout: str, *, again: bool) -> None:
@@ -182,6 +183,11 @@ class ProfilePanel(FloatingPanel):
         banded = ["band"] if drawn.bands else []
         self.keys.show_roles([*(role for role in CurveKeys.ROLES if drawn.curves.get(role)), *banded])
         self.readout.setText(readout)
+
+
+def _place() -> float:
+    """Return how far two places of the slider are apart [mm]."""
+    return arrow_step() / STEPS
 
 
 class PlaneSlider(QSlider):

@@ -52,7 +52,7 @@ class _WishField(FigureField):
     def __init__(self, view: WishView) -> None:
         super().__init__(view.unit, view.title, signed=view.signed, widest="+1000.0")
         self._typed = False
-        figure = QRegularExpression(r"[\s+\-−＋－]*[\s\d.,．，]*" + _UNITS[view.unit])
+        figure = QRegularExpression(r"[\s+\-−＋－]*[\s\d.,．，/⁄¼½¾⅛⅜⅝⅞-]*" + _UNITS[view.unit])
         self.setValidator(QRegularExpressionValidator(figure, self))
         self.textEdited.connect(self._tell)
 

@@ -13,6 +13,7 @@ from app.dress.parts import ElidedLabel, Segment, button, hairline, sentence
 from app.dress.theme import font, label, set_tag
 from app.dress.tip import set_tip
 from app.panels.figure_field import FigureField
+from app.wording.lengths import length_unit
 from app.wording.words import tr
 from core.calibration import THICKEST
 
@@ -151,7 +152,7 @@ class WornPage(QWidget):
         column.setContentsMargins(0, 4, 0, 0)
         column.setSpacing(6)
         column.addWidget(hairline())
-        column.addWidget(label(f"{tr('Predicted less real')} [mm]", "name"))
+        column.addWidget(label(f"{tr('Predicted less real')} [{length_unit()}]", "name"))
         column.addLayout(self._figures)
         column.addWidget(self.bust)
         row = QHBoxLayout()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from app.presenting.asking import figure_title, is_signed
 from app.presenting.lines import told_title
-from app.wording.lengths import length
+from app.wording.lengths import length, length_unit
 from app.wording.words import listed, number, tr
 from core.aims.outline import section_of
 from core.design import Design
@@ -29,11 +29,12 @@ def _sentence(conflict: Conflict) -> str:
         )
     words = tr(
         "{target} conflicts with {other}: as the only target {value}, with {other} at {lost} instead of "
-        "{kept} ({price} mm per mm)."
+        "{kept} ({price} {unit} per {unit})."
     )
     lost, kept = (_value(conflict.against, value) for value in (conflict.lost, conflict.kept))
     other, price = figure_title(conflict.against), number(conflict.price, 2)
-    return words.format(target=name, other=other, value=alone, lost=lost, kept=kept, price=price)
+    values = {"value": alone, "lost": lost, "kept": kept, "price": price, "unit": length_unit()}
+    return words.format(target=name, other=other, **values)
 
 
 def _value(name: str, value: float) -> str:

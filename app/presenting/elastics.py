@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from app.panels.elastics_sheet import TOLD_AT, ElasticView
+from app.wording.lengths import width_number
 from app.wording.words import number, say, tr
 from core.design_elastics import Elastic
 
@@ -32,9 +33,9 @@ def _view(elastic: Elastic, where: str, own: bool) -> ElasticView:
         elastic.name,
         elastic.name if own else say(elastic.name),
         tr("{where}, estimate").format(where=where) if elastic.estimate else where,
-        f"{elastic.width_mm:g}",
+        width_number(elastic.width_mm),
         forces,
-        f"{elastic.allowance_mm:g}",
+        width_number(elastic.allowance_mm),
         say(elastic.source),
         elastic.estimate,
         own,

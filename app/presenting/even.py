@@ -211,8 +211,8 @@ def _by_turns(design: Design) -> str:
         return ""
     return tr(
         "Figures are those of the exact answer, where each breast keeps its volume. Turns keep both "
-        "together: Measures may differ by some tenths of a mm and 10 to 20 ml."
-    )
+        "together: Measures may differ by up to {length} and 10 to 20 ml."
+    ).format(length=length(1.0, 0))
 
 
 def _outcome(reply: Reply, met: bool) -> str:

@@ -33,17 +33,17 @@ def garment_view(frame: Frame, cuts: CutList) -> GarmentView:
     )
 
 
-def told(sentence: str, design: Design) -> str:
-    """Return what the core says of lines and elastics in the words of the window."""
+def told(sentence: str, design: Design, unit: str = "") -> str:
+    """Return what the core says of lines and elastics in the words of the window; ``unit`` as in ``say``."""
     for name in sorted((each.name for each in design.elastics), key=len, reverse=True):
-        sentence = sentence.replace(name, say(name))
-    return say(titled(sentence, design))
+        sentence = sentence.replace(name, say(name, unit))
+    return say(titled(sentence, design), unit)
 
 
 def as_table(frame: Frame, cuts: CutList, pressed: PressList | None) -> list[list[str]]:
     """Return the cut list as plain cells, with a heading, in the order of the list of lines.
 
-    ``pressed`` is what the lines press with, if that is known of this frame.
+    ``pressed`` is what the lines press with, if that is known of this frame. Lengths are in mm, as in files.
     """
     heading = [
         tr("Line"),
@@ -104,6 +104,6 @@ def _cells(row: CutRow, kpa: float | None, design: Design) -> list[str]:
         row.allowance_mm,
     )
     written = ["" if each is None else f"{each:.1f}" for each in figures]
-    notes = joined(told(note, design) for note in row.notes)
+    notes = joined(told(note, design, "mm") for note in row.notes)
     estimate = tr("yes") if row.estimate else tr("no")
-    return [line_title(row.line, design), say(row.elastic), *written, estimate, notes]
+    return [line_title(row.line, design), say(row.elastic, "mm"), *written, estimate, notes]

@@ -11,6 +11,7 @@ from app.panels.legend import MapKind
 from app.presenting.bust import BustMove, BustStep, bust_sentence, forward_words, offs_of, step_words
 from app.presenting.pressure import limit_marks
 from app.seeing.paint import Ramp
+from app.wording.lengths import length, shown_value
 from app.wording.tokens import MAP_AMOUNT, MAP_LESS, MAP_MORE
 from app.wording.words import number, tr
 from core.measuring.plus_minus import Spread
@@ -26,7 +27,7 @@ MAPS = ("displacement", "strain", "sides", "worn", *LINE_MAPS)
 """Maps in the order in which a key goes through them, the first one first seen."""
 
 BOTH_WAYS = ("displacement", "sides", "worn")
-"""Maps whose values go both ways from zero."""
+"""Maps whose values go both ways from zero, all of them lengths."""
 
 _LEAST = {"sides": 5.0, "worn": 5.0, "pressure": 5.0}  # no map shows less [mm, kPa]; both limits are seen
 _ROUND = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
@@ -128,7 +129,7 @@ def pressure_note(listed: PressList | None, stale: bool) -> str:
 
 def bridge_words(off: float) -> str:
     """Return what is said of a place at which a band goes straight over a hollow, ``off`` the skin [mm]."""
-    return tr("bridges, {mm} mm off").format(mm=number(off, 0))
+    return tr("bridges, {length} off").format(length=length(off, 0))
 
 
 def ramp_of(name: str, low: float, high: float, clay: str) -> Ramp:
@@ -143,7 +144,8 @@ def automatic_range(name: str, values: Floats) -> tuple[float, float]:
     if name == "pull":
         return 0.0, 100.0
     seen = np.abs(values[np.isfinite(values)])
-    high = rounded_up(max(float(seen.max(initial=0.0)), _LEAST.get(name, 1.0)))
+    one = 1.0 / shown_value(1.0, "mm" if name in BOTH_WAYS else "")  # of the unit in which it is written
+    high = one * rounded_up(max(float(seen.max(initial=0.0)), _LEAST.get(name, 1.0)) / one)
     return (-high, high) if name in BOTH_WAYS else (0.0, high)
 
 

@@ -64,12 +64,12 @@ def suggested_name(draft: Draft, titles: Mapping[str, str]) -> str:
     if draft.kind != "girth":
         ends = [titles.get(mark, "") for mark in draft.ends]
         return f"{ends[0]} → {ends[1]}"[:LONGEST_NAME] if all(ends) else ""
-    level = number(draft.level, 0, signed=bool(draft.at))
+    level = length(draft.level, 0, signed=bool(draft.at))
     if not draft.at:
-        return tr("Girth at {mm} mm").format(mm=level) if draft.level else ""
+        return tr("Girth at {height}").format(height=level) if draft.level else ""
     place = titles.get(draft.at, draft.at)
     if draft.level:
-        place = f"{place} {level} mm"
+        place = f"{place} {level}"
     return tr("Girth, {place}").format(place=place)[:LONGEST_NAME]
 
 

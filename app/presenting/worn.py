@@ -14,6 +14,7 @@ from core.calibration import CalibrationResult, Difference, Figures, Worn
 from core.design import Design
 from core.design_calibration import WELL, Calibration, FoundNumber
 from core.mesh import Floats
+from core.worn_scan.aligning import MET
 from core.worn_scan.numbers import FIRM_CHEST, LENGTH, LINE_STIFFNESS, PRESTRESS, STIFFNESS, TISSUE
 
 
@@ -21,8 +22,8 @@ def aligned_words(worn: Worn) -> str:
     """Return how well a worn scan lies on the first, in a sentence or two."""
     laid = worn.alignment
     met = tr(
-        "{share} % of the skin that no line moves lies within 5 mm of it, {length} off as a rule."
-    ).format(share=number(100.0 * laid.met, 0), length=length(laid.rms))
+        "{share} % of the skin that no line moves lies within {near} of it, {length} off as a rule."
+    ).format(near=length(MET, 0), share=number(100.0 * laid.met, 0), length=length(laid.rms))
     sure = tr("Sure to ±{turn}° and ±{length}.").format(
         turn=number(2.0 * float(laid.turns.max()), 2), length=length(2.0 * float(laid.shifts.max()))
     )

@@ -13,6 +13,7 @@ from app.reporting.head import WIDE
 from app.reporting.paper import Paper, elided, text_width, wrapped
 from app.reporting.tables import heading
 from app.showing.plot_scale import digits_of, round_ticks
+from app.wording.lengths import length, length_number, length_unit, shown_value
 from app.wording.tokens import LIGHT
 from app.wording.words import number, tr
 from core.mesh import Floats
@@ -22,7 +23,10 @@ LOWEST, HIGHEST = 52.0, 116.0
 """How high the curves are at least, and at most [mm]."""
 
 _SIDE, _GAP, _AXIS, _FOOT = 62.0, 8.0, 9.0, 3.6
-_GRID = (5.0, 10.0, 20.0, 50.0, 100.0, 200.0)  # mm on the body
+_METRIC = (5.0, 10.0, 20.0, 50.0, 100.0, 200.0)
+_GRID = {"mm": _METRIC, "cm": _METRIC, "in": tuple(25.4 * each for each in (0.25, 0.5, 1.0, 2.0, 4.0, 8.0))}
+"""Between two lines of a grid, by the unit in use [mm on the body]."""
+
 _NARROWEST = 7.0  # mm on paper between two lines of a grid
 
 
@@ -30,7 +34,7 @@ def curve_block(handout: Handout, height: float) -> Block:
     """Return the side of the body, and beside it its level at the bust over the plots of the run."""
     sheet = handout.sheet
     side, bust = sheet.sections
-    title = heading(tr("Before and after, in millimetres"), WIDE)
+    title = heading(tr("Before and after"), WIDE)
     top, right = title.height, _SIDE + _GAP
     half = (0.5 if _plotted(sheet) else 0.85) * (height - top)
     wide = 0.5 * (WIDE - right - _GAP)
@@ -81,9 +85,9 @@ def _section(
     box, zero = np.array(cut.box), np.array(cut.bust_point)
     room = np.array([width - _AXIS, height - 4.0 - _FOOT])
     scale = float((room / (box[1] - box[0])).min())
-    centre, step = box.mean(axis=0), next(each for each in _GRID if each * scale >= _NARROWEST)
+    centre, step = box.mean(axis=0), next(each for each in _GRID[length_unit()] if each * scale >= _NARROWEST)
     low, high = centre - zero + np.array([[-0.5], [0.5]]) * room / scale
-    said = elided(tr("grid {mm} mm, 0 at the bust point").format(mm=f"{step:g}"), "caption", width)
+    said = elided(tr("grid {length}, 0 at the bust point").format(length=length(step, 0)), "caption", width)
     bands = [_band(curve, off) for curve, off in zip(cut.after, cut.off_mm, strict=False) if len(curve) > 2]
 
     def paint(paper: Paper, x: float, y: float) -> None:
@@ -100,7 +104,7 @@ def _section(
         for up in _rounds(low[1], high[1], step):
             at = top + (high[1] - up) * scale
             paper.rule(left, at, room[0], ink=LIGHT.outline if up == 0.0 else LIGHT.line)
-            paper.text(left - 1.4, at + 0.75, number(up, 0, signed=True), "axis", align="right")
+            paper.text(left - 1.4, at + 0.75, length_number(up, 0, signed=True), "axis", align="right")
         paper.clip(left, top, *room)
         for band in bands:
             paper.area(on_page(band), LIGHT.accent)
@@ -142,12 +146,13 @@ def _plots(
         said = tr("No turns to plot: no line is worn.")
     if not _plotted(sheet):
         return [(left, top, _sentence(said, 2.0 * width + _GAP))]
-    error, up = tr("Volume error, %"), tr("Bust points, mm up")
+    error, up = tr("Volume error, %"), tr("Bust points, {unit} up").format(unit=length_unit())
+    heights = [shown_value(each) for each in turns.up_mm]
     if not sheet.sound:
         return [(left, top, _plot(turns, turns.error_percent, error, 2.0 * width + _GAP, height))]
     return [
         (left, top, _plot(turns, turns.error_percent, error, width, height)),
-        (left + width + _GAP, top, _plot(turns, turns.up_mm, up, width, height)),
+        (left + width + _GAP, top, _plot(turns, heights, up, width, height)),
     ]
 
 

@@ -9,7 +9,7 @@ from math import inf, sqrt
 from app.panels.measure_view import length_off
 from app.presenting.pressure import light_word
 from app.reporting.telling import NOTHING, figure, piece_title
-from app.wording.lengths import length_number, length_unit
+from app.wording.lengths import length_number, length_unit, width, width_number
 from app.wording.words import joined, listed, number, say, tr
 from core.cutting import FRONT_ONLY, SLACK, UNCHOSEN, CutRow
 from core.measuring.plus_minus import CUT, MAX_KPA, TENSION
@@ -137,14 +137,13 @@ def cut_pieces(sheet: Sheet, order: Sequence[str]) -> list[tuple[str, str, str]]
 
 def _cut_view(cut: CutRow, press: PressRow) -> CutView:
     stretch = None if cut.elongation is None else 100.0 * cut.elongation
-    width = None if cut.width_mm is None else _width(cut.width_mm)
     figures = (
-        width or NOTHING,
-        figure(cut.cut_mm, 0, "mm"),
-        figure(cut.allowance_mm, 0, "mm"),
+        NOTHING if cut.width_mm is None else width_number(cut.width_mm),
+        _length(cut.cut_mm),
+        _length(cut.allowance_mm),
         figure(stretch, 0),
-        figure(cut.reached_whole_mm, 0, "mm"),
-        NOTHING if cut.height_mm is None else length_number(cut.height_mm, 0, signed=True),
+        _length(cut.reached_whole_mm),
+        _length(cut.height_mm, signed=True),
         figure(cut.tension_n, 1),
         figure(press.max_kpa, 1),
     )
@@ -172,20 +171,19 @@ def _remark(cut: CutRow) -> str:
     return joined(said)
 
 
+def _length(mm: float | None, signed: bool = False) -> str:
+    return NOTHING if mm is None else length_number(mm, 0, signed)
+
+
 def _elastic(cut: CutRow) -> str:
     """Return what a line is made of, without the width, which stands beside it."""
-    return say(cut.elastic).removesuffix(f" {cut.width_mm or 0.0:g} mm") if cut.elastic else NOTHING
-
-
-def _width(mm: float) -> str:
-    """Return a width as it is ordered: in millimetres without decimals that are not there."""
-    return f"{mm:g}" if length_unit() == "mm" else length_number(mm, 0)
+    return say(cut.elastic).removesuffix(f" {width(cut.width_mm or 0.0)}") if cut.elastic else NOTHING
 
 
 def _without_figures(view: CutView) -> CutView:
-    width, *others = view.figures
+    first, *others = view.figures
     remark = tr("No figure: the shape is no result.")
-    nothing = (width, *(NOTHING for _ in others))
+    nothing = (first, *(NOTHING for _ in others))
     return replace(view, figures=nothing, light="", word="", to_cut=False, remark=remark)
 
 

@@ -12,14 +12,12 @@ from app.dress.theme import tokens_of
 from app.seeing.camera import View
 from app.showing.knob import Knob
 from app.showing.viewport import Viewport
+from app.wording.lengths import arrow_step, length
 from app.wording.words import tr
 from core.mesh import Floats
 
 SIZE, SMALL = 48, 26
 """Width and height of a handle with its arrows, and of one without [px]."""
-
-NEAR, FAR = 1.0, 5.0
-"""What an arrow key moves it by, and with Shift [mm]."""
 
 _UP, _OUT = np.array([0.0, 0.0, 1.0]), np.array([0.0, -1.0, 0.0])
 _FLATTEST = 0.35  # a way seen shorter than this part of a mm across points at the eye
@@ -39,8 +37,8 @@ class BustHandle(Knob):
 
     def __init__(self, viewport: Viewport, side: str, name: str, *, small: bool = False) -> None:
         self._size = SMALL if small else SIZE
-        tip = tr("Drag to where it is to be; Shift: finer, Esc: back. Arrows: 1 mm")
-        super().__init__(viewport, self._size, name, tip)
+        tip = tr("Drag to where it is to be; Shift: finer, Esc: back. Arrows: {step}")
+        super().__init__(viewport, self._size, name, tip.format(step=length(arrow_step(), 0)))
         self.side, self._small = side, small
         self._place, self._foot = np.zeros(3), np.zeros(3)
         self._ways = np.zeros((2, 2))  # of one mm up and out over the picture, as columns [px]
@@ -105,7 +103,7 @@ class BustHandle(Knob):
         super().hideEvent(event)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        far = FAR if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else NEAR
+        far = arrow_step(bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier))
         step = {
             Qt.Key.Key_Up: (far, 0.0),
             Qt.Key.Key_Down: (-far, 0.0),

@@ -27,7 +27,8 @@ from app.dress.spoken import speak_value
 from app.dress.theme import font, tokens_of
 from app.showing.plot_scale import load_curves
 from app.showing.profile_band import paint_band, write_off
-from app.wording.words import number, tr
+from app.wording.lengths import length_number, length_unit
+from app.wording.words import tr
 from core.mesh import Floats
 
 LEFT, BOTTOM, EDGE = 34.0, 18.0, 6.0
@@ -174,7 +175,7 @@ class ProfilePlot(QWidget):
                 painter.setPen(QPen(QColor(tokens.line), 1.0))
                 painter.drawLine(*ends)
                 if k % 2 == 0:
-                    self._write(painter, axis, spot, number(k * step, 0))
+                    self._write(painter, axis, spot, length_number(k * step, 0))
 
     def _write(self, painter: QPainter, axis: int, spot: QPointF, text: str) -> None:
         painter.setPen(QColor(tokens_of(self).text_caption))
@@ -283,7 +284,9 @@ class ProfilePlot(QWidget):
 
 
 def grid_step(least: float) -> float:
-    """Return the smallest of 1, 2, 5, 10, 20 .. mm that is not below ``least`` [mm]."""
+    """Return the smallest of 1, 2, 5, 10, 20 .. mm, or 1/8, 1/4, 1/2, 1 .. in, not below ``least`` [mm]."""
+    if length_unit() == "in":
+        return 25.4 * max(2.0 ** math.ceil(math.log2(max(least, 1e-3) / 25.4) - 1e-9), 0.125)
     power = 10.0 ** math.floor(math.log10(max(least, 1e-3)))
     step = next(unit * power for unit in (1.0, 2.0, 5.0, 10.0) if unit * power >= least * (1.0 - 1e-9))
     return max(step, 1.0)

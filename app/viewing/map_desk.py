@@ -20,6 +20,7 @@ from app.viewing.band_map import BandPainter, BandValues
 from app.viewing.body_view import BodyView
 from app.viewing.legend_place import LegendPlace
 from app.viewing.map_values import MapValues
+from app.wording.lengths import length
 from app.wording.words import number
 from core.live import Frame
 from core.mesh import Floats
@@ -294,4 +295,6 @@ class MapDesk(QObject):
 
     def _words(self, value: float) -> str:
         kind = self._kinds[self.name]
+        if kind.unit == "mm":
+            return length(value, kind.digits, kind.both_ways)
         return f"{number(value, kind.digits, kind.both_ways)} {kind.unit}"

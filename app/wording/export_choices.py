@@ -52,7 +52,7 @@ def _drawings() -> tuple[Export, ...]:
             "lines",
             tr("Lines as curves"),
             "lines",
-            tr("The worn lines, smooth on the skin: some mm off the lengths in the cut list. Cut by strips."),
+            tr("The worn lines, smooth on the skin. Lengths differ from the cut list: cut by strips."),
             {
                 "dxf": tr("For CAD and pattern programs: a layer for each part of a line."),
                 "obj": tr("For 3D programs, to lie on the body that is exported likewise."),

@@ -9,6 +9,9 @@ from contextlib import contextmanager
 from functools import cache, lru_cache
 from importlib import resources
 
+from app.wording.lengths import length_unit, with_lengths
+from app.wording.numerals import number as number  # noqa: PLC0414 - lengths, which words need, write numbers too
+
 LANGUAGES = {"en": "English", "ja": "日本語"}
 """The languages that can be chosen, by code, each in its own words."""
 
@@ -56,25 +59,27 @@ def tr(english: str) -> str:
     return _table(_code).get(english, english)
 
 
-def say(english: str) -> str:
+def say(english: str, unit: str = "") -> str:
     """Return what the core says in the language of the window.
 
     ``english`` is one or more sentences with names and numbers filled in; one that no pattern fits stays.
+    Lengths in millimetres get the unit in use; with "mm", as in files, they stay.
     """
-    return _said(_code, english)
+    return _said(_code, unit or length_unit(), english)
 
 
 @lru_cache(4096)  # the same is said again and again, and hundreds of patterns are tried for each
-def _said(code: str, english: str) -> str:
-    messages = _messages(code)
+def _said(code: str, unit: str, english: str) -> str:
+    messages = _messages(code, unit)
     for pattern, translated in messages:
         match = pattern.fullmatch(english)
         if match:
-            places = match.groupdict().items()
-            return translated.format(**{name: _said(code, value) for name, value in places})
+            places = match.groupdict()
+            template, places = (translated, places) if unit == "mm" else with_lengths(translated, places)
+            return template.format(**{name: _said(code, unit, value) for name, value in places.items()})
     sentences = _SENTENCE_END.split(english) if messages else [english]
     if len(sentences) > 1:
-        return "".join(_said(code, each) for each in sentences)
+        return ("" if code == "ja" else " ").join(_said(code, unit, each) for each in sentences)
     # A sentence that begins with the name of a line; a name of a file, with its dot, stays as it is.
     begins_small = english.endswith((".", "?")) and re.match(r"[a-z][a-z-]* ", english)
     return english[0].upper() + english[1:] if begins_small else english
@@ -93,9 +98,12 @@ def _table(code: str) -> dict[str, str]:
 
 
 @cache
-def _messages(code: str) -> list[tuple[re.Pattern[str], str]]:
-    """Return what the core may say, as patterns with their translations."""
-    messages = {} if code == "en" else read_words(f"{code}_messages")
+def _messages(code: str, unit: str) -> list[tuple[re.Pattern[str], str]]:
+    """Return what the core may say, as patterns with their translations; none if it stays as it is."""
+    if code == "en":  # which numbers are lengths is read off the patterns, which every other language has
+        messages = {} if unit == "mm" else {english: english for english in read_words("ja_messages")}
+    else:
+        messages = read_words(f"{code}_messages")
     # The more words a pattern holds, the surer its match: the longest is tried first.
     longest = sorted(messages, key=lambda text: -len(re.sub(r"\{\w*\}", "", text)))
     return [(_pattern(english), messages[english]) for english in longest]
@@ -104,14 +112,6 @@ def _messages(code: str) -> list[tuple[re.Pattern[str], str]]:
 def _pattern(english: str) -> re.Pattern[str]:
     """Return what a message looks like with its places filled."""
     return re.compile(re.sub(r"\\\{(\w+)\\\}", r"(?P<\1>.+)", re.escape(english)), re.DOTALL)
-
-
-def number(value: float, digits: int = 1, signed: bool = False) -> str:
-    """Return ``value`` with thousands commas and a real minus sign; ``signed`` writes the plus too."""
-    text = f"{value:{'+' if signed else ''},.{digits}f}"
-    if not text.strip("+-0.,"):
-        text = text.lstrip("+-")
-    return text.replace("-", "\N{MINUS SIGN}")
 
 
 def listed(names: Iterable[str]) -> str:
