@@ -172,7 +172,8 @@ def empty_house(
     How sure figures are is not worked out where a test does not ask: it takes half a minute of a processor.
     Frames come seldom, as on a slow machine: most of a test's time would go into ones that nobody looks at.
     """
-    from app.wording.words import use_language  # noqa: PLC0415 (not every test brings the window along)
+    from app.wording.lengths import use_unit  # noqa: PLC0415 (not every test brings the window along)
+    from app.wording.words import use_language  # noqa: PLC0415
 
     if "spared_as_in_the_program" not in request.fixturenames:
         # Else all libraries would be looked through three times after each window, and not only what it left.
@@ -182,6 +183,7 @@ def empty_house(
     QSettings().clear()
     yield
     use_language("en")  # a window may have spoken another, and tests of words start none
+    use_unit("mm")
     gc.collect()
     assert not [thread for thread in threading.enumerate() if thread.name.startswith("busk")]
     assert not [widget for widget in QApplication.topLevelWidgets() if type(widget).__name__ == "MainWindow"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 import pytest
@@ -9,13 +10,14 @@ from pytestqt.qtbot import QtBot
 
 from app.panels.figure_field import FigureField
 from app.panels.line_row import LineRow, LineView
-from app.panels.measure_view import MeasureView
+from app.panels.measure_view import MeasureView, length_off
 from app.panels.number_field import NumberField
 from app.panels.variants import Figure
 from app.presenting.bust import up_words
 from app.presenting.measures import as_table
 from app.reporting.telling import figure
-from app.wording.lengths import length, read_length, use_unit
+from app.wording.lengths import length, read_length, use_unit, with_lengths
+from app.wording.words import read_words, say, use_language
 
 UNITS = ("mm", "cm", "in")
 
@@ -24,6 +26,7 @@ UNITS = ("mm", "cm", "in")
 def _millimetres_again() -> Iterator[None]:
     yield
     use_unit("mm")
+    use_language("en")
 
 
 @pytest.mark.parametrize(
@@ -34,6 +37,10 @@ def _millimetres_again() -> Iterator[None]:
         ("27.2in", 690.88),
         ('27.2"', 690.88),
         ("27.2 inch", 690.88),
+        ("27 1/4 in", 692.15),
+        ('27-1/4"', 692.15),
+        ("27¼ in", 692.15),
+        ("−3/8in", -9.525),
         ("０．６９２ｍ", 692.0),
         ("−1,5 cm", -15.0),
     ],
@@ -44,7 +51,9 @@ def test_a_typed_unit_counts_whatever_unit_is_shown(text: str, mm: float) -> Non
         assert read_length(text) == pytest.approx(mm)
 
 
-@pytest.mark.parametrize("text", ["", "mm", "3 kg", "1e5", "12mm34", "--3"])
+@pytest.mark.parametrize(
+    "text", ["", "mm", "3 kg", "1e5", "12mm34", "--3", "27 1/", "271/4", "1.5 1/2", "1/0"]
+)
 def test_what_is_not_a_length_is_none(text: str) -> None:
     assert read_length(text) is None
 
@@ -57,6 +66,60 @@ def test_a_shown_length_reads_back_within_its_last_decimal(unit: str, mm: float)
     assert shown.endswith(f" {unit}")
     assert read_length(shown.replace(",", "")) == pytest.approx(mm, abs=0.128)
     assert read_length(shown.split()[0].replace(",", "")) == pytest.approx(mm, abs=0.128)
+
+
+@pytest.mark.parametrize(
+    ("mm", "shown"),
+    [
+        (0.0, "0 in"),
+        (0.7, "0 in"),
+        (-0.9, "−1/16 in"),
+        (12.0, "1/2 in"),
+        (25.4, "1 in"),
+        (692.0, "27 1/4 in"),
+        (25.39 * 2, "2 in"),
+        (26_000.0, "1,023 5/8 in"),
+    ],
+)
+def test_whole_millimetres_are_inches_and_sixteenths_that_can_be_typed_again(mm: float, shown: str) -> None:
+    use_unit("in")
+    assert length(mm, 0) == shown
+    assert length(abs(mm), 0, signed=True) == ("+" if round(abs(mm) * 16 / 25.4) else "") + shown.strip("−")
+    assert read_length(shown.replace(",", "")) == pytest.approx(mm, abs=25.4 / 32 + 1e-9)
+
+
+def test_a_sentence_of_the_core_has_its_lengths_in_the_unit_in_use() -> None:
+    closed = "Closed 7 holes up to 12 mm across."
+    limits = "Stay between 50 and 130 %: 300 to 1,691 mm of the front part."
+    named = "The line Lace 20 mm cannot be 7.5 mm wide."
+    for language, unit, sentence, said in (
+        ("en", "mm", closed, closed),
+        ("en", "in", closed, "Closed 7 holes up to 1/2 in across."),
+        ("ja", "cm", closed, "1.2 cm までの穴 7 個をふさぎました。"),
+        ("en", "cm", limits, "Stay between 50 and 130 %: 30.0 to 169.1 cm of the front part."),
+        ("ja", "in", limits, "50 から 130 % まで、前部で 11 13/16 から 66 9/16 in までにしてください。"),
+        ("en", "in", named, "The line Lace 20 mm cannot be 0.30 in wide."),
+        ("en", "in", "In mm, it is 8 mm; this no table knows.", "In mm, it is 8 mm; this no table knows."),
+    ):
+        use_language(language)
+        use_unit(unit)
+        assert say(sentence) == said
+        assert "12 mm" in say(closed, "mm"), "files keep millimetres"
+
+
+@pytest.mark.parametrize("unit", UNITS)
+def test_every_length_in_a_sentence_of_the_core_is_converted(unit: str) -> None:
+    use_unit(unit)
+    for english in read_words("ja_messages"):
+        places = re.findall(r"\{(\w+)\}", english)
+        template, filled = with_lengths(english, dict.fromkeys(places, "25"))
+        said = template.format(**filled)
+        assert unit == "mm" or not re.search(r"\d ?mm(?![A-Za-z])", said), said
+
+
+def test_no_plus_minus_is_nothing() -> None:
+    use_unit("in")
+    assert (length_off(0.1), length_off(3.0), length_off(14.0)) == ("± 0.01", "± 0.12", "± 0.55")
 
 
 def test_an_unknown_unit_leaves_millimetres() -> None:
@@ -79,6 +142,8 @@ def test_fields_show_and_take_the_unit_in_use(qtbot: QtBot) -> None:
     assert (of_line.text(), of_line.accessibleName()) == ("20.00", "Waist: length in inches")
     assert of_line._read("19") == pytest.approx(0.95)
     assert of_line._read("482.6mm") == pytest.approx(0.95)
+    assert of_line._read("19 1/2") == of_line._read('19½"') == pytest.approx(0.975)
+    assert of_line._read("-1/2") == pytest.approx(0.975), "shorter by that"
     assert FigureField("%", "Share", widest="+100")._read("12") == 12.0, "other units stay"
 
 

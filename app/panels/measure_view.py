@@ -127,8 +127,9 @@ def plus_minus(off: float) -> str:
 
 
 def length_off(off: float) -> str:
-    """Return how far a length [mm] may be off as it is written, in the unit in use."""
-    return f"± {decimal_length(rounded(off), digits(off))}"
+    """Return how far a length [mm] may be off as it is written, in the unit in use; never as nothing."""
+    told, least = rounded(off), 10.0 ** -shown_digits(digits(off)) / shown_value(1.0)
+    return f"± {decimal_length(max(told, least), digits(off))}"
 
 
 def digits_of(unit: str) -> int:
