@@ -124,7 +124,7 @@ def evened(**changes: object) -> Reply:
 EVEN = (Goal("left higher", 0.0), Goal("left further out", 0.0), Goal("lift", 6.9))
 BY_TURNS = (
     "Figures are those of the exact answer, where each breast keeps its volume. Turns keep both together: "
-    "Measures may differ by some tenths of a mm and 10 to 20 ml."
+    "Measures may differ by up to 1 mm and 10 to 20 ml."
 )
 NOW = {"left higher": -11.5, "left further out": -0.1, "lift": 6.9, "out": 1.2}
 

@@ -134,7 +134,7 @@ class _Table(QTreeWidget):
     def __init__(self) -> None:
         super().__init__()
         at = [f"{number(100.0 * each, 0)} %" for each in TOLD_AT]
-        lengths = (tr("{unit} wide"), tr("allowance {unit}"))
+        lengths = (tr("width {unit}"), tr("allowance {unit}"))
         wide, allowance = (each.format(unit=length_unit()) for each in lengths)
         self.setHeaderLabels([tr("Elastic"), wide, *at, allowance, tr("from")])
         self.setRootIsDecorated(False)
