@@ -12,16 +12,18 @@ import trimesh
 from altered_bodies import smooth_step
 
 from core.body import Body
+from core.cleaning.clipping import above
 from core.detect import detection
 from core.errors import LandmarkError
 from core.finding.body_scale import size_hint, whole_figure
 from core.finding.build import Build, build_of
 from core.finding.lean import lean_hint
-from core.finding.likeness import clothes_hint, flat_hint, refuse_angular
+from core.finding.likeness import SMALL, clothes_hint, flat_hint, refuse_angular
 from core.landmark import CERTAIN, Landmarks
 from core.landmarks import find_landmarks
 from core.mesh import Mesh, Points
 from core.standing.upright import Pose
+from core.trunk import stable_level, trunk_levels
 
 ROOT = Path(__file__).parents[1]
 FACTOR = {"mm": 1.0, "inch": 25.4}
@@ -135,16 +137,43 @@ def test_breasts_that_stand_out_are_not_flat():
     assert flat_hint(sample(), found()) == ()
 
 
-def test_wrinkles_of_a_loose_shirt_are_told():
-    v, marks = sample().vertices.copy(), found()
-    build = build_of(sample(), marks)
-    assert clothes_hint(build, marks) == ()
+def test_a_small_bust_is_flat_only_where_its_landmarks_are_not_clear():
+    v = flattened(0.45)
+    mesh, marks = sample().moved(v), find_landmarks(body_of(v))
+    more = trunk_levels(mesh, marks.bust_level)[0].tape / stable_level(mesh, marks.underbust_level).tape - 1.0
+    assert more > SMALL
+    for confidence, kinds_told in ((0.9, []), (0.4, ["flat"])):
+        points = {name: replace(mark, confidence=confidence) for name, mark in marks.points.items()}
+        hints = flat_hint(mesh, replace(marks, points=points))
+        assert [hint.kind for hint in hints] == kinds_told
+
+
+def wrinkled(top: float) -> Points:
+    """The person under cloth that hangs in waves up to a height [mm]."""
+    v = sample().vertices.copy()
     middle = np.array([v[:, 0].mean(), -90.0])
     turn = np.arctan2(v[:, 0] - middle[0], middle[1] - v[:, 1])
-    below = 1.0 - smooth_step(v[:, 2], marks.underbust_level - 20.0, marks.underbust_level)
+    below = 1.0 - smooth_step(v[:, 2], top - 20.0, top)
     v[:, :2] += (below * 9.0 * np.sin(11.0 * turn))[:, None] * np.stack([np.sin(turn), -np.cos(turn)], axis=1)
-    shirt = build_of(sample().moved(v), marks)
+    return v
+
+
+def test_wrinkles_of_a_loose_shirt_are_told():
+    marks = found()
+    assert clothes_hint(build_of(sample(), marks), marks) == ()
+    shirt = build_of(sample().moved(wrinkled(marks.underbust_level)), marks)
     assert [hint.kind for hint in clothes_hint(shirt, marks)] == ["clothes"]
+
+
+def test_wrinkles_are_told_of_a_scan_that_ends_at_the_bust():
+    marks = found()
+    level = marks.underbust_level - 15.0
+    for mesh, kinds_told in (
+        (sample(), []),
+        (sample().moved(wrinkled(marks.bust_level + 80.0)), ["clothes"]),
+    ):
+        short, _ = above(mesh, 2, level)
+        assert [hint.kind for hint in clothes_hint(build_of(short, marks), marks)] == kinds_told
 
 
 def test_an_angular_trunk_is_refused():

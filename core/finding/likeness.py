@@ -11,7 +11,7 @@ from core.finding.body_scale import size_hint
 from core.finding.build import Build
 from core.finding.bust_check import refusal
 from core.finding.lean import lean_hint
-from core.landmark import SIDES, Hint, Landmark, Landmarks
+from core.landmark import CERTAIN, SIDES, Hint, Landmark, Landmarks
 from core.mesh import Mesh, Points
 from core.sections import hull_corners
 from core.standing.upright import Pose
@@ -30,9 +30,23 @@ so far, and is wider than the trunk by less than this part [1, mm, 1, 1]."""
 SHALLOW = 24.0
 """So is one that stands out by less than this [mm], and by less than that part of its drop."""
 
-WRINKLED, CREASED = 3.5, 2.4
-"""Upright waves of the skin under the bust [mm, root of the mean square]: bodies have 3.3 at most. The lesser
-is enough where cloth hides the folds as well."""
+SMALL, SEEN = 0.085, 0.8
+"""One with both bust points certain over a fold that is seen so clearly [1] is flat if it is wider than the
+trunk by less than this part: a small or compressed bust is no doubt."""
+
+AHEAD, AROUND, BESIDE_SPINE = 1.2, 2.4, (1.4, 2.5)
+"""Directions from the front in which cloth under the bust hangs in waves, so far round, and those between
+arms and spine where it does at any height [radians]."""
+
+WRINKLED = (2.2, 2.5), 4.5
+"""Upright waves of the skin [mm, root of the mean square] under the bust ahead and around: women have 1.9 at
+most ahead, men 2.5 around. Beside the spine, where the scan ends at the bust: bodies have 3.6 at most."""
+
+CREASED = 2.4
+"""Waves around [mm] that are enough where cloth hides the folds as well."""
+
+FEWEST = 3
+"""Levels that show waves [1]."""
 
 BRIDGED, LONG = 16.0, 45.0
 """Cloth that hides folds leaves the middle so little behind the bust points, and drops so far [mm]."""
@@ -65,8 +79,10 @@ def flat_hint(mesh: Mesh, landmarks: Landmarks) -> tuple[Hint, ...]:
     more = bust.tape - under.tape
     depth, drop = _breast(landmarks)
     seen = max(landmarks.points[f"fold_{side}"].confidence for side in SIDES)
-    low = more < FLAT_GIRTH * under.tape and depth < FLAT_DEPTH
-    low |= depth < min(FLAT_SLOPE * drop, SHALLOW)
+    points = min(landmarks.points[f"bust_point_{side}"].confidence for side in SIDES)
+    clear = seen > SEEN and points >= CERTAIN
+    low = more < (SMALL if clear else FLAT_GIRTH) * under.tape and depth < FLAT_DEPTH
+    low |= not clear and depth < min(FLAT_SLOPE * drop, SHALLOW)
     hung = depth < min(FLAT_SLOPE * drop, FLAT_RUN) and seen < FAINT and more < FLAT_AROUND * under.tape
     if not (low or hung):
         return ()
@@ -79,13 +95,16 @@ def flat_hint(mesh: Mesh, landmarks: Landmarks) -> tuple[Hint, ...]:
 
 def clothes_hint(build: Build, landmarks: Landmarks) -> tuple[Hint, ...]:
     """Return a hint where the skin under the bust is wrinkled like loose clothes, or cloth hides folds."""
-    waves = _waves([level for level in build.levels if level.z < landmarks.underbust_level - 10.0])
+    under = [level for level in build.levels if level.z < landmarks.underbust_level - 10.0]
+    around = _waves(under, 0.0, AROUND)
+    wrinkled = _waves(under, 0.0, AHEAD) > WRINKLED[0][0] and around > WRINKLED[0][1]
+    wrinkled |= len(under) < FEWEST and _waves(build.levels, *BESIDE_SPINE) > WRINKLED[1]
     seen = [landmarks.points[f"fold_{side}"].confidence for side in SIDES]
     centre = landmarks.points.get("front_centre")
     busts = np.mean([landmarks.position(f"bust_point_{side}") for side in SIDES], axis=0)
     bridged = centre is not None and centre.position[1] - busts[1] < BRIDGED
     hidden = max(seen) < 0.5 and min(seen) < FAINT and bridged and _breast(landmarks)[1] > LONG
-    if not (waves > WRINKLED or (waves > CREASED and hidden)):
+    if not (wrinkled or (around > CREASED and hidden)):
         return ()
     sentence = (
         "The surface under the bust has wrinkles like loose clothes. Bust points and folds under cloth are "
@@ -103,8 +122,11 @@ def _breast(landmarks: Landmarks) -> tuple[float, float]:
     return float(folds[1] - busts[1]), float(busts[2] - folds[2])
 
 
-def _waves(levels: Sequence[Level]) -> float:
-    """Return the size of upright waves that go through most levels [mm]: of radius over direction."""
+def _waves(levels: Sequence[Level], low: float, high: float) -> float:
+    """Return the size of upright waves that go through most levels [mm]: of radius over direction.
+
+    Directions from ``low`` to ``high`` from the front [radians] are measured, 0 for too few levels.
+    """
     turn = np.radians(np.arange(-180.0, 180.0, 2.0))
     waves = []
     for level in levels:
@@ -116,10 +138,10 @@ def _waves(levels: Sequence[Level]) -> float:
         order = np.argsort(way)
         even = np.interp(turn, way[order], radius[order], period=2.0 * np.pi)
         waves.append(gaussian_filter1d(even, 0.8, mode="wrap") - gaussian_filter1d(even, 7.0, mode="wrap"))
-    if len(waves) < 3:
+    if len(waves) < FEWEST:
         return 0.0
-    beside_spine = np.abs(turn) < 2.4
-    return float(np.sqrt((np.median(waves, axis=0)[beside_spine] ** 2).mean()))
+    measured = (np.abs(turn) >= low) & (np.abs(turn) < high)
+    return float(np.sqrt((np.median(waves, axis=0)[measured] ** 2).mean()))
 
 
 def doubted(points: Mapping[str, Landmark], found: tuple[Hint, ...]) -> float:
