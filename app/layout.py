@@ -13,7 +13,7 @@ from app.dress.parts import OverCard
 from app.dress.place import put_as_last
 from app.dress.spoken import announce
 from app.notice_place import NoticePlace
-from app.wording.words import tr
+from app.wording.words import language, tr
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -26,6 +26,9 @@ KEPT_AFTER = 1000
 
 LOW, HIGH = 190, 184
 """First height of the strip in windows lower and higher than 850 pixels."""
+
+TALLER = {"ja": 14}
+"""How much higher the strip is where the lines of a language are taller [px]."""
 
 
 class Layout(QObject):
@@ -224,7 +227,8 @@ class Layout(QObject):
 
     def _fit_strip(self, folded: bool) -> None:
         self._folded_as_low = self._folded_as_low and folded
-        unfolded = self._height or (HIGH if self._window.height() >= 850 else LOW)
+        first = (HIGH if self._window.height() >= 850 else LOW) + TALLER.get(language(), 0)
+        unfolded = self._height or first
         height = self._window.strip.maximumHeight() if folded else unfolded
         self._down.setSizes([max(sum(self._down.sizes()) - height, 1), height])
 

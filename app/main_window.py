@@ -23,6 +23,7 @@ from app.desks.scan_desk import ScanDesk
 from app.desks.start_desk import StartDesk
 from app.desks.verdict_desk import VerdictDesk
 from app.dress.door import Door
+from app.dress.first_paint import lay_out
 from app.dress.parts import OverCard
 from app.helping.help_desk import HelpDesk
 from app.helping.preferences_desk import PreferencesDesk
@@ -182,7 +183,9 @@ class MainWindow(QMainWindow):
         return self.layout_.next_stop(next)
 
     def event(self, event: QEvent) -> bool:
-        """Keep keys that are typed while a card is open from acting as shortcuts of the view."""
+        """Lay out what is to be painted; keep keys that are typed in a card from acting on the view."""
+        if event.type() == QEvent.Type.UpdateRequest:
+            lay_out()
         if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.ShortcutOverride:
             plain = event.modifiers() in (Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.KeypadModifier)
             if plain and event.text().strip() and event.text().isprintable() and self._has_card():

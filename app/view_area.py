@@ -19,6 +19,7 @@ from app.seeing.occlusion import bake_occlusion
 from app.showing.canvas import load_libraries
 from app.showing.floating import Floating
 from app.showing.panes import Panes
+from app.showing.plot_scale import load_curves
 from app.showing.viewport import Viewport
 from app.viewing.beside import Beside
 from app.viewing.body_view import BodyView
@@ -86,6 +87,7 @@ class ViewArea(QWidget):
 
         def make(_: object) -> None:
             self.viewport.make()
+            self._jobs.run(tr("Getting the plots ready"), lambda _: load_curves(), lambda _: None)
             done()
 
         words = tr("Getting the 3D view ready")

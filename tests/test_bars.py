@@ -110,7 +110,7 @@ def test_what_is_told_the_same_again_is_not_painted_anew(
 def test_every_view_tool_has_name_tip_and_key(qtbot: QtBot) -> None:
     tools = ViewTools()
     qtbot.addWidget(tools)
-    assert len({action.shortcut().toString() for action in tools.actions_by_name.values()}) == 15
+    assert len({action.shortcut().toString() for action in tools.actions_by_name.values()}) == 16
     assert all(action.text() and action.toolTip() for action in tools.actions_by_name.values())
     with qtbot.waitSignal(tools.view_chosen) as said:
         tools.actions_by_name["back"].trigger()

@@ -118,6 +118,18 @@ def test_many_requests_make_one_drawing(view: Viewport) -> None:
     assert len(drawn) == 1
 
 
+def test_a_small_picture_of_what_is_drawn_draws_nothing(view: Viewport) -> None:
+    view.picture()
+    with drawings(view) as drawn:
+        small = view.picture(fine=False)
+    assert not drawn
+    assert np.array_equal(pixels(small), pixels(view.picture()))
+    with drawings(view) as drawn:
+        view.request_draw()
+        view.picture(fine=False)
+    assert len(drawn) == 1
+
+
 def test_a_still_picture_loses_its_stairs_and_a_moving_one_is_quick(view: Viewport, qtbot: QtBot) -> None:
     view.request_draw()
     assert not smoothed(view)

@@ -1,14 +1,26 @@
-"""What can wait until a window is seen."""
+"""What is done before a window is painted, and what can wait until it is seen."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QEvent, QObject, QTimer
+from PySide6.QtCore import QCoreApplication, QEvent, QObject, QTimer
 from PySide6.QtWidgets import QWidget
 
 _PATIENCE = 1000
 """Milliseconds after which it is done although nothing was painted: a window may open minimised."""
+
+_NESTED = 5  # layouts in layouts, of which each hears of a change from the one within it
+
+
+def lay_out() -> None:
+    """Lay out at once what was shown or changed its size.
+
+    Qt paints a card that has just been shown before it hears of the heights of wrapped texts; a body that
+    moves and is drawn without a graphics card then leaves the card half laid out for a second and more.
+    """
+    for _ in range(_NESTED):
+        QCoreApplication.sendPostedEvents(None, QEvent.Type.LayoutRequest.value)
 
 
 def when_painted(window: QWidget, do: Callable[[], None]) -> None:

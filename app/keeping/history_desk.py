@@ -140,7 +140,7 @@ class HistoryDesk(QObject):
         self.show_snapshots()
 
     def _picture(self) -> QImage:
-        picture = self._window.view.viewport.picture()
+        picture = self._window.view.viewport.picture(fine=False)
         return picture.scaledToHeight(_PICTURE, Qt.TransformationMode.SmoothTransformation)
 
 

@@ -160,7 +160,8 @@ class KeepingDesk(QObject):
             return None
         if QGuiApplication.mouseButtons() != Qt.MouseButton.NoButton:
             return None
-        return project_picture(view.viewport.picture(labels=False), self._window.verdict_desk.of(frame).level)
+        picture = view.viewport.picture(labels=False, fine=False)
+        return project_picture(picture, self._window.verdict_desk.of(frame).level)
 
     def _hold_project(self) -> None:
         self._window.notices.withdraw(_HELD)

@@ -270,6 +270,7 @@ class Strip(QWidget):
         self._hint.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         column.addSpacing(2)
         column.addWidget(self._hint)
+        column.addSpacing(4)
         column.addStretch(1)
         self._segment = control_segment()
         self._segment.chosen.connect(self.control_chosen)

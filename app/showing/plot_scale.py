@@ -15,7 +15,7 @@ _END = 0.02  # of the turns, behind the last
 
 
 def load_curves() -> None:
-    """Load what curves are drawn with: once there are some, so that no window waits for it, nor a painter."""
+    """Load what curves are drawn with, in whatever thread; at the latest once there are some."""
     import pyqtgraph  # noqa: F401, PLC0415
 
 

@@ -133,14 +133,14 @@ class Viewport(QWidget):
         """Wait for the hand no longer: a picture of what is not painted yet would be empty."""
         self.setUpdatesEnabled(True)
 
-    def picture(self, labels: bool = True) -> QImage:
-        """Return what is seen now at its best, with its labels or without, in device pixels."""
+    def picture(self, labels: bool = True, fine: bool = True) -> QImage:
+        """Return what is seen [device pixels], with its labels or without, at its best or as last drawn."""
         self.paint_at_once()
         self.make()
-        self.request_draw()
-        self._rest.stop()
-        self._smoothing.use("ssaa")
-        self._canvas.draw()
+        if fine:
+            self.request_draw()
+            self._rest.stop()
+            self._smoothing.use("ssaa")
         self.overlay.setVisible(labels)
         image = self.grab().toImage()
         self.overlay.show()

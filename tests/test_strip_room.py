@@ -1,0 +1,44 @@
+"""The strip's words keep off its buttons, at the height it opens with in the smallest window."""
+
+from __future__ import annotations
+
+import pytest
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.dress.theme import apply_theme, load_fonts
+from app.layout import LOW, NARROW, TALLER
+from app.panels.rail import Rail
+from app.presenting.verdict import StripVerdict
+from app.showing.convergence import Strip
+from app.wording.words import speaking
+
+NUMBERS = {
+    "en": [("Bust point", "0.2 mm up, 1.2 mm back"), ("Bust girth", "895.4 mm"), ("Pressure", "12.8 kPa")],
+    "ja": [("BP", "上へ 0.2 mm、後ろへ 1.2 mm"), ("バスト囲", "895.4 mm"), ("最大接触圧", "12.8 kPa")],
+}
+HINTS = {
+    "en": "Mid-bust presses with 12.8 kPa (96 mmHg). It cannot be worn: set it much longer, wider or softer.",
+    "ja": "バスト下部の接触圧は 12.8 kPa（96 mmHg）です。着用できません。"
+    "大幅に長く、広く、または柔らかくしてください。",
+}
+
+
+@pytest.mark.parametrize("code", ["en", "ja"])
+def test_a_hint_of_three_lines_keeps_off_the_controls(qtbot: QtBot, qapp: QApplication, code: str) -> None:
+    load_fonts()
+    apply_theme(qapp, dark=False)
+    with speaking(code):
+        strip = Strip()
+    qtbot.addWidget(strip)
+    strip.resize(1180 - NARROW - Rail().width(), LOW + TALLER.get(code, 0))
+    strip.show()
+    numbers, hint = NUMBERS[code], strip._hint
+    strip.set_verdict(StripVerdict("bad", "Do not use", "settled", numbers, HINTS[code], "0.2 s", "", False))
+    strip._show_emptiness(False)
+    QApplication.processEvents()
+    assert hint.heightForWidth(hint.width()) >= 3 * hint.fontMetrics().height()
+    body = strip._body.layout()
+    assert body is not None
+    assert body.heightForWidth(strip.width()) <= strip.height()
+    assert strip._segment.y() >= hint.geometry().bottom() + 4
