@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 
 import numpy as np
-from PIL import Image
 from scipy.spatial import cKDTree
 
 from core.mesh import FARTHEST, Floats, Points
@@ -51,6 +50,8 @@ def texture(data: bytes, room: int) -> Colours:
 
     Raises ValueError if it is damaged, of another format, or takes more than ``room`` bytes.
     """
+    from PIL import Image
+
     try:
         image = Image.open(io.BytesIO(data), formats=_FORMATS)
         if image.format == "JPEG":
