@@ -12,6 +12,7 @@ from PySide6.QtGui import QRawFont, QTextLayout
 from PySide6.QtWidgets import QApplication, QLabel
 
 from app.dress.parts import sentence
+from app.wording.lengths import use_unit
 from app.wording.words import (
     LANGUAGES,
     colon,
@@ -34,6 +35,7 @@ TRANSLATIONS = [code for code in LANGUAGES if code != "en"]
 def english() -> Iterator[None]:
     yield
     use_language("en")
+    use_unit("mm")
 
 
 def asked_words() -> set[str]:
@@ -93,6 +95,16 @@ def test_every_sentence_of_the_core_is_translated(code: str) -> None:
     assert len(sentences) > 80
     use_language(code)
     assert sorted(each for each in sentences if say(each) == each) == []
+
+
+@pytest.mark.parametrize("code", LANGUAGES)
+def test_every_length_that_the_core_tells_is_in_the_unit_in_use(code: str) -> None:
+    in_mm = re.compile(r"7 ?mm(?!\w)", re.ASCII)
+    sentences = [each for each in core_sentences() if in_mm.search(each)]
+    assert len(sentences) > 20
+    use_language(code)
+    use_unit("in")
+    assert [each for each in sentences if in_mm.search(say(each))] == []
 
 
 def test_a_message_is_translated_with_what_is_filled_in() -> None:

@@ -38,7 +38,7 @@ class ScanEdits:
     def __post_init__(self) -> None:
         levels = [level for level in (self.low, self.high) if level is not None]
         if not all(0.0 <= level < FARTHEST for level in levels):
-            raise UserError("The height of a crop is out of range.", "Give a height in mm, 0 or more.")
+            raise UserError("The height of a crop is out of range.", "Give a height of 0 mm or more.")
         if len(levels) == 2 and levels[1] - levels[0] < LEAST_HEIGHT:
             raise UserError("The crop leaves no body.", f"Keep at least {LEAST_HEIGHT:.0f} mm of its height.")
         if self.kept not in ("", *SIDES):
