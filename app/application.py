@@ -81,10 +81,12 @@ def hand_files_to(open_file: Callable[[str], object] | None) -> None:
         app.hand_files_to(open_file)
 
 
-def application(language: str | None = None, dark: bool | None = None) -> QApplication:
+def application(
+    language: str | None = None, dark: bool | None = None, unit: str | None = None
+) -> QApplication:
     """Return the application, made if there is none.
 
-    Language and theme fall back to what the user chose last. Raises UserError for a pair of
+    Language, theme and unit of lengths fall back to what the user chose last. Raises UserError for a pair of
     Python and Qt that is known to crash.
     """
     _refuse_bad_pair()
@@ -100,7 +102,7 @@ def application(language: str | None = None, dark: bool | None = None) -> QAppli
         existing.setDesktopFileName("busk")
         existing.setWindowIcon(program_icon())
     use_words(existing, language or wish("language"))
-    use_unit(wish("unit"))
+    use_unit(unit or wish("unit"))
     load_fonts()
     apply_theme(existing, chosen_dark(wish("theme")) if dark is None else dark)
     return existing

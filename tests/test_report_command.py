@@ -6,8 +6,10 @@ import csv
 import errno
 import json
 import os
+import re
 import subprocess
 import sys
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -15,6 +17,7 @@ from pdf_tools import Pdf
 
 from app.cli import BAD_INPUT, main
 from app.commands.ending import SETTLED
+from app.wording import lengths
 from core.design import Design, ScanSource
 from core.document import Document
 from core.project import read_scan_file, save_project
@@ -64,6 +67,21 @@ def test_the_customer_of_a_project_is_taken_and_can_be_overruled(mannequin: Path
     assert (heading["customer"], heading["project"], heading["variant"]) == ("Anna", "coat", "B")
     assert main([*words, "--customer", ""]) == SETTLED
     assert json.loads(out.read_text("utf-8"))["heading"]["customer"] == ""
+
+
+def test_a_sheet_in_inches_and_its_data_in_millimetres(
+    mannequin: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(lengths, "_unit", "mm")  # as before, once it is over
+    sheet, data = tmp_path / "sheet.pdf", tmp_path / "sheet.json"
+    words = ["report", str(mannequin), *WORN, "--length-unit", "in"]
+    assert main([*words, "--out", str(sheet), "--json", str(data)]) == SETTLED
+    text, told = Pdf(sheet).text(), json.loads(data.read_text("utf-8"))
+    cut, bust = told["cuts"]["rows"][0]["cut_mm"] / 25.4, told["measures"][0]["before"] / 25.4
+    whole, part = divmod(round(16 * cut), 16)
+    assert f"{whole} {Fraction(part, 16)} in" in text
+    assert f"{bust:.2f}" in text
+    assert not re.search(r"\d mm(?![A-Za-z])", text)
 
 
 @pytest.mark.parametrize(

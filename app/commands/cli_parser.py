@@ -203,6 +203,8 @@ def _add_sheet(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", default="", metavar="FILE", help="all of it as data: .json")
     parser.add_argument("--csv", default="", metavar="FILE", help="all its figures as one long table: .csv")
     parser.add_argument("--language", choices=("en", "ja"), default="en", help="that of the sheet")
+    said = "that of lengths on the sheet, cut lengths to 1/16 in; --json and --csv keep mm"
+    parser.add_argument("--length-unit", choices=("mm", "cm", "in"), default="mm", help=said)
     parser.add_argument("--customer", metavar="TEXT", help="whose it is, else as the project says")
     parser.add_argument(
         "--system", default="jp", metavar="KEY", help="the sizes that come first: jp, eu, uk, us, fr, it, au"

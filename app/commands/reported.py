@@ -34,6 +34,7 @@ _NO_PICTURES = "The pictures of the body could not be drawn: the sheet shows its
 class SheetWishes:
     """Where to write: ``out`` the PDF, in a ``language``, ``json`` and ``csv`` if they are named.
 
+    Lengths of the PDF are in ``length_unit``, those of data in mm.
     ``customer`` and ``allowance`` [mm] are None where those of the project hold; ``system`` of sizes comes
     first. ``spread`` puts ± beside figures, which takes a while.
     """
@@ -42,6 +43,7 @@ class SheetWishes:
     json: str = ""
     csv: str = ""
     language: str = "en"
+    length_unit: str = "mm"
     customer: str | None = None
     system: str = "jp"
     allowance: float | None = None
@@ -120,7 +122,7 @@ def _write(solution: Solution, sheet: Sheet, wishes: SheetWishes) -> list[str]:
     from app.reporting.pages import pages_of  # noqa: PLC0415
     from app.reporting.pdf import write_pdf  # noqa: PLC0415
 
-    application()
+    application(unit=wishes.length_unit)
     names = [line.name for line in solution.stages.model.lines]
     handout = Handout(sheet, {}, line_colours(names, solution.stages.design))
     title = " ".join(filter(None, (sheet.heading.customer, sheet.heading.project)))
