@@ -118,6 +118,11 @@ def cut(options: argparse.Namespace) -> int:
     from app.commands.cut import cut_text, run_cut
 
     design = design_of(options.input, options)
+    if options.elastics is not None:
+        from app.commands.elastics import run_elastics
+
+        lines, made = options.line or [], options.elastic or []
+        return told(run_elastics(design, lines, made, options.elastics, options.as_worn), True, [])
     found = run_cut(design, options.line or [], options.elastic or [], options.as_worn)
     return told(cut_text(found, _form(options), options.out), found.worn.settled, found.worn.warnings)
 

@@ -32,6 +32,8 @@ LIMITS = {"width_mm": (1.0, 200.0), "allowance_mm": (0.0, 200.0)}
 MOST_POINTS, FURTHEST, STRONGEST = 2000, 5.0, 10_000.0
 """Points of a curve, its longest elongation [1] and its largest force [N]."""
 
+MARGIN = 1.01
+"""How much longer than in proportion a line is set so that its elastic is not overstretched: it gives way."""
 
 _WHITE = str.maketrans("\t\r\n", "   ")
 
@@ -124,21 +126,54 @@ class Elastic:
         pieces = list(pairwise(self.curve))
         return next((piece for piece in pieces if ends(piece[1])), pieces[-1])
 
-    def overstretched(self, elongation: float, line: str) -> LineError:
-        """Return what to say when a line would stretch the elastic beyond its curve."""
-        return LineError(
-            f"{self.name} would be stretched by {100.0 * elongation:.0f} % as {line}; "
-            f"its table ends at {100.0 * self.reach:g} %.",
-            "Let the line be longer, or take an elastic that stretches further.",
+    def overstretched(self, elongation: float, line: str, ratio: float | None = None) -> OverstretchedError:
+        """Return what to say of a line, at a ``ratio`` if set, that stretches it beyond its curve."""
+        return OverstretchedError(self, elongation, line, ratio)
+
+    def overpulled(self, force: float, line: str) -> ElasticError:
+        """Return what to say when a line would pull the elastic with more than its curve knows."""
+        needed, end = _beyond(force, self.strength, 1), f"{self.strength:g}"
+        return ElasticError(
+            f"{self.name} would be pulled with {needed} N as {line}; its table ends at {end} N.",
+            "Let the line be longer, or take a stronger or wider elastic.",
+            f"Too weak: {needed} N at this length, its table ends at {end} N.",
+            line,
         )
 
-    def overpulled(self, force: float, line: str) -> LineError:
-        """Return what to say when a line would pull the elastic with more than its curve knows."""
-        return LineError(
-            f"{self.name} would be pulled with {force:.1f} N as {line}; "
-            f"its table ends at {self.strength:g} N.",
-            "Let the line be longer, or take a stronger or wider elastic.",
+
+class ElasticError(LineError):
+    """An elastic cannot be used for a ``line``; ``reason`` states why, where both are named beside it."""
+
+    def __init__(self, message: str, hint: str, reason: str, line: str) -> None:
+        super().__init__(message, hint)
+        self.reason, self.line = reason, line
+
+
+class OverstretchedError(ElasticError):
+    """A ``line`` would stretch its ``elastic`` by ``elongation`` [1], beyond the end of its curve.
+
+    The hint names the shortest ``ratio`` that works, where lengths are set: the line gives way no less there.
+    """
+
+    def __init__(self, elastic: Elastic, elongation: float, line: str, ratio: float | None) -> None:
+        needed, end = _beyond(100.0 * elongation, 100.0 * elastic.reach, 0), f"{100.0 * elastic.reach:g}"
+        hint = "Let the line be longer, or take an elastic that stretches further."
+        if ratio is not None:
+            least = math.ceil(100.0 * MARGIN * ratio * (1.0 + elongation) / (1.0 + elastic.reach))
+            hint = f"Set {line} to {least:.0f} % or longer, or choose an elastic that stretches further."
+        super().__init__(
+            f"{elastic.name} would be stretched by {needed} % as {line}; its table ends at {end} %.",
+            hint,
+            f"Too short a cut: {needed} % stretch, its table ends at {end} %.",
+            line,
         )
+        self.elastic, self.elongation = elastic, elongation
+
+
+def _beyond(value: float, end: float, digits: int) -> str:
+    """Return a value beyond an end with ``digits``, or as many as tell it from the end."""
+    texts = (f"{value:.{each}f}" for each in range(digits, 6))
+    return next((text for text in texts if float(text) > end), f"{value:g}")
 
 
 def check_elastics(elastics: Sequence[Elastic], made: Mapping[str, str]) -> None:

@@ -37,7 +37,7 @@ def elastic_model(
     fitted = fit_elastics(wish, _solver(tuple(ratios.values()), body_change))
     for name, elongation in fitted.elongations.items():
         if elongation > elastics[name].reach:
-            raise elastics[name].overstretched(elongation, name)
+            raise elastics[name].overstretched(elongation, name, worn.get(name))
     if not fitted.agreed:
         raise _no_agreement(fitted)
     return fitted.model

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtWidgets import QMenu
+from window_tools import Script
 
 from app.main_window import MainWindow
+from app.panels.elastic_chooser import ElasticChooser
 from core.cutting import CutRow, cut_list
 
 
@@ -16,27 +17,30 @@ def cut_rows(window: MainWindow) -> dict[str, CutRow]:
     return {row.line: row for row in cut_list(frame.stages, frame.control_points).rows}
 
 
-def choose(window: MainWindow, line: str, kind: str, width: str = "") -> None:
-    """Choose an elastic by the menu of a row."""
+def choose(window: MainWindow, line: str, elastic: str) -> Script:
+    """Choose an elastic in the chooser of a row."""
     window.garment.rows[line].elastic.click()
-    pick(window, kind, width)
+    yield from pick(window, elastic)
 
 
-def pick(window: MainWindow, kind: str, width: str = "") -> None:
-    """Choose in the menu that is open."""
-    menu = open_menu(window)
-    within: object = menu
-    for words in (kind, width) if width else (kind,):
-        assert isinstance(within, QMenu)
-        item = next(each for each in within.actions() if each.text() == words)
-        within = item.menu()
-    item.trigger()
-    menu.close()
+def pick(window: MainWindow, elastic: str) -> Script:
+    """Choose in the chooser that is open, once the effect is computed."""
+    yield from mark(window, elastic)
+    chooser_of(window).use.click()
 
 
-def open_menu(window: MainWindow) -> QMenu:
-    """Return the menu that is open."""
-    return next(each for each in window.findChildren(QMenu) if each.isVisible())
+def mark(window: MainWindow, elastic: str) -> Script:
+    """Mark an elastic in the chooser that is open, and wait until all are computed."""
+    chooser = chooser_of(window)
+    chooser.set_current([view.title for view in chooser.views()].index(elastic))
+    yield lambda: not window.jobs.at_work()
+
+
+def chooser_of(window: MainWindow) -> ElasticChooser:
+    """Return the chooser that is open."""
+    chooser = window.elastic_choice.offer.chooser
+    assert chooser is not None
+    return chooser
 
 
 def at_rest(window: MainWindow) -> Callable[[], bool]:

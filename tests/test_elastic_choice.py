@@ -6,11 +6,12 @@ import threading
 from typing import Any
 
 import pytest
-from garment_tools import at_rest, choose, made_of
+from garment_tools import at_rest, made_of
 from window_tools import PATIENCE, Script, run_undrawn, settled
 
-from app.lining import elastic_choice
+from app.lining import elastic_offer
 from app.main_window import MainWindow
+from core.elastics import find_elastic
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -18,21 +19,28 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 @pytest.fixture
 def gate(monkeypatch: pytest.MonkeyPatch) -> threading.Event:
     """Lengths are looked for until it is open."""
-    opened, found = threading.Event(), elastic_choice._made
+    opened, found = threading.Event(), elastic_offer.elastic_option
 
     def waits(*asked: Any) -> Any:
         opened.wait(PATIENCE)
         return found(*asked)
 
-    monkeypatch.setattr(elastic_choice, "_made", waits)
+    monkeypatch.setattr(elastic_offer, "elastic_option", waits)
     return opened
+
+
+def take(window: MainWindow, line: str) -> None:
+    """Choose an elastic for a line before its effect is known."""
+    design = window.session.design
+    assert design is not None
+    window.elastic_choice.choose(design.linked(line), find_elastic("strap 15"))
 
 
 def test_an_elastic_goes_to_no_other_variant_and_to_no_other_document(gate: threading.Event) -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
         window.inspector.open("garment")
-        choose(window, "mid-bust", "Strap", "15 mm")
+        take(window, "mid-bust")
         assert window.jobs.at_work()
         window.variant_desk.choose("B")
         gate.set()
@@ -42,7 +50,7 @@ def test_an_elastic_goes_to_no_other_variant_and_to_no_other_document(gate: thre
         assert [design.elastics for _, design in document.designs] == [(), ()]
         gate.clear()
         window.session.undo_stack.setClean()
-        choose(window, "mid-bust", "Strap", "15 mm")
+        take(window, "mid-bust")
         window.desk.open_sample("person")
         yield lambda: window.session.name == "person" and window.is_settled()
         gate.set()
@@ -63,7 +71,7 @@ def test_an_elastic_goes_with_the_next_edit_and_leaves_with_an_undo_and_with_its
         window.lines_desk.commit_length("strap left", 0.97)
         window.inspector.open("garment")
         yield at_rest(window)
-        choose(window, "mid-bust", "Strap", "15 mm")
+        take(window, "mid-bust")
         window.actions_.undo.trigger()
         gate.set()
         yield at_rest(window)
@@ -73,7 +81,7 @@ def test_an_elastic_goes_with_the_next_edit_and_leaves_with_an_undo_and_with_its
         window.actions_.redo.trigger()
         yield at_rest(window)
         gate.clear()
-        choose(window, "strap left", "Strap", "15 mm")
+        take(window, "strap left")
         for name in ("strap left", "strap right"):
             if name in window.lines.rows:
                 window.lines_desk.remove(name)
@@ -82,7 +90,7 @@ def test_an_elastic_goes_with_the_next_edit_and_leaves_with_an_undo_and_with_its
         design = window.session.design
         assert not {"strap left", "strap right"} & {each.name for each in design.traits}
         gate.clear()
-        choose(window, "mid-bust", "Strap", "15 mm")
+        take(window, "mid-bust")
         window.lines_desk.commit_length("mid-bust", 0.96)
         gate.set()
         yield made_of(window, "mid-bust")

@@ -113,7 +113,7 @@ def cut(window: MainWindow) -> Script:
     yield at_rest(window)
     assert window.garment.offer.isVisible()
     window.garment.offer.asked.emit()
-    pick(window, "Strap", "15 mm")
+    yield from pick(window, "Strap 15 mm")
     yield made_of(window, "mid-bust", "under-bust", "strap left", "strap right")
     for line, row in cut_rows(window).items():
         assert row.cut_mm

@@ -10,7 +10,7 @@ import pytest
 from test_word_list import refused
 from test_words import asked_words
 
-from app.lining.elastic_menu import kind_title
+from app.presenting.elastics import kind_title
 from app.wording.model_choices import Choice, groups
 from app.wording.samples import SAMPLES
 from app.wording.words import read_words, say, speaking, tr

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from garment_tools import at_rest, choose, cut_rows, made_of, open_menu
+from garment_tools import at_rest, choose, chooser_of, cut_rows, made_of
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
@@ -89,7 +89,7 @@ def test_an_own_elastic_travels_with_its_project_to_where_nobody_has_it(
         save_elastic(Elastic("Roll 9", 14.0, ((0.0, 0.0), (0.4, 5.2), (0.9, 14.0)), 18.0, "mine", False))
         yield settled(window)
         window.inspector.open("garment")
-        choose(window, "mid-bust", "Roll 9")
+        yield from choose(window, "mid-bust", "Roll 9")
         yield made_of(window, "mid-bust")
         cut.append(window.garment.rows["mid-bust"].cut.text())
         window.session.save(str(project), window.desk._preview())
@@ -104,9 +104,9 @@ def test_an_own_elastic_travels_with_its_project_to_where_nobody_has_it(
         assert row.elastic.words == "Roll 9"
         assert row.cut.text() == cut[0]
         row.elastic.click()
-        menu = open_menu(window)
-        assert next(each.text() for each in menu.actions() if each.isChecked()) == "Roll 9"
-        menu.close()
+        chooser = chooser_of(window)
+        assert chooser.views()[chooser.current].title == "Roll 9, in this project"
+        chooser.reject()
 
     run_undrawn([], save)
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "elsewhere"))
@@ -128,10 +128,12 @@ def test_the_keyboard_alone_chooses_an_elastic() -> None:
         assert QApplication.focusWidget() is pull
         assert pull.accessibleName() == "Mid-bust: elastic, Choose an elastic…"
         QTest.keyClick(pull, Qt.Key.Key_Return)
-        menu = open_menu(window)
-        down, right, enter = Qt.Key.Key_Down, Qt.Key.Key_Right, Qt.Key.Key_Return
-        for key in (down, down, down, down, right, down, down, enter):
-            QTest.keyClick(QApplication.activePopupWidget() or menu, key)
+        table = chooser_of(window).table
+        yield table.hasFocus
+        yield lambda: not window.jobs.at_work()
+        while chooser_of(window).views()[chooser_of(window).current].title != "Strap 15 mm":
+            QTest.keyClick(table, Qt.Key.Key_Down)
+        QTest.keyClick(table, Qt.Key.Key_Return)
         yield made_of(window, "mid-bust")
         assert window.garment.rows["mid-bust"].elastic.words == "Strap 15 mm"
 
@@ -142,7 +144,7 @@ def test_an_elastic_beyond_its_table_is_told_in_a_drag_and_anew_at_the_next_edit
     def script(window: MainWindow) -> Script:
         yield settled(window)
         window.inspector.open("garment")
-        choose(window, "mid-bust", "Strap", "15 mm")
+        yield from choose(window, "mid-bust", "Strap 15 mm")
         yield made_of(window, "mid-bust")
         made = window.session.design
         window.notices.clear()
@@ -170,7 +172,7 @@ def test_a_linked_pair_is_made_of_the_same_in_one_step() -> None:
         window.inspector.open("garment")
         yield at_rest(window)
         steps, before = window.session.undo_stack.count(), cut_rows(window)
-        choose(window, "strap right", "Strap", "12 mm")
+        yield from choose(window, "strap right", "Strap 12 mm")
         yield made_of(window, "strap left", "strap right")
         assert window.session.undo_stack.count() == steps + 1
         assert window.session.undo_stack.undoText() == "Straps made of Strap 12 mm"
@@ -206,16 +208,14 @@ def test_one_that_is_called_as_ours_gets_a_name_of_its_own_and_none_is_called_me
         sheet.reject()
         yield lambda: window.elastics_desk.sheet is None
         window.inspector.open("garment")
-        choose(window, "mid-bust", "Strap 15 mm, own")
+        yield from choose(window, "mid-bust", "Strap 15 mm, own")
         yield made_of(window, "mid-bust")
         # Another one of that name, as a newer table has it: the project keeps its own.
         save_elastic(replace(own_elastics()[0][0], curve=((0.0, 0.0), (0.4, 5.0), (0.9, 12.0))))
         window.garment.rows["mid-bust"].elastic.click()
-        menu = open_menu(window)
-        assert "Strap 15 mm, own" in [each.text() for each in menu.actions()]
-        assert [each.text() for each in menu.actions() if each.isChecked()][:1] == [
-            "Strap 15 mm, own, as in this project"
-        ]
-        menu.close()
+        chooser = chooser_of(window)
+        assert "Strap 15 mm, own" in [each.title for each in chooser.views()]
+        assert chooser.views()[chooser.current].title == "Strap 15 mm, own, as in this project"
+        chooser.reject()
 
     run_undrawn([], script)

@@ -6,20 +6,21 @@ import re
 from pathlib import Path
 
 import pytest
-from garment_tools import at_rest, choose, cut_rows, made_of, open_menu, pick
+from garment_tools import at_rest, choose, chooser_of, cut_rows, made_of, mark, pick
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
 from window_tools import Script, run_undrawn, settled
 
 from app.keeping import tables
-from app.lining.elastic_choice import FIRST_STRETCH, LIFT_TOLD
+from app.lining.elastic_choice import LIFT_TOLD
 from app.main_window import MainWindow
 from app.presenting.bust import bust_move
 from app.wording.words import number
 from core.design_elastics import Elastic
 from core.elastics import save_elastic
 from core.report import still_lines
+from core.sewing.elastic_options import FIRST_STRETCH, KEEP_CUT
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -43,12 +44,12 @@ def test_an_elastic_is_chosen_and_the_length_to_cut_is_that_of_the_core() -> Non
         assert garment.rows["mid-bust"].cut.text() == "–"
         assert garment.rows["mid-bust"].tension.text() == number(before["mid-bust"].tension_n or 0.0, 1)
         steps, bare, made = window.session.undo_stack.count(), window.session.design, list[str]()
-        for line, kind, width in (
-            ("mid-bust", "Strap", "15 mm"),
-            ("full-bust", "Bra band, plush back", "12 mm"),
-            ("under-bust", "Bra band, plush back", "18 mm"),
+        for line, elastic in (
+            ("mid-bust", "Strap 15 mm"),
+            ("full-bust", "Bra band, plush back 12 mm"),
+            ("under-bust", "Bra band, plush back 18 mm"),
         ):
-            choose(window, line, kind, width)
+            yield from choose(window, line, elastic)
             made.append(line)
             yield made_of(window, *made)
         after = cut_rows(window)
@@ -81,21 +82,21 @@ def test_one_elastic_is_chosen_for_all_and_taken_off_again_without_moving_the_bo
         before = cut_rows(window)
         assert window.garment.offer.isVisible()
         window.garment.offer.asked.emit()
-        pick(window, "Strap", "15 mm")
+        yield from pick(window, "Strap 15 mm")
         yield made_of(window, "mid-bust", "full-bust", "under-bust")
         assert not window.garment.offer.isVisible()
         assert window.session.undo_stack.undoText() == "All lines made of Strap 15 mm"
         assert cut_rows(window)["under-bust"].elongation == pytest.approx(FIRST_STRETCH)
-        choose(window, "mid-bust", "No elastic")
+        yield from choose(window, "mid-bust", "No elastic")
         yield made_of(window, "full-bust", "under-bust")
         window.garment.again.click()
-        assert not any(each.isChecked() for each in open_menu(window).actions()[:8]), "they are of several"
-        pick(window, "Bra band, plush back", "18 mm")
+        assert chooser_of(window).current == -1, "they are of several"
+        yield from pick(window, "Bra band, plush back 18 mm")
         yield made_of(window, "mid-bust", "full-bust", "under-bust")
         assert window.session.undo_stack.undoText() == "All lines made of Bra band, plush back 18 mm"
         window.session.undo_stack.undo()
         yield made_of(window, "full-bust", "under-bust")
-        choose(window, "full-bust", "No elastic")
+        yield from choose(window, "full-bust", "No elastic")
         yield made_of(window, "under-bust")
         design = window.session.design
         assert design is not None
@@ -116,7 +117,7 @@ def test_a_lift_that_goes_with_the_elastic_is_told() -> None:
         yield at_rest(window)
         assert window.session.frame is not None
         before = bust_move(window.session.frame).mean.up
-        choose(window, "strap left", "Strap", "15 mm")
+        yield from choose(window, "strap left", "Strap 15 mm")
         yield made_of(window, "strap left", "strap right")
         after, notice = bust_move(window.session.frame).mean.up, window.notices.notice()
         assert notice is not None
@@ -128,19 +129,67 @@ def test_a_lift_that_goes_with_the_elastic_is_told() -> None:
     run_undrawn([], script)
 
 
-def test_an_elastic_that_cannot_do_it_is_refused_and_nothing_changes() -> None:
+def test_an_elastic_that_cannot_be_used_is_grey_and_the_nearest_that_can_is_one_click_away() -> None:
     def script(window: MainWindow) -> Script:
         save_elastic(Elastic("weak", 10.0, ((0.0, 0.0), (0.1, 0.05), (0.3, 0.2)), estimate=False))
         yield settled(window)
         window.inspector.open("garment")
-        before = window.session.design
-        choose(window, "mid-bust", "weak")
-        yield lambda: window.notices.notice() is not None
-        notice = window.notices.notice()
-        assert notice is not None
-        assert "weak would be stretched by" in notice.sentence
-        assert notice.hint
+        yield at_rest(window)
+        before, rows = window.session.design, cut_rows(window)
+        window.garment.rows["mid-bust"].elastic.click()
+        chooser = chooser_of(window)
+        assert chooser.views()[1].note == "Computing…"
+        yield from mark(window, "weak")
+        view = chooser.views()[chooser.current]
+        assert not view.usable
+        assert re.fullmatch(r"Too weak: [\d.]+ mm too long at its limit, 30 % stretch\.", view.note)
+        assert view.note in chooser.advice.text()
+        assert not chooser.use.isEnabled()
         assert window.session.design is before
+        nearest = next(each for each in chooser.offers() if "limit" not in each).removeprefix("Use ")
+        assert next(each for each in chooser.views() if each.title == nearest).usable
+        chooser.press_offer(chooser.offers().index(f"Use {nearest}"))
+        yield made_of(window, "mid-bust")
+        row = cut_rows(window)["mid-bust"]
+        assert row.elastic == nearest
+        assert row.reached_front_mm == pytest.approx(rows["mid-bust"].reached_front_mm, abs=SAME)
+        window.session.undo_stack.undo()
+        yield at_rest(window)
+        window.garment.rows["mid-bust"].elastic.click()
+        yield from mark(window, "weak")
+        chooser = chooser_of(window)
+        limited = chooser.views()[chooser.current]
+        chooser.press_offer(chooser.offers().index("Use at its limit"))
+        yield made_of(window, "mid-bust")
+        row = cut_rows(window)["mid-bust"]
+        assert row.elastic == "weak"
+        assert row.elongation == pytest.approx(0.3, rel=0.02)
+        assert number(row.reached_front_mm) == limited.reached
+
+    run_undrawn([], script)
+
+
+def test_the_loss_of_lift_is_shown_before_it_is_chosen() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        window.line_maker.add("straps")
+        window.lines_desk.commit_length("strap left", 0.93)
+        window.inspector.open("garment")
+        yield at_rest(window)
+        window.garment.rows["strap left"].elastic.click()
+        chooser = chooser_of(window)
+        chooser.mode_asked.emit(KEEP_CUT)
+        yield from mark(window, "Strap 15 mm")
+        view = chooser.views()[chooser.current]
+        rigid = float(chooser.views()[0].lift)
+        kept = round(100.0 * float(view.lift) / rigid)
+        assert kept < 30
+        assert abs(int(view.note.removeprefix("Lift kept: ").removesuffix(" %")) - kept) <= 2
+        assert f"{view.lift} mm" in chooser.advice.text()
+        chooser.use.click()
+        yield made_of(window, "strap left", "strap right")
+        assert window.session.frame is not None
+        assert bust_move(window.session.frame).mean.up == pytest.approx(float(view.lift), abs=0.15)
 
     run_undrawn([], script)
 
@@ -149,13 +198,13 @@ def test_the_other_meaning_keeps_the_length_to_cut_and_moves_the_body() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
         window.inspector.open("garment")
-        choose(window, "mid-bust", "Strap", "15 mm")
+        yield from choose(window, "mid-bust", "Strap 15 mm")
         yield made_of(window, "mid-bust")
         first, design = cut_rows(window)["mid-bust"], window.session.design
         assert design is not None
         window.garment.rows["mid-bust"].elastic.click()
-        pick(window, "It is as long unstretched: the body changes")
-        choose(window, "mid-bust", "Picot edge", "8 mm")
+        chooser_of(window).modes.button(KEEP_CUT).click()
+        yield from pick(window, "Picot edge 8 mm")
         yield lambda: "Picot" in cut_rows(window)["mid-bust"].elastic
         yield at_rest(window)
         row = cut_rows(window)["mid-bust"]
@@ -175,7 +224,7 @@ def test_a_band_on_the_rib_cage_is_cut_as_far_stretched_as_the_designer_says() -
         yield at_rest(window)
         assert list(window.garment.rows) == ["under-bust"]
         assert window.garment.nothing.isVisible()
-        choose(window, "under-bust", "Bra band, plush back", "18 mm")
+        yield from choose(window, "under-bust", "Bra band, plush back 18 mm")
         yield made_of(window, "under-bust")
         row = window.garment.rows["under-bust"]
         assert row.set_stretch.isVisible()
@@ -204,9 +253,9 @@ def test_a_band_on_the_rib_cage_is_cut_as_far_stretched_as_the_designer_says() -
         yield at_rest(window)
         assert row.cut.text() == "–"
         assert row.elastic.words == "Bra band, plush back 18 mm"
-        choose(window, "under-bust", "Bra band, plush back", "18 mm")
+        yield from choose(window, "under-bust", "Bra band, plush back 18 mm")
         yield made_of(window, "under-bust")
-        choose(window, "under-bust", "No elastic")
+        yield from choose(window, "under-bust", "No elastic")
         yield made_of(window)
         assert window.session.design is not None
         assert not window.session.design.worn(), "what holds nothing is not worn"
@@ -221,11 +270,11 @@ def test_a_locked_line_stays_what_it_is() -> None:
         window.lines_desk.decide("mid-bust", "locked", True)
         yield at_rest(window)
         before = window.session.design
-        choose(window, "mid-bust", "Strap", "15 mm")
-        yield lambda: window.notices.notice() is not None
-        notice = window.notices.notice()
-        assert notice is not None
-        assert "locked" in notice.sentence
+        window.garment.rows["mid-bust"].elastic.click()
+        yield from mark(window, "Strap 15 mm")
+        assert chooser_of(window).advice.text() == "The line mid-bust is locked. Unlock it first."
+        assert not chooser_of(window).use.isEnabled()
+        chooser_of(window).reject()
         assert window.session.design is before
 
     run_undrawn([], script)

@@ -193,6 +193,8 @@ def _add_design(parser: argparse.ArgumentParser, command: str) -> None:
     if command == "even":
         add_evening(parser)
     if command == "cut":
+        listed = "list all elastics for a line: what each does, and why it cannot be used"
+        parser.add_argument("--elastics", metavar="LINE", help=listed)
         same = "let lines of elastic reach what they reach without it: lengths are then those on the body"
         parser.add_argument("--as-worn", action="store_true", help=same)
 

@@ -43,7 +43,7 @@ def _plain(found: Cut) -> str:
         f"{'':22}{'cut mm':>9}{'stretch %':>11}{'tension N':>11}{'front mm':>10}{'whole mm':>10}  elastic"
     )
     rows = (line for row in found.cuts.rows for line in _lines(row))
-    return "\n".join([*found.worn.verdict, "", heading, *rows, *found.cuts.notes])
+    return "\n".join([*found.worn.verdict, *found.worn.effect, "", heading, *rows, *found.cuts.notes])
 
 
 def _lines(row: CutRow) -> list[str]:

@@ -48,6 +48,7 @@ def _plain(found: Press) -> str:
     return "\n".join(
         [
             *found.worn.verdict,
+            *found.worn.effect,
             "",
             heading,
             *rows,

@@ -6,26 +6,33 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, reduce
 
+from app.commands.elastics import effect_of, with_next_step
 from app.commands.settings import dressed, made_of
 from app.presenting.assessment import assessment_lines
 from core.answer import NoBalanceError
 from core.assessment import Assessment, assessed
 from core.design import Design
+from core.design_elastics import ElasticError
 from core.errors import LineError
 from core.pipeline import Stages, build
 from core.report import shape_warnings
 from core.sewing.as_worn import as_worn
+from core.sewing.elastic_options import KEEP_CUT, KEEP_FIT
 from core.sewing.tensions import ran_away
 from core.solution import Solution, run
 
 
 @dataclass(frozen=True)
 class Worn:
-    """A solved design, whether the body came to rest, and what to look at."""
+    """A solved design, whether the body came to rest, and what to look at.
+
+    ``effect`` is the lift with requested elastics against bands that do not stretch, in a sentence if known.
+    """
 
     solution: Solution
     settled: bool
     warnings: list[str]
+    effect: tuple[str, ...] = ()
 
     @cached_property
     def assessment(self) -> Assessment:
@@ -56,20 +63,22 @@ def run_worn(
     """
     stages = build(design)
     design = dressed(design, stages.model.lines, lines)
-    if same:
-        plain = build(
-            reduce(lambda each, name: each.with_elastic(name, None), design.worn_elastics(), design)
-        )
-        made = made_of(design, elastics).worn_elastics()
-        design = as_worn(plain, run_to_body(plain).control_points, made)
-    else:
-        design = made_of(design, elastics)
+    requested = made_of(design, elastics)
     if not design.lines and not bare:
         raise LineError("No line is worn.", "Set one: --line mid-bust=75% --elastic 'mid-bust=plush 12'.")
-    solution = run_to_body(build(design, stages))
+    named = [name for name in requested.worn_elastics() if same or elastics]
+    plain = build(reduce(lambda each, name: each.with_elastic(name, None), named, design), stages)
+    try:
+        if same:
+            points = run_to_body(plain).control_points
+            requested = as_worn(plain, points, requested.worn_elastics())
+        solution = run_to_body(build(requested, stages))
+    except ElasticError as problem:
+        raise with_next_step(problem, plain, requested, KEEP_FIT if same else KEEP_CUT) from problem
+    effect = effect_of(solution.stages, plain) if named else ()
     motion = solution.verdict.motion
     settled = motion == "settled" and solution.verdict.state != "folded"
     warnings = shape_warnings(solution)
     if motion != "settled":
         warnings.append("The turns have not come to rest: these figures may still change.")
-    return Worn(solution, settled, warnings)
+    return Worn(solution, settled, warnings, effect)

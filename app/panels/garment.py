@@ -23,15 +23,15 @@ class GarmentPanel(QWidget):
     """The cut list; ``cards`` takes what stands below its rows.
 
     ``opened`` when it comes to be seen, and what it shows has to be new. ``selected`` names a line,
-    ``elastic_asked`` one and the widget under which its elastic is chosen, ``all_asked`` that for all worn
-    lines, ``stretched`` a line and how far its elastic shall be stretched [1]. ``copy_asked`` and
-    ``table_asked`` are for the list as text, ``elastics_asked`` for the elastics there are.
+    ``elastic_asked`` one whose elastic is to be chosen, ``all_asked`` is for all active lines, ``stretched``
+    a line and how far its elastic shall be stretched [1]. ``copy_asked`` and ``table_asked`` are for the list
+    as text, ``elastics_asked`` for the elastics there are.
     """
 
     opened = Signal()
     selected = Signal(str)
-    elastic_asked = Signal(str, QWidget)
-    all_asked = Signal(QWidget)
+    elastic_asked = Signal(str)
+    all_asked = Signal()
     stretched = Signal(str, float)
     lines_asked = Signal()
     copy_asked = Signal()
@@ -135,7 +135,7 @@ class GarmentPanel(QWidget):
     def _make_row(self, name: str) -> GarmentRow:
         row = GarmentRow()
         row.pressed.connect(lambda: self.selected.emit(name))
-        row.elastic_asked.connect(lambda under: self.elastic_asked.emit(name, under))
+        row.elastic_asked.connect(lambda: self.elastic_asked.emit(name))
         row.stretched.connect(lambda share: self.stretched.emit(name, share))
         return row
 
@@ -147,13 +147,13 @@ class GarmentPanel(QWidget):
             tr("Of an elastic, Busk knows how long to cut it. Choose one for all lines, or for each below."),
             tr("Choose for all lines…"),
         )
-        card.asked.connect(lambda: self.all_asked.emit(card))
+        card.asked.connect(self.all_asked)
         return card
 
     def _make_again(self) -> QPushButton:
         """Make what stands under the list once a line is made of an elastic: all can be changed at once."""
         again = button(tr("Choose for all lines…"), "quiet")
-        again.clicked.connect(lambda: self.all_asked.emit(again))
+        again.clicked.connect(self.all_asked)
         return again
 
     def _make_head(self) -> QWidget:

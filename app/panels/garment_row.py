@@ -68,7 +68,7 @@ class GarmentRow(QFrame):
 
     pressed = Signal()
     stretched = Signal(float)
-    elastic_asked = Signal(QWidget)
+    elastic_asked = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -82,7 +82,7 @@ class GarmentRow(QFrame):
         self.tension, self.stretch = label("", "body", tabular=True), label("", "caption", tabular=True)
         self.elastic, self.pressure, self.set_stretch = ElasticPull(), PressureMark(), _StretchField()
         self.set_stretch.entered.connect(lambda percent: self.stretched.emit(percent / 100.0))
-        self.elastic.clicked.connect(lambda: self.elastic_asked.emit(self.elastic))
+        self.elastic.clicked.connect(self.elastic_asked)
         self.notes = sentence("", "caption")
         self._build()
 

@@ -25,12 +25,12 @@ class LineDetails(QWidget):
     """The lower part of an opened row; a linked pair has one line of figures for each side.
 
     ``decided`` carries what was decided and its value: colour, linked, stiffness; ``asked`` one of: reset,
-    rename, path, remove. ``elastic_asked`` carries the widget under which an elastic is chosen.
+    rename, path, remove. ``elastic_asked``: an elastic is to be chosen.
     """
 
     decided = Signal(str, object)
     asked = Signal(str)
-    elastic_asked = Signal(QWidget)
+    elastic_asked = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -60,7 +60,7 @@ class LineDetails(QWidget):
         column.addWidget(self._whole)
         outside.addWidget(self._set)
         self._elastic = ElasticPull()
-        self._elastic.clicked.connect(lambda: self.elastic_asked.emit(self._elastic))
+        self._elastic.clicked.connect(self.elastic_asked)
         made = QHBoxLayout()
         made.setContentsMargins(0, 3, 0, 0)
         made.addWidget(label(tr("Elastic"), "caption"))

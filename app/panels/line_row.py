@@ -37,7 +37,7 @@ class LineRow(QFrame):
     decided = Signal(str, object)
     path_asked = Signal()
     removed = Signal()
-    elastic_asked = Signal(QWidget)
+    elastic_asked = Signal()
 
     def __init__(self, view: LineView) -> None:
         super().__init__()

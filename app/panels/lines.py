@@ -44,7 +44,7 @@ class LinesPanel(QWidget):
     """All lines, one row each, a linked pair in one; lengths in the signals are shares of those at rest [1].
 
     Signals name a line, a pair by its left one; ``decided`` carries one of its traits and the value,
-    ``elastic_asked`` the widget under which an elastic is chosen; ``opened`` when the list comes to be seen.
+    ``elastic_asked`` one whose elastic is to be chosen; ``opened`` when the list comes to be seen.
     """
 
     opened = Signal()
@@ -57,7 +57,7 @@ class LinesPanel(QWidget):
     decided = Signal(str, str, object)
     removed = Signal(str)
     path_asked = Signal(str)
-    elastic_asked = Signal(str, QWidget)
+    elastic_asked = Signal(str)
     draw_asked = Signal()
     add_asked = Signal()
     presets_asked = Signal()
@@ -204,7 +204,7 @@ class LinesPanel(QWidget):
         row.removed.connect(lambda: self.removed.emit(name))
         row.decided.connect(lambda trait, value: self.decided.emit(name, trait, value))
         row.path_asked.connect(lambda: self.path_asked.emit(name))
-        row.elastic_asked.connect(lambda under: self.elastic_asked.emit(name, under))
+        row.elastic_asked.connect(lambda: self.elastic_asked.emit(name))
         row.visibility_changed.connect(lambda visible: self.visibility_changed.emit(name, visible))
 
     def _choose(self, name: str) -> None:

@@ -41,3 +41,8 @@ def _view(elastic: Elastic, where: str, own: bool) -> ElasticView:
         own,
         elastic.curve,
     )
+
+
+def kind_title(elastic: Elastic) -> str:
+    """Return what an elastic that comes with Busk is called without its width."""
+    return say(elastic.name).removesuffix(f"{elastic.width_mm:g} mm").strip()
