@@ -72,8 +72,11 @@ def test_lines_that_cannot_move_or_are_held_keep_their_lengths(built):
 @pytest.mark.parametrize(
     ("curve", "sentence"),
     [
-        (((0.0, 0.0), (0.3, 0.5)), "weak would be stretched by .* as mid-bust; its table ends at 30 %"),
-        (((0.0, 0.0), (3.0, 6.0)), "mid-bust would have to be cut to .* % of its length"),
+        (
+            ((0.0, 0.0), (0.3, 0.5)),
+            "weak is too weak for mid-bust: .* mm too long at its limit, 30 %",
+        ),
+        (((0.0, 0.0), (3.0, 6.0)), "weak is too weak for mid-bust: .* mm too long at the shortest cut, 50 %"),
     ],
 )
 def test_an_elastic_that_cannot_do_it_is_refused(built, curve, sentence):

@@ -23,8 +23,8 @@ def run_elastics(
     design = made_of(dressed(design, stages.model.lines, lines), elastics)
     line = next((each.name for each in stages.model.lines if each.name.lower() == name.strip().lower()), None)
     if line is None:
-        names = ", ".join(each.name for each in stages.model.lines)
-        raise LineError(f"There is no line '{name}'.", f"The lines are: {names}.")
+        known = ", ".join(each.name for each in stages.model.lines)
+        raise LineError(f"There is no line '{name}'.", f"The lines are: {known}.")
     stages, mode = build(design, stages), KEEP_FIT if as_worn else KEEP_CUT
     names, rigid = design.linked(line), None
     rows = [f"{'':28}{'stretch %':>10}{'cut mm':>9}{'body mm':>9}{'lift mm':>9}"]

@@ -1,0 +1,181 @@
+"""Elastic options: the effect of an elastic is that of the design, and a refusal names what works."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from app.cli import main
+from core.design_elastics import Elastic
+from core.design_lines import WornLine
+from core.elastics import built_in, find_elastic
+from core.pipeline import Stages, build
+from core.sewing.as_worn import fitted, reached_points
+from core.sewing.elastic_options import (
+    FIRST_STRETCH,
+    KEEP_CUT,
+    KEEP_FIT,
+    ElasticOption,
+    elastic_option,
+    nearest,
+    outcome_of,
+    strongest,
+)
+
+STRAP = find_elastic("strap 15")
+WEAK = Elastic("weak", 10.0, ((0.0, 0.0), (0.3, 0.5)))
+SOFT = Elastic("soft", 10.0, ((0.0, 0.0), (3.0, 6.0)))
+NAMES = ("mid-bust",)
+
+
+def worn_at(stages: Stages, ratio: float, line: str = "mid-bust", **choices: object) -> Stages:
+    design = replace(stages.design, lines=(WornLine(line, ratio),), **choices)  # type: ignore[arg-type]
+    return build(design, stages)
+
+
+@pytest.mark.parametrize("contact", ["glued", "sliding"])
+@pytest.mark.parametrize("mode", [KEEP_FIT, KEEP_CUT])
+def test_the_effect_is_what_its_design_gives(built: Callable[[str], Stages], contact: str, mode: str) -> None:
+    stages = worn_at(built("mannequin"), 0.97, line_contact=contact)
+    option = elastic_option(stages, NAMES, STRAP, mode)
+    assert option.outcome is not None
+    again, before = outcome_of(build(option.outcome.design, stages)), outcome_of(stages)
+    assert again == option.outcome
+    reached, former = (each.rows["mid-bust"].reached_front_mm for each in (again, before))
+    if mode == KEEP_FIT:
+        assert reached == pytest.approx(former, rel=2e-5)
+    else:
+        assert again.design.ratio("mid-bust") == 0.97
+        assert reached > former + 1.0, "an elastic gives way"
+
+
+@pytest.mark.parametrize(("elastic", "limit"), [(WEAK, "at its limit, 30 %"), (SOFT, "at the shortest cut")])
+@pytest.mark.parametrize("contact", ["glued", "sliding"])
+def test_one_that_is_too_weak_is_cut_as_short_as_it_can_be(
+    built: Callable[[str], Stages], contact: str, elastic: Elastic, limit: str
+) -> None:
+    stages = worn_at(built("mannequin"), 0.95, line_contact=contact)
+    option = elastic_option(stages, NAMES, elastic, KEEP_FIT)
+    assert option.outcome is None
+    assert limit in option.reason
+    assert option.closest is not None
+    row, before = option.closest.rows["mid-bust"], outcome_of(stages).rows["mid-bust"]
+    excess = row.reached_front_mm - before.reached_front_mm
+    assert f"{excess:.1f} mm too long" in option.reason
+    ratio = option.closest.design.ratio("mid-bust")
+    assert ratio == pytest.approx(0.5) or row.elongation == pytest.approx(0.99 * elastic.reach, rel=1e-3)
+    assert row.elongation is not None
+    assert row.elongation <= elastic.reach
+
+
+def test_the_length_that_a_refusal_names_works(built: Callable[[str], Stages]) -> None:
+    """Whatever the contact, as far as a line is set too short."""
+    for contact in ("glued", "sliding"):
+        for ratio in (0.5, 0.53, 0.56):
+            stages = worn_at(built("mannequin"), ratio, line_contact=contact)
+            option = elastic_option(stages, NAMES, find_elastic("strap 10"), KEEP_CUT)
+            assert option.problem is not None, "it would be stretched by more than 70 %"
+            assert option.closest is not None
+            least = float(option.problem.hint.removeprefix("Set mid-bust to ").partition(" %")[0])
+            assert 100.0 * ratio < least < 63.0
+            longer = worn_at(stages, least / 100.0)
+            assert elastic_option(longer, NAMES, find_elastic("strap 10"), KEEP_CUT).outcome is not None
+
+
+def test_numbers_that_round_alike_are_told_apart() -> None:
+    message = STRAP.overstretched(0.7004, "mid-bust").message
+    assert "stretched by 70.04 % as mid-bust; its table ends at 70 %" in message
+    assert (
+        "pulled with 9.95 N as mid-bust; its table ends at 9.9 N"
+        in STRAP.overpulled(9.949, "mid-bust").message
+    )
+
+
+@pytest.mark.parametrize("hold", ["spring", "held"])
+@pytest.mark.parametrize("mode", [KEEP_FIT, KEEP_CUT])
+def test_a_slack_line_names_the_length_at_which_an_elastic_pulls(
+    built: Callable[[str], Stages], mode: str, hold: str
+) -> None:
+    stages = worn_at(built("mannequin"), 1.05, line_hold=hold)
+    option = elastic_option(stages, NAMES, STRAP, mode)
+    assert option.reason == "Slack at this length: set the line to 99 % or shorter."
+    shorter = worn_at(stages, 0.99, line_hold=hold)
+    assert elastic_option(shorter, NAMES, STRAP, mode).outcome is not None
+
+
+def test_a_held_line_takes_what_is_strong_enough_and_keeps_its_shape(built: Callable[[str], Stages]) -> None:
+    stages = worn_at(built("mannequin"), 0.95, line_hold="held")
+    options = [elastic_option(stages, NAMES, each, KEEP_FIT) for each in (None, *built_in())]
+    assert {round(each.outcome.lift, 6) for each in options if each.outcome is not None} == {
+        round(outcome_of(stages).lift, 6)
+    }
+    weak = [each for each in options if each.outcome is None]
+    assert weak
+    assert all("Too weak: 11.3 N at this length" in each.reason for each in weak)
+
+
+def test_a_band_on_the_ribs_is_put_on(built: Callable[[str], Stages]) -> None:
+    stages = build(replace(built("mannequin").design, lines=()), built("mannequin"))
+    option = elastic_option(stages, ("under-bust",), STRAP, KEEP_FIT)
+    assert option.outcome is not None
+    assert option.outcome.rows["under-bust"].elongation == pytest.approx(FIRST_STRETCH)
+    off = elastic_option(build(option.outcome.design, stages), ("under-bust",), None, KEEP_FIT)
+    assert off.outcome is not None
+    assert not off.outcome.design.worn()
+
+
+def test_a_locked_line_is_refused_before_it_is_chosen(built: Callable[[str], Stages]) -> None:
+    stages = worn_at(built("mannequin"), 0.97)
+    traits = replace(stages.design.traits_of("mid-bust"), locked=True)
+    stages = build(stages.design.with_traits(traits), stages)
+    assert "locked" in elastic_option(stages, NAMES, STRAP, KEEP_FIT).reason
+    assert elastic_option(stages, NAMES, STRAP, KEEP_CUT).outcome is not None
+
+
+def test_the_nearest_is_alike_and_the_strongest_reaches_furthest(built: Callable[[str], Stages]) -> None:
+    stages = worn_at(built("mannequin"), 0.94, line_contact="sliding")
+    options = [elastic_option(stages, NAMES, each, KEEP_FIT) for each in built_in()]
+    near = nearest(options, STRAP)
+    assert near is not None
+    assert near.elastic == find_elastic("strap 20")
+    usable = {each.elastic.name for each in options if each.outcome is not None and each.elastic is not None}
+    assert "Strap 15 mm" not in usable
+    limited: list[ElasticOption] = [each for each in options if each.outcome is None]
+    best = strongest(limited, NAMES)
+    assert best is not None
+    assert best.closest is not None
+    reached = [each.closest.rows["mid-bust"].reached_front_mm for each in limited if each.closest is not None]
+    assert best.closest.rows["mid-bust"].reached_front_mm == min(reached)
+    assert nearest(limited, STRAP) is None
+
+
+def test_the_search_is_not_led_astray_by_its_first_guesses(built: Callable[[str], Stages]) -> None:
+    """Guesses beyond the curve or the shortest cut once ended the search though a length was there."""
+    stages = worn_at(built("mannequin"), 0.94, line_contact="sliding")
+    found = fitted(stages, reached_points(stages), {"mid-bust": find_elastic("strap 20")})
+    assert found.excess == {}
+    row = outcome_of(build(found.design, stages)).rows["mid-bust"]
+    assert row.elongation == pytest.approx(0.69, abs=0.01), "close to its end at 70 %"
+
+
+def test_the_command_line_lists_effects_and_names_the_nearest(
+    mannequin: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["cut", str(mannequin), "--line", "mid-bust=94%", "--set", "line_contact=sliding"]
+    assert main([*words, "--elastics", "mid-bust", "--as-worn"]) == 0
+    listed = capsys.readouterr().out
+    assert "Strap 15 mm" in listed
+    assert "Too weak" in listed
+    assert "Lift kept: 1" in listed
+    assert main([*words, "--elastic", "mid-bust=strap 15", "--as-worn"]) == 2
+    assert "Nearest elastic that works: Strap 20 mm." in capsys.readouterr().err
+    assert main([*words, "--elastic", "mid-bust=strap 20", "--as-worn"]) in (0, 3)
+    assert "with a band that does not stretch." in capsys.readouterr().out
+    assert main([*words, "--elastic", "mid-bust=strap 20", "--as-worn", "--json"]) in (0, 3)
+    assert json.loads(capsys.readouterr().out)["rows"][0]["elastic"] == "Strap 20 mm"
+    assert main([*words, "--elastics", "no line"]) == 2
+    assert "There is no line 'no line'" in capsys.readouterr().err

@@ -1,0 +1,125 @@
+"""The chooser of elastics: what cannot be used is grey with its reason, what can is one click away."""
+
+from __future__ import annotations
+
+import re
+import threading
+from pathlib import Path
+from typing import Any
+
+import pytest
+from garment_tools import at_rest, chooser_of, cut_rows, made_of, mark
+from window_tools import PATIENCE, Script, run_undrawn, settled
+
+from app.lining import elastic_offer
+from app.main_window import MainWindow
+from app.presenting.bust import bust_move
+from app.wording.words import number
+from core.design_elastics import Elastic
+from core.elastics import save_elastic
+from core.sewing.elastic_options import KEEP_CUT
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+SAME = 0.2
+"""By how much a reached length may differ once an elastic is chosen [mm]."""
+
+
+@pytest.fixture(autouse=True)
+def own_house(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """The designer's own elastics of one test are not those of the next."""
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+
+
+def test_an_elastic_that_cannot_be_used_is_grey_and_the_nearest_that_can_is_one_click_away() -> None:
+    def script(window: MainWindow) -> Script:
+        save_elastic(Elastic("weak", 10.0, ((0.0, 0.0), (0.1, 0.05), (0.3, 0.2)), estimate=False))
+        yield settled(window)
+        window.inspector.open("garment")
+        yield at_rest(window)
+        before, rows = window.session.design, cut_rows(window)
+        window.garment.rows["mid-bust"].elastic.click()
+        chooser = chooser_of(window)
+        assert chooser.views()[1].note == "Computing…"
+        yield from mark(window, "weak")
+        view = chooser.views()[chooser.current]
+        assert not view.usable
+        assert re.fullmatch(r"Too weak: [\d.]+ mm too long at its limit, 30 % stretch\.", view.note)
+        assert view.note in chooser.advice.text()
+        assert not chooser.use.isEnabled()
+        assert window.session.design is before
+        nearest = next(each for each in chooser.offers() if "limit" not in each).removeprefix("Use ")
+        assert next(each for each in chooser.views() if each.title == nearest).usable
+        chooser.press_offer(chooser.offers().index(f"Use {nearest}"))
+        yield made_of(window, "mid-bust")
+        row = cut_rows(window)["mid-bust"]
+        assert row.elastic == nearest
+        assert row.reached_front_mm == pytest.approx(rows["mid-bust"].reached_front_mm, abs=SAME)
+        window.session.undo_stack.undo()
+        yield at_rest(window)
+        window.garment.rows["mid-bust"].elastic.click()
+        yield from mark(window, "weak")
+        chooser = chooser_of(window)
+        limited = chooser.views()[chooser.current]
+        chooser.press_offer(chooser.offers().index("Use at its limit"))
+        yield made_of(window, "mid-bust")
+        row = cut_rows(window)["mid-bust"]
+        assert row.elastic == "weak"
+        assert row.elongation == pytest.approx(0.3, rel=0.02)
+        assert number(row.reached_front_mm) == limited.reached
+
+    run_undrawn([], script)
+
+
+def test_the_loss_of_lift_is_shown_before_it_is_chosen() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        window.line_maker.add("straps")
+        window.lines_desk.commit_length("strap left", 0.93)
+        window.inspector.open("garment")
+        yield at_rest(window)
+        window.garment.rows["strap left"].elastic.click()
+        chooser = chooser_of(window)
+        chooser.mode_asked.emit(KEEP_CUT)
+        yield from mark(window, "Strap 15 mm")
+        view = chooser.views()[chooser.current]
+        rigid = float(chooser.views()[0].lift)
+        kept = round(100.0 * float(view.lift) / rigid)
+        assert kept < 30
+        assert abs(int(view.note.removeprefix("Lift kept: ").removesuffix(" %")) - kept) <= 2
+        assert f"{view.lift} mm" in chooser.advice.text()
+        chooser.use.click()
+        yield made_of(window, "strap left", "strap right")
+        assert window.session.frame is not None
+        assert bust_move(window.session.frame).mean.up == pytest.approx(float(view.lift), abs=0.15)
+
+    run_undrawn([], script)
+
+
+def test_effects_that_come_late_are_dropped_with_the_chooser(monkeypatch: pytest.MonkeyPatch) -> None:
+    gate, found = threading.Event(), elastic_offer.elastic_option
+
+    def waits(*asked: Any) -> Any:
+        gate.wait(PATIENCE)
+        return found(*asked)
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        window.inspector.open("garment")
+        yield at_rest(window)
+        monkeypatch.setattr(elastic_offer, "elastic_option", waits)
+        window.garment.rows["mid-bust"].elastic.click()
+        former = chooser_of(window)
+        assert not former.use.isEnabled()
+        former.reject()
+        window.lines_desk.commit_length("mid-bust", 1.05)
+        yield at_rest(window)
+        window.garment.rows["mid-bust"].elastic.click()
+        gate.set()
+        yield lambda: not window.jobs.at_work()
+        views = chooser_of(window).views()
+        assert not any(view.usable for view in views[1:]), "they are of the line as it is now"
+        assert {view.note for view in views[1:]} == {"Slack at this length: set the line to 99 % or shorter."}
+        chooser_of(window).reject()
+
+    run_undrawn([], script)
