@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from app.panels.elastics_sheet import TOLD_AT, ElasticView
-from app.wording.lengths import width_number
+from app.wording.lengths import width, width_number
 from app.wording.words import number, say, tr
 from core.design_elastics import Elastic
 
@@ -45,4 +45,4 @@ def _view(elastic: Elastic, where: str, own: bool) -> ElasticView:
 
 def kind_title(elastic: Elastic) -> str:
     """Return what an elastic that comes with Busk is called without its width."""
-    return say(elastic.name).removesuffix(f"{elastic.width_mm:g} mm").strip()
+    return say(elastic.name).removesuffix(width(elastic.width_mm)).strip()
