@@ -49,6 +49,7 @@ def detection(body: Body, landmarks: Landmarks | None = None) -> dict[str, Any]:
         "file_to_mm": body.pose.file_to_mm.tolist(),
         "sure": body.pose.sure and not any(hint.kind == "size" for hint in landmarks.hints),
         "hints": [hint.kind for hint in landmarks.hints],
+        "upright": landmarks.upright,
         "reason": body.pose.reason,
         "repairs": list(body.repairs),
         "warnings": doubts(body, landmarks) + girth_doubts(found),

@@ -11,6 +11,7 @@ import pytest
 import trimesh
 from altered_bodies import smooth_step
 
+from app.commands.found import found_text
 from core.body import Body
 from core.cleaning.clipping import above
 from core.detect import detection
@@ -19,7 +20,7 @@ from core.finding.body_scale import size_hint, whole_figure
 from core.finding.build import Build, build_of
 from core.finding.lean import lean_hint
 from core.finding.likeness import SMALL, clothes_hint, flat_hint, refuse_angular
-from core.landmark import CERTAIN, Landmarks
+from core.landmark import CERTAIN, Hint, Landmarks
 from core.landmarks import find_landmarks
 from core.mesh import Mesh, Points
 from core.standing.upright import Pose
@@ -103,11 +104,16 @@ def test_the_stature_is_that_of_a_whole_figure_alone():
 def test_a_lean_is_told_with_its_angle_and_the_up_that_corrects_it(degrees):
     pose = Pose("cm", "+y", "+z", 10.0 * np.array(Y_UP), True, "", 1.0)
     (hint,) = lean_hint(leant(degrees), pose)
-    assert f"--up {hint.up} " in hint.sentence
     x, y, z = (float(number) for number in hint.up.split(","))
     true = np.array([0.0, np.cos(np.radians(degrees)), np.sin(np.radians(degrees))])
     assert np.array([x, y, z]) @ true > np.cos(np.radians(5.0))
     assert ("forward" in hint.sentence) == (degrees > 0.0)
+
+
+def test_the_command_line_names_the_direction_that_corrects_a_lean():
+    leaning = replace(found("mannequin"), hints=(Hint("lean", "The trunk leans.", "-0.1,0.3,0.9"),))
+    told = detection(body_of(sample("mannequin").vertices, name="mannequin"), leaning)
+    assert "--up=-0.1,0.3,0.9" in found_text(told)
 
 
 def test_a_lean_that_was_corrected_is_not_told():

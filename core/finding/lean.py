@@ -29,12 +29,12 @@ def lean_hint(build: Build, pose: Pose) -> tuple[Hint, ...]:
     if forward:
         sentence = (
             f"The trunk leans forward by about {lean:.0f} degrees, and girths are measured level. "
-            f"Choose Stand upright at the Scan step, or give --up {up} to the command."
+            "Set it upright at the Scan step."
         )
     else:
         sentence = (
             f"The trunk leans backward by about {lean:.0f} degrees, and girths are measured level. "
-            f"Choose Stand upright at the Scan step, or give --up {up} to the command."
+            "Set it upright at the Scan step."
         )
     return (Hint("lean", sentence, up),)
 
