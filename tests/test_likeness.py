@@ -68,6 +68,16 @@ def test_the_samples_raise_no_doubt(name):
     assert found(name).hints == ()
 
 
+@pytest.mark.parametrize("scale", [0.6, 1.4, 2.2])
+def test_the_size_is_doubted_at_any_scale(scale):
+    marks = found()
+    points = {name: replace(mark, position=scale * mark.position) for name, mark in marks.points.items()}
+    body = body_of(scale * sample().vertices)
+    assert [
+        hint.kind for hint in size_hint(build_of(body.mesh, replace(marks, points=points)), body.pose)
+    ] == ["size"]
+
+
 def test_a_body_of_another_size_is_doubted_and_asked_about():
     body = body_of(1.5 * sample().vertices)
     again = find_landmarks(body)

@@ -9,7 +9,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from core.finding.build import Build
 from core.landmark import Hint
-from core.mesh import Floats
+from core.mesh import Floats, Indices
 from core.slicing.trunk_guide import guide_of
 from core.standing.body_size import MILLIMETRES
 from core.standing.upright import Pose
@@ -27,8 +27,8 @@ scale, which only lengths in inches can be mistaken for."""
 HALF_SCALE = (280.0, 520.0)
 """Waists of dress forms at half scale [mm]."""
 
-NECK = 180.0
-"""What is narrower than this above the arm-pits is a neck [mm]."""
+NECK = 0.45
+"""What is narrower than this part of the shoulders above the arm-pits is a neck [1], whatever the scale."""
 
 STATURES = 1400.0, 1880.0
 """Statures of women, but for one in a thousand [mm]."""
@@ -85,7 +85,7 @@ def whole_figure(heights: Floats, widths: Floats, armpit: float, low: float) -> 
     ``widths`` of rows at ``heights`` above the arm-pits, both of shape (k,) [mm]; ``low`` is the lowest
     level of the scan [mm]. Source: ours.
     """
-    narrow = np.flatnonzero((widths > 0.0) & (widths < NECK))[:10]
+    narrow = _neck_rows(widths)
     if not len(narrow):
         return 0.0
     neck, top = narrow[np.argmin(widths[narrow])], float(heights[-1])
@@ -107,7 +107,7 @@ def _lengths(build: Build, heights: Floats, widths: Floats) -> dict[str, float]:
         return lengths
     waist = float(guide.z[low[slimmest]])
     lengths["waist"] = float(tape[low[slimmest]])
-    narrow = np.flatnonzero((widths > 0.0) & (widths < NECK))[:10]
+    narrow = _neck_rows(widths)
     if len(narrow):
         neck = narrow[np.argmin(widths[narrow])]
         lengths["neck"] = float(widths[neck])
@@ -115,6 +115,11 @@ def _lengths(build: Build, heights: Floats, widths: Floats) -> dict[str, float]:
         if len(shoulders):
             lengths["length"] = float(heights[shoulders[-1]] - waist)
     return lengths
+
+
+def _neck_rows(widths: Floats) -> Indices:
+    """Return the lowest rows that are a neck, shape (k,)."""
+    return np.flatnonzero((widths > 0.0) & (widths < NECK * widths.max(initial=0.0)))[:10]
 
 
 def _widths(build: Build) -> tuple[Floats, Floats]:
