@@ -68,16 +68,6 @@ def test_the_samples_raise_no_doubt(name):
     assert found(name).hints == ()
 
 
-@pytest.mark.parametrize("scale", [0.6, 1.4, 2.2])
-def test_the_size_is_doubted_at_any_scale(scale):
-    marks = found()
-    points = {name: replace(mark, position=scale * mark.position) for name, mark in marks.points.items()}
-    body = body_of(scale * sample().vertices)
-    assert [
-        hint.kind for hint in size_hint(build_of(body.mesh, replace(marks, points=points)), body.pose)
-    ] == ["size"]
-
-
 def test_a_body_of_another_size_is_doubted_and_asked_about():
     body = body_of(1.5 * sample().vertices)
     again = find_landmarks(body)
@@ -105,6 +95,7 @@ def test_the_stature_is_that_of_a_whole_figure_alone():
     heights = np.arange(1230.0, 1640.0, 6.0)
     widths = np.interp(heights, [1230, 1330, 1380, 1400, 1500, 1640], [420, 340, 110, 110, 155, 60])
     assert whole_figure(heights, widths, 1220.0, 0.0) == pytest.approx(1640.0, abs=6.0)
+    assert whole_figure(2.0 * heights, 2.0 * widths, 2440.0, 0.0) == pytest.approx(3280.0, abs=12.0)
     assert whole_figure(heights, widths, 1220.0, 900.0) == 0.0, "cut at the hips"
     cut = heights < 1400.0
     assert whole_figure(heights[cut], widths[cut], 1220.0, 820.0) == 0.0, "cut at the neck"
