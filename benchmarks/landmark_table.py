@@ -33,7 +33,7 @@ def misses(case: Case) -> Iterator[tuple[str, float, float]]:
     """Yield name, distance [mm] and confidence of each judged landmark of a file."""
     for mark in case.marks:
         if mark.name.startswith(JUDGED):
-            yield mark.name, case.errors.get(f"{mark.name} to nipple-apex", mark.off), mark.confidence
+            yield mark.name, mark.off, mark.confidence
 
 
 def row(name: str, cases: Sequence[Case]) -> list[str]:

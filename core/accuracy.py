@@ -33,8 +33,9 @@ TRUSTED, DOUBTED = 0.5, 0.3
 class Mark:
     """One landmark of a file: how far off it is [mm] and how sure it claims to be (0..1).
 
-    ``off`` is the distance of a bust point or another single point, and for fold and lowest point that in
-    height: along the crease their place follows that of the bust point.
+    ``off`` is the distance of a single point, of a bust point that from the segment between nipple and apex
+    if both are known, and for fold and lowest point that in height: along the crease their place follows that
+    of the bust point.
     """
 
     name: str
@@ -129,11 +130,7 @@ def compared(truth: Truth, found: Mapping[str, Any], seconds: float = 0.0) -> Ca
     turned = _turned(ours, to_mm) if truth.stands else 0.0
     if truth.stands:
         errors["turned [deg]"] = turned
-    marks = tuple(
-        Mark(name, abs(errors.get(f"{name} height", errors[name])), confidence[name])
-        for name in points
-        if name in known
-    )
+    marks = tuple(Mark(name, _distance(name, errors), confidence[name]) for name in points if name in known)
     gone = [f"bust_point_{side}" for side in truth.gone]
     invented = {name: confidence[name] for name in gone if name in points}
     return Case(
@@ -188,6 +185,12 @@ def _point_errors(points: Mapping[str, Points], known: Mapping[str, Points]) -> 
         if name.startswith("bust_point") and apex is not None:
             errors[f"{name} to nipple-apex"] = _from_segment(at, known[name], apex)
     return errors
+
+
+def _distance(name: str, errors: Mapping[str, float]) -> float:
+    """Return how far off a landmark is [mm]: in height, from the segment to the apex, or else in space."""
+    kinds = (f"{name} height", f"{name} to nipple-apex", name)
+    return abs(next(errors[kind] for kind in kinds if kind in errors))
 
 
 def _level_errors(
