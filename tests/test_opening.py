@@ -12,7 +12,10 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+import core.body
+from app.presenting.scan import scan_view
 from app.seeing import skin as skin_module
+from app.seeing.ready import make_ready
 from app.seeing.scene import Scene
 from app.seeing.skin import skin_of
 from app.seeing.skin_part import SkinPart
@@ -63,6 +66,14 @@ def test_the_tree_holds_the_vertices_of_the_body_alone(mannequin):
     body = read_scan(mannequin).mesh
     assert len(skin_of(body).source) > len(body.vertices)  # the rims of its plates are doubled
     assert skin_of(body).tree.n == len(body.vertices)
+
+
+def test_the_holes_that_are_listed_were_looked_for_where_the_skin_was_prepared(built, monkeypatch):
+    stages = built("mannequin")
+    fresh = replace(stages, body=replace(stages.body))
+    make_ready(fresh)
+    monkeypatch.setattr(core.body, "find_holes", _refuse)
+    assert scan_view(fresh.design.scan, fresh.body).edits is not None
 
 
 def test_preparing_a_body_tells_how_far_it_is_and_can_be_stopped(ball):

@@ -15,6 +15,7 @@ def make_ready(built: Stages | StuckError, progress: Progress = quiet) -> None:
     mesh, stages = built.body.mesh, built if isinstance(built, Stages) else None
     skin = skin_of(mesh, lambda what, share: progress(what, 0.7 * share))
     progress(PREPARING, 0.7)
+    _ = built.body.holes  # kept with the body: they are listed beside it
     pieces_of(skin, NONE if stages is None else stages.moving.vertices)
     if stages is None:
         return
