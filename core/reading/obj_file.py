@@ -31,7 +31,7 @@ def read_obj(name: str, data: bytes, progress: Progress) -> RawScan:
     vertices, normals, faces = Growing("d"), Growing("d"), Growing("q")
     behind, painted, points = Growing("d"), Growing("B"), 0
     for block in blocks(name, data, progress):
-        for digits in _PAINT.findall(block):
+        for digits in _PAINT.findall(block) if MRGB in block else ():
             painted.add(np.frombuffer(bytes.fromhex(digits.decode()), dtype=np.uint8))
         lines = lines_of(block)
         at = lines.marked(b"v")
@@ -44,7 +44,7 @@ def read_obj(name: str, data: bytes, progress: Progress) -> RawScan:
         check_size(name, max(points, len(normals) // 3), len(faces) // 3, len(data))
     directions = normals.array().reshape(-1, 3)
     colours = _colours(points, behind, painted)
-    lost = colours is None and _PAINT.search(data) is not None
+    lost = colours is None and MRGB in data and _PAINT.search(data) is not None
     return RawScan(
         vertices.array().reshape(-1, 3),
         faces.array().reshape(-1, 3),

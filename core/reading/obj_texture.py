@@ -18,7 +18,7 @@ from core.reading.text_table import Growing, Lines, blocks, lines_of, table, who
 
 _LIBRARY = re.compile(rb"(?:^|[\n\r])[ \t]*mtllib[ \t]+([^\n\r]+)", re.IGNORECASE)
 _CORNER = re.compile(rb"(?<!\S)[^\s/]+(?:/([^\s/]*)\S*)?")
-_LARGEST_LIBRARY = 1 << 20
+_HEAD = _LARGEST_LIBRARY = 1 << 20  # where a library is named, and how much of it is read [bytes]
 _MOST_TEXTURES = 100
 _A_LINE = 64  # colours in a line, as ZBrush writes them
 
@@ -29,7 +29,7 @@ def with_texture(path: Path, data: bytes, most: int, progress: Progress) -> byte
     One without textures comes back as it is; textures that are missing or damaged leave an empty comment, of
     which the reader tells. Names that lead out of the folder are not followed. Raises Cancelled.
     """
-    found = _LIBRARY.search(data)
+    found = _LIBRARY.search(data[:_HEAD])
     library = beside(path, _text(found[1])) if found else None
     if library is None or MRGB in data:
         return data
