@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QKeyEvent, QUndoGroup
-from PySide6.QtWidgets import QAbstractButton, QApplication, QMainWindow, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QAbstractButton,
+    QApplication,
+    QMainWindow,
+    QStackedWidget,
+    QVBoxLayout,
+    QWidget,
+)
 
 from app.actions import Actions
 from app.asking.housekeeping import Housekeeping
@@ -102,6 +109,7 @@ class MainWindow(QMainWindow):
             tr("Ask for the result"), tr("Say where the bust is to be; Busk finds the lengths")
         )
         self.history, self.variants, self.inspector = HistoryPanel(), VariantsPanel(), Inspector()
+        self.lines_page = QStackedWidget()  # the lines, or what is asked for in their place
         self._fill_inspector()
         self.layout_ = Layout(self)
         self.pages = self.layout_.pages
@@ -147,7 +155,8 @@ class MainWindow(QMainWindow):
         lines.setFocusProxy(self.lines)
         self.inspector.add("scan", self.scan)
         self.inspector.add("landmarks", self.landmarks)
-        self.inspector.add("lines", lines, tr("Lines"))
+        self.lines_page.addWidget(lines)
+        self.inspector.add("lines", self.lines_page, tr("Lines"))
         self.inspector.add("result", self.result, tr("Measures"))
         self.inspector.add("garment", self.garment, tr("Garment"))
         self.inspector.add("variants", self.variants, tr("Variants"))

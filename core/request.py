@@ -13,27 +13,28 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from core.aims.answers import Look, exact_points
+from core.aims.answers import exact_points
+from core.aims.candidate import Candidate
 from core.aims.conflicts import Conflict, conflicts_of
 from core.aims.figure import Goal
-from core.aims.reaching import LOOSEST, Bounds, Candidate, Search
+from core.aims.pressure_limit import PressureLimit, largest_pressures
+from core.aims.reaching import LOOSEST, Bounds, Search
 from core.aims.readings import Figures
 from core.aims.wanted import NEAR, weights_of
 from core.answer import NoBalanceError
-from core.cutting import is_strap
 from core.design import Design
 from core.errors import LineError
 from core.mesh import Floats, Points
 from core.pipeline import Stages, build
-from core.pressure import pressures
 from core.progress import Progress, quiet
-from core.sewing.comfort import comfort
-from core.sewing.tensions import line_tensions
 from core.solving.newtons import newtons_per_unit
 
 _ROUNDS = 6
+_LIMIT_ROUNDS, _FIRM_FROM = (
+    9,
+    3,
+)  # rounds for pressure; from then on limits only get lower: lines may alternate
 _SLOPES = -2.0, 0.5  # of lengths that are found by those of the model [1]
-_TOO_MUCH = 1.01  # over the limit of pressure, at which it counts as kept
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,11 +44,12 @@ class Reply:
     ``reachable`` tells whether that is what was asked for, ``miss`` [mm] what the worst figure lacks,
     ``deviation`` [mm] the root of the squares of all as they count: see ``weights_of``. If not,
     there is a reason: lines ``at_end`` are as short or as long as they may be, lines that are ``pressing`` do
-    so as hard as they may, ``strained`` is a shape that would strain beyond what looks natural; without any
-    the lines do not move it that way. ``agreed`` is False where lengths, elastics and pressures did not come
-    to agree: there may be better. ``pressure`` [kPa] is the largest of each line that was looked at, and
-    ``limit`` what it may be; ``unseen`` are the worn lines that were not looked at. ``tension`` [N] is the
-    sum over the lines, an estimate where they are made of no elastic; ``answers`` how many were worked out.
+    so as hard as they may, ``slack`` ones would push, ``strained`` is a shape that would strain beyond what
+    looks natural; without any the lines do not move it that way. ``agreed`` is False where lengths, elastics
+    and pressures did not come to agree: there may be better. ``pressure`` [kPa] is the largest of each line
+    that was looked at, and ``limit`` what it may be; ``unseen`` are the worn lines that were not looked at.
+    ``tension`` [N] is the sum over the lines, an estimate where they are made of no elastic; ``answers`` how
+    many were worked out.
     ``longest`` is the ratio that no line goes beyond [1], ``points`` (n, 3) [mm] are the exact answer.
     """
 
@@ -57,6 +59,7 @@ class Reply:
     miss: float
     at_end: tuple[str, ...]
     pressing: tuple[str, ...]
+    slack: tuple[str, ...]
     strained: bool
     agreed: bool
     pressure: Mapping[str, float]
@@ -84,8 +87,8 @@ def ask(
     """Return the lengths of the worn lines that bring the body to ``goals``, or as near as they can.
 
     ``shortest`` [1] are ratios that named lines may not go below; locked lines and those ``kept`` stay.
-    Lines made of elastic press no more than ``most_kpa``, straps too; if it is not told, no more than the red
-    light begins with, which was not set for straps. Raises UserError if no worn line is free, nothing is
+    No line pushes, and none presses more than ``most_kpa``; if that is not given, lines made of elastic press
+    no more than the red light begins with, straps aside. Raises UserError if no worn line is free, nothing is
     asked, or nothing balances at the start; Cancelled.
     """
     return Asking(stages, Bounds(shortest or {}, kept), most_kpa).reply(goals, progress)
@@ -101,8 +104,7 @@ class Asking:
     def __init__(self, stages: Stages, bounds: Bounds | None = None, most_kpa: float | None = None) -> None:
         self._stages, design = stages, stages.design
         self._made = {} if design.line_hold == "held" else design.worn_elastics()
-        self._limit = comfort().red_kpa if most_kpa is None else most_kpa
-        self._straps = most_kpa is not None
+        self._limit = PressureLimit(design, most_kpa)
         bounds = bounds or Bounds({})
         shortest = dict(bounds.shortest)
         for name, elastic in self._made.items():
@@ -115,8 +117,6 @@ class Asking:
         self._progress: Progress = quiet
         self.nearer: Callable[[Design], object] = lambda design: None
         self._search: Search | None = None
-        self._hardest: dict[str, float] = {}
-        self._pressure: dict[str, float] = {}
         self._used: list[tuple[Search, int]] = []
 
     def reply(self, goals: Sequence[Goal], progress: Progress = quiet) -> Reply:
@@ -146,11 +146,11 @@ class Asking:
     def now(self, names: Collection[str]) -> tuple[dict[str, float], dict[str, float]]:
         """Return what the figures ``names`` are in the design as it is [mm], and what its lines press with.
 
-        These are the largest pressures [kPa] of all lines made of elastic. Raises UserError.
+        These are the largest pressures [kPa] of all lines. Raises UserError.
         """
         with threadpool_limits(1):
             points = exact_points(self._stages)
-            return self.figures(names, points), self._pressures(self._stages, points, straps=True)
+            return self.figures(names, points), largest_pressures(self._stages, points)
 
     def figures(self, names: Collection[str], points: Points) -> dict[str, float]:
         """Return what the figures ``names`` are where the control points are at ``points`` (n, 3) [mm]."""
@@ -174,11 +174,11 @@ class Asking:
 
     def _answered(self) -> Reply:
         """Return what was found; of what elastics make of it, the nearest that was seen."""
-        self._hardest, self._pressure = {}, {}
+        self._limit.forget()
         search = self._begun(self._stages)
         found = search.found(search.least())
         if not self._made:
-            return self._kept(search, found, agreed=True)
+            return self._within_limit(search, found)
         best, rounds = self._reply(found, agreed=False), [(search.start, found.lengths)]
         for _ in range(_ROUNDS):
             try:
@@ -186,8 +186,9 @@ class Asking:
             except LineError:  # beyond the curve of an elastic, or no balance with it
                 break
             search = self._begun(stages)
-            well = self._presses_well(search, search.at(search.start))
             seen = search.found(search.start)
+            well = self._is_within_limit(search, seen)
+            seen = search.found(search.start)  # within the limits that were found just now
             if well and (not best.agreed or self._miss(seen) < best.miss):
                 best = self._kept(search, seen, agreed=True)
             if well and seen.reached:  # a first look is from rest, so this is what the design is solved to
@@ -199,6 +200,16 @@ class Asking:
                 return replace(best, pressing=tuple(sorted({*best.pressing, *found.pulled})))
         return replace(best, agreed=False)
 
+    def _within_limit(self, search: Search, found: Candidate) -> Reply:
+        """Return what was found, or the nearest within the limit of pressure; the model stays the same."""
+        for number in range(_LIMIT_ROUNDS if self._limit.concerns else 0):
+            if self._is_within_limit(search, found, firm=number >= _FIRM_FROM):
+                break
+            found = search.found(search.from_here(found.lengths) if number else search.least())
+        else:
+            return self._kept(search, found, agreed=not self._limit.concerns)
+        return self._kept(search, found, agreed=True)
+
     def _near_the_last(self) -> Reply:
         if self._search is None:
             return self._answered()
@@ -208,12 +219,14 @@ class Asking:
         search.progress = self._progress
         found = search.found(search.from_here(search.start))
         if not self._made:
+            if self._limit.concerns and not self._is_within_limit(search, found):
+                found = search.found(search.from_here(found.lengths))
             return self._kept(search, found, agreed=True)
         try:
             search = self._begun(build(found.design, search.stages))
         except LineError:
             return self._reply(found, agreed=False)
-        well = self._presses_well(search, search.at(search.start))
+        well = self._is_within_limit(search, search.found(search.start))
         seen = search.found(search.start)
         if not (well and seen.reached):
             seen = search.found(search.from_here(search.start))
@@ -224,31 +237,17 @@ class Asking:
     def _begun(self, stages: Stages) -> Search:
         read = self._figures.of([goal.name for goal in self._goals])
         search = Search(stages, self._goals, self._bounds, self._progress, read)
-        search.limit(self._hardest)
+        search.limit(self._limit.hardest)
         search.nearer = lambda found: self.nearer(found.design)
         self._used.append((search, 0))
         return search
 
-    def _presses_well(self, search: Search, look: Look) -> bool:
-        """Look at what lines press with, limit what those that press too much may pull; tell if none did."""
-        stages, limit = search.stages, self._limit
-        self._pressure = self._pressures(stages, look.points, straps=self._straps)
-        lines = stages.model.lines
-        pulls = {line.name: float(pull) for line, pull in zip(lines, look.pulls, strict=True)}
-        for name, kpa in self._pressure.items():
-            if pulls[name] > 0.0 and (kpa > limit or name in self._hardest):
-                self._hardest[name] = pulls[name] * limit / kpa
-        search.limit(self._hardest)
-        return all(kpa < _TOO_MUCH * limit for kpa in self._pressure.values())
-
-    def _pressures(self, stages: Stages, points: Points, *, straps: bool) -> dict[str, float]:
-        """Return the largest pressure [kPa] of lines whose tension is known, with ``straps`` or without."""
-        if not self._made:
-            return {}
-        tensions, worn = line_tensions(stages, points), pressures(stages, points)
-        lines = [line for line in stages.model.lines if straps or not is_strap(stages, line)]
-        seen = {line.name for line in lines} & set(self._made)
-        return {name: worn[name].largest for name in sorted(seen) if not tensions[name].estimate}
+    def _is_within_limit(self, search: Search, found: Candidate, *, firm: bool = False) -> bool:
+        """Compute what lines press with at what was found, limit their tensions, and tell if all is kept."""
+        stages = replace(search.stages, design=found.design)
+        kept = self._limit.is_kept(stages, found.look, search.free, firm=firm)
+        search.limit(self._limit.hardest)
+        return kept
 
     def _kept(self, search: Search, found: Candidate, *, agreed: bool) -> Reply:
         """Return what was found, and go on from there when the next wish is in a hurry."""
@@ -256,7 +255,7 @@ class Asking:
         return self._reply(found, agreed=agreed)
 
     def _reply(self, found: Candidate, *, agreed: bool) -> Reply:
-        design, limit = found.design, self._limit / _TOO_MUCH**2
+        design, limit = found.design, self._limit
         values = found.look.values.tolist()
         return Reply(
             design,
@@ -264,12 +263,13 @@ class Asking:
             found.reached and agreed,
             self._miss(found),
             found.at_end,
-            tuple(name for name, kpa in self._pressure.items() if kpa > limit or name in found.pulled),
+            limit.pressing(found.pulled),
+            found.slack,
             found.strained,
             agreed,
-            dict(self._pressure),
-            self._limit,
-            tuple(sorted(design.worn() - set(self._pressure))),
+            dict(limit.pressure),
+            limit.kpa,
+            tuple(sorted(design.worn() - set(limit.pressure))),
             self._newtons * float(np.maximum(found.look.pulls, 0.0).sum()),
             sum(len(search) - before for search, before in self._used),
             self._bounds.longest,

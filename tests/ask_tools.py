@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -15,11 +16,12 @@ from app.showing.bust_handle import BustHandle
 
 
 def wear(window: MainWindow, mid: float = 0.97, full: float = 0.98) -> Callable[[], bool]:
-    """Wear both lines that move, with the answer that is there at once."""
+    """Wear both lines that move, with the answer that is there at once; pressures have no limit."""
     design = window.session.design
     assert design is not None
     worn = replace(design, volume="exact").with_line("mid-bust", mid).with_line("full-bust", full)
     window.session.edit(lambda _: worn, "Wear them")
+    window.ask_desk.all_wishes.limit = math.inf
     return settled(window)
 
 

@@ -62,11 +62,12 @@ def test_what_is_reached_is_told_and_saved(tmp_path: Path, capsys: pytest.Captur
 
 
 def test_what_is_not_reached_ends_with_three_and_says_why(capsys: pytest.CaptureFixture[str]) -> None:
-    wishes = ("--want", "girth=700mm", "--lock", "mid-bust", "--shortest", "full-bust=99%")
+    wishes = ("--want", "girth=700mm", "--shortest", "mid-bust=99%", "--shortest", "full-bust=99%")
     assert main(["ask", SCAN, *WORN, *wishes]) == NOT_SETTLED
     told = capsys.readouterr().out
-    assert "Not reachable; this is the nearest, because full-bust is as short as it may be." in told
-    assert "mid-bust: 100.0 %, 374.9 mm of the front part; as before" in told
+    assert "Not reachable; this is the nearest, because " in told
+    assert "full-bust is as short as it may be" in told
+    assert "mid-bust is as short as it may be" in told
     assert "Not looked at for pressure" in told
 
 

@@ -76,9 +76,9 @@ def test_a_conflict_names_what_is_reached_alone_and_its_price(both: Stages) -> N
     conflict = next(each for each in solver.conflicts(reply, goals) if each.name == "lift")
     alone = ask(both, [Goal("lift", 12.0)])
     assert conflict.against == "girth"
-    assert conflict.reached == pytest.approx(reply.reached["lift"])
+    assert conflict.reached == pytest.approx(reply.reached["lift"], abs=1e-4)  # ratios have six decimals
     assert conflict.alone == pytest.approx(alone.reached["lift"], abs=2.0 * NEAR)
-    assert conflict.kept == pytest.approx(reply.reached["girth"])
+    assert conflict.kept == pytest.approx(reply.reached["girth"], abs=1e-4)
     lost = abs(conflict.lost - 840.0) - abs(conflict.kept - 840.0)
     assert conflict.price == pytest.approx(lost / (conflict.alone - conflict.reached), rel=1e-6)
     reached = Goal("girth", reply.reached["girth"])
@@ -134,3 +134,14 @@ def test_the_command_reads_priorities_and_reports_conflicts(capsys: pytest.Captu
     text = capsys.readouterr().out
     assert "; switched on" in text
     assert "as the only target" in text
+
+
+def test_what_the_limit_of_pressure_costs_is_told(both: Stages) -> None:
+    solver, goals = LineSelection(both, most_kpa=4.0), [Goal("lift", 3.0)]
+    reply = solver.reply(goals)
+    free = solver.unlimited(reply, goals)
+    assert free is not None
+    assert free.miss < reply.miss - 1.0
+    assert max(free.pressure.values()) > 4.0 > max(reply.pressure.values())
+    met = solver.reply([Goal("lift", reply.reached["lift"])])
+    assert solver.unlimited(met, [Goal("lift", reply.reached["lift"])]) is None

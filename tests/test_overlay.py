@@ -6,13 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QPointF, QRect, QRectF
+from PySide6.QtCore import QPointF
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.dress.theme import apply_theme
 from app.seeing.camera import View
-from app.showing.overlay import MARGIN, SPACING, BandLabel, Overlay, Pin, spread
+from app.showing.overlay import MARGIN, SPACING, Overlay, Pin, spread
 
 WIDTH, HEIGHT = 500, 300
 
@@ -45,20 +45,6 @@ def test_labels_of_crowded_pins_keep_apart_and_inside(overlay: Overlay, view: Vi
         assert gaps.min() >= SPACING - 1e-9
     assert all(pill.left() >= MARGIN - 1e-9 and pill.right() <= WIDTH - MARGIN + 1e-9 for pill in pills)
     assert all(pill.top() >= MARGIN - 1e-9 and pill.bottom() <= HEIGHT - MARGIN + 1e-9 for pill in pills)
-
-
-def test_the_label_of_a_line_keeps_off_what_lies_on_the_view(overlay: Overlay) -> None:
-    anchor = np.array([0.0, -130.0, -60.0])
-    overlay.set_band(BandLabel("Mid-bust 97.0 %", "0.0 mm", "#D94B62", anchor, np.stack([anchor, anchor])))
-    overlay.follow(View(), ())
-    (free,) = overlay.words()
-    card = QRect(20, round(free.top()) + 5, WIDTH - 40, HEIGHT - round(free.top()) - 5)
-    overlay.keep_off(card)
-    (moved,) = overlay.words()
-    assert not moved.intersects(QRectF(card))
-    assert (moved.left(), moved.bottom()) == (free.left(), card.top() - MARGIN)
-    overlay.keep_off(QRect())
-    assert overlay.words() == [free], "the card is gone"
 
 
 def test_labels_stand_on_the_side_of_their_pins(overlay: Overlay) -> None:

@@ -1,13 +1,10 @@
-"""Drawing a profile in a small window, with a camera that flies: from its side, over the card, and back."""
+"""Drawing a profile in a small window, with a camera that flies: from its side, over the tools, and back."""
 
 from __future__ import annotations
-
-from collections.abc import Callable
 
 import numpy as np
 import pytest
 from ask_tools import answered, drag, type_wish, wear
-from PySide6.QtCore import QPoint
 from window_tools import Script, run_main, settled, undrawn
 
 from app.main_window import MainWindow
@@ -26,21 +23,16 @@ def landed(window: MainWindow) -> bool:
 
 
 def room_below(window: MainWindow) -> int:
-    """Return how far the lowest handle of the profile is over the card [px]."""
-    view, card = window.view, window.ask_desk.card
+    """Return how far the lowest handle of the profile is over the tools [px]."""
+    view = window.view
     low = max(handle.mapTo(view, handle.rect().bottomLeft()).y() for handle in handles(window))
-    return view.floating.seen(card).top() - low
+    return view.floating.seen(view.tools).top() - low
 
 
-def over_the_card(window: MainWindow) -> bool:
+def over_the_tools(window: MainWindow) -> bool:
     """Whether all handles of the profile can be taken."""
     seen = all(handle.isVisible() and handle.y() >= 0 for handle in handles(window))
     return seen and room_below(window) > 0
-
-
-def laid(window: MainWindow) -> Callable[[], bool]:
-    """The card is as high as what it holds."""
-    return lambda: window.ask_desk.card.height() == window.ask_desk.card.sizeHint().height()
 
 
 def is_drawn_from_its_side(window: MainWindow) -> Script:
@@ -53,13 +45,12 @@ def is_drawn_from_its_side(window: MainWindow) -> Script:
     desk.begin()
     yield answered(window)
     desk.card.hand._buttons["profile"].click()
-    # The card grows by a row while the camera is on its way.
     yield answered(window)
     yield lambda: landed(window)
     assert viewport.view.name == "left"
     assert viewport.view.parallel, "the curve lies on the outline of the body"
     assert not window.view.tools.actions_by_name["perspective"].isChecked()
-    yield lambda: over_the_card(window)
+    yield lambda: over_the_tools(window)
     desk.card.cancel.click()
     yield lambda: landed(window)
     assert viewport.view == before, "the camera is back"
@@ -83,7 +74,7 @@ def is_not_dragged_from_elsewhere(window: MainWindow) -> Script:
     yield answered(window)
     assert len(desk.goals()) > 10
     assert {goal.name for goal in desk.goals()} <= set(desk.answer.now), "it is known how far it was off"
-    assert over_the_card(window)
+    assert over_the_tools(window)
     # Who has turned the view himself keeps it.
     viewport.set_view("front")
     desk.leave()
@@ -134,50 +125,6 @@ def is_taken_back_step_by_step(window: MainWindow) -> Script:
     yield settled(window)
 
 
-def is_as_large_as_fits(window: MainWindow) -> None:
-    """Look so that no room is left over the handles, nor under them."""
-    viewport = window.view.viewport
-
-    def lowered() -> None:
-        viewport.look_from(viewport.view.pan(0.0, room_below(window) - 1.0, viewport.height()))
-
-    fits = viewport.view
-    lowered()
-    for _ in range(40):
-        if over_the_card(window):
-            fits = viewport.view
-        viewport.look_from(viewport.view.zoom(1.03))
-        lowered()
-    viewport.look_from(fits)
-    assert over_the_card(window)
-
-
-def keeps_its_handles_over_the_card(window: MainWindow) -> Script:
-    """Also once it has shrunk and grown again."""
-    desk = window.ask_desk
-    desk.begin()
-    yield answered(window)
-    spots = []
-    for _ in range(2):
-        desk.card.hand._buttons["profile"].click()
-        yield answered(window)
-        yield laid(window)
-        spots.append(desk.card.hand.mapTo(window, QPoint()))
-        height = desk.card.height()
-        is_as_large_as_fits(window)
-        drag(handles(window)[1], -4, -4)
-        yield answered(window)
-        yield lambda: over_the_card(window)
-        yield laid(window)
-        assert desk.card.height() > height + 10
-        spots.append(desk.card.hand.mapTo(window, QPoint()))
-        desk.card.wishes["profile left"].remove.click()
-        yield answered(window)
-    assert len(set(map(QPoint.toTuple, spots))) == 1, "what is pressed keeps its place"
-    desk.leave()
-    yield settled(window)
-
-
 def is_the_skin_as_long_as_it_is_free(window: MainWindow) -> Script:
     desk = window.ask_desk
     desk.begin()
@@ -223,7 +170,6 @@ def test_a_profile_is_drawn_from_its_side_and_taken_back() -> None:
         yield from is_drawn_from_its_side(window)
         yield from is_not_dragged_from_elsewhere(window)
         yield from is_taken_back_step_by_step(window)
-        yield from keeps_its_handles_over_the_card(window)
         yield from is_the_skin_as_long_as_it_is_free(window)
 
     run_main([], script)

@@ -25,7 +25,7 @@ def names_the_conflict_and_follows_priorities(window: MainWindow) -> Script:
     card.wishes["out"].prioritized.emit("high")
     yield answered(window)
     assert abs(desk.answer.reply.reached["out"] + 6.0) < abs(first["out"] + 6.0)
-    assert card.wishes["out"].priority.accessibleName() == "High"
+    assert card.wishes["out"].priority.text() == "Priority: High"
     window.undo_group.undo()
     yield answered(window)
     assert desk.answer.reply.reached == pytest.approx(first, abs=0.01)

@@ -38,8 +38,8 @@ def draws_a_profile(window: MainWindow) -> Script:
     curve = viewport.overlay.parentWidget().findChild(WishCurve)
     assert curve.isVisible()
     assert np.abs(curve._wished - curve._reached).max() < 0.5, "it begins with the skin"
-    # Nothing lies under the card, nothing over another.
-    top = window.view.floating.seen(desk.card).top()
+    # Nothing lies under the tools, nothing over another.
+    top = window.view.floating.seen(window.view.tools).top()
     spots = [handle.mapTo(window.view, handle.rect().center()) for handle in handles]
     assert max(spot.y() for spot in spots) + 13 < top
     assert min(abs(a.y() - b.y()) for a, b in pairwise(spots)) >= 20

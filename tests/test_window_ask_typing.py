@@ -85,8 +85,8 @@ def is_laid_once(window: MainWindow) -> Script:
         click(card.hand.button("profile"))
         yield answered(window)
         assert desk.wishes["lift"] == 2.0, "what was typed is asked for"
-        assert list(card.wishes) == ["lift", "out", "profile left"]
-        assert rows(window) == 2
+        assert list(card.wishes) == ["lift", "out", "profile left", "pressure"]
+        assert rows(window) == 3
         click(card.hand.button("apex"))
         half_typed(window, "apex lift", "3")
         click(card.wishes["apex out"].remove)

@@ -65,7 +65,7 @@ def test_the_legend_lies_on_no_other_panel_and_in_the_view(width: int, height: i
         window.resize(width, height)
         yield settled(window)
         maps, section, view = window.map_desk, window.section_desk, window.view
-        others = [section.panel, view.compare, view.tools, window.ask_desk.card]
+        others = [section.panel, view.compare, view.tools]
 
         def clear() -> None:
             shown = [panel for panel in (maps.legend, *others) if not panel.isHidden()]

@@ -230,6 +230,7 @@ def reasons(reply: Reply) -> list[str]:
     if reply.strained:
         reasons.append("the body would be strained more than looks natural")
     reasons += [f"{name} presses as hard as it may" for name in reply.pressing]
+    reasons += [f"{name} would have to push" for name in reply.slack if name not in reply.at_end]
     return reasons or ["these lines do not move the body that way"]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, cast
 from weakref import WeakKeyDictionary, WeakSet
 
@@ -142,13 +143,15 @@ class EvenDesk(QObject):
         if not made.worth:
             self._window.notices.show_notice("info", *left_as_it_is(made.gained, made.lost))
             return
+        # What was found keeps elastics to a limit, and no estimates.
+        limit = None if design.worn_elastics() else math.inf
         if not made.parted:
-            self._window.ask_desk.begin(made.goals)
+            self._window.ask_desk.begin(made.goals, limit=limit)
             return
         template = read_template(design.template)
         titles = listed(parted_titles(design, made.parted))
         said = tr("Left and right apart: {lines}").format(lines=titles)
-        self._window.ask_desk.begin(made.goals, lambda before: parted(before, template), said)
+        self._window.ask_desk.begin(made.goals, lambda before: parted(before, template), said, limit)
 
 
 def _made_even(stages: Stages, progress: Progress) -> Evened:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from functools import reduce
 from typing import TYPE_CHECKING
@@ -27,10 +28,17 @@ class AskAround(QObject):
         desk.card.helped.connect(self.help)
         desk.card.prioritized.connect(self.prioritize)
         desk.card.optional_chosen.connect(self.use_inactive)
+        desk.card.limited.connect(self.limit_pressure)
 
     def prioritize(self, key: str, priority: str) -> None:
         """Set what a target counts for where not all of them can be met."""
         self._desk.all_wishes.priorities[key] = priority
+        self._desk.steps.note()
+        self._desk.ask()
+
+    def limit_pressure(self, on: bool) -> None:
+        """Keep to the usual limit of pressure, or to none."""
+        self._desk.all_wishes.limit = None if on else math.inf
         self._desk.steps.note()
         self._desk.ask()
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QTimer
@@ -55,8 +57,8 @@ class AskDesk(QObject):
         self._rest.timeout.connect(self.ask)
         self._slow = QTimer(self, interval=_SLOW, singleShot=True)
         self._slow.timeout.connect(self._show)
-        self.card = AskCard(window.view)
-        window.view.place(self.card, "bottom")
+        self.card = AskCard()
+        window.lines_page.addWidget(self.card)
         self.handles = AskHandles(window, self)
         self.drawing, self.around = AskDrawing(window, self), AskAround(window, self)
         self.menu, self.back = AskMenu(window, self), AskBack(window, self)
@@ -78,7 +80,7 @@ class AskDesk(QObject):
         card.left.connect(self.leave)
         session.design_changed.connect(self._follow_design)
         session.frame_ready.connect(lambda _: self.handles.follow())
-        session.opened.connect(lambda _: self.end())
+        session.opened.connect(lambda _: self._forget())
         window.view.compared.connect(self.handles.follow)
 
     # -- what is asked for
@@ -86,14 +88,19 @@ class AskDesk(QObject):
     @property
     def is_open(self) -> bool:
         """Whether something is being asked for."""
-        return not self.card.isHidden()
+        return self._window.lines_page.currentWidget() is self.card
 
     def begin(
-        self, goals: Sequence[Goal] = (), prepare: Callable[[Design], Design] | None = None, said: str = ""
+        self,
+        goals: Sequence[Goal] = (),
+        prepare: Callable[[Design], Design] | None = None,
+        said: str = "",
+        limit: float | None = None,
     ) -> None:
         """Open the card, with ``goals`` wished for already.
 
         They are asked of what ``prepare`` makes of the design, which ``said`` tells; that is taken with them.
+        ``limit`` is that of pressure [kPa], see ``Wishes``; one that was switched off before stays off.
         """
         if self._session.frame is None or self._session.design is None:
             return
@@ -102,10 +109,11 @@ class AskDesk(QObject):
         self._window.line_drawing.leave()
         self._window.line_routing.leave()
         self._window.desk.go_to("lines")
-        self.all_wishes, self.answer, self._apply_due = Wishes.of(goals), None, False
+        limit = math.inf if math.isinf(self.all_wishes.most_kpa) else limit
+        self.all_wishes, self.answer, self._apply_due = replace(Wishes.of(goals), limit=limit), None, False
         self.ground.begin(prepare, said)
         self.back.remember()
-        self.card.show()
+        self._window.lines_page.setCurrentWidget(self.card)
         self.drawing.choose("bust")
         self.steps.forget()
         self.card.take_focus(next(iter(self.wishes), ""))
@@ -122,10 +130,6 @@ class AskDesk(QObject):
         self.ask()
         self.card.take_focus(name)
 
-    def wish_curve(self, section: str, goals: tuple[Goal, ...], profile: Drawn) -> None:
-        """Wish for the profile of a section, from the next question on."""
-        self.all_wishes.curves[section], self.all_wishes.drawn[section] = goals, profile
-
     def drop(self, key: str) -> None:
         """Wish for a figure, or a profile, no longer."""
         self.all_wishes.drop(key)
@@ -134,12 +138,6 @@ class AskDesk(QObject):
         else:
             self.ask()
         self.steps.note()
-
-    def restore(self, wishes: Wishes, kind: str) -> None:
-        """Wish for what was wished for once, with what was dragged on the body then."""
-        self.handles.let_go()
-        self.all_wishes = wishes
-        self.drawing.turn_to(kind)
 
     def wish_by_hand(self, wishes: dict[str, float | None], *, at_rest: bool) -> None:
         """Take wishes that a hand has dragged to; while it is on its way the answers are quick ones."""
@@ -179,7 +177,7 @@ class AskDesk(QObject):
         self._apply_due = self.work.at_work or self._rest.isActive()
         if self._apply_due or answer is None or answer.reply is None:
             return
-        design, words = answer.reply.design, step_words(self.all_wishes.asked, self.all_wishes.limit)
+        design, words = answer.reply.design, step_words(self.all_wishes.asked, self.all_wishes.set_limit)
         if self.ground.said:
             words = " · ".join((self.ground.said, words))
         self.end()
@@ -201,10 +199,15 @@ class AskDesk(QObject):
         self.ground.leave()
         if self.is_open:
             self.back.go()
-        self.card.hide()
+        self._window.lines_page.setCurrentIndex(0)
         self.handles.put_away()
         self.steps.forget()
         self._window.lines_desk.show_rows()  # their lengths may be those that were tried on
+
+    def _forget(self) -> None:
+        """Let another body begin with the usual limit."""
+        self.end()
+        self.all_wishes = Wishes()
 
     # -- questions and answers
 
@@ -220,7 +223,7 @@ class AskDesk(QObject):
             self.answer = None
             self._session.cancel_preview()
         else:
-            goals, told, limit = self.goals(), self.all_wishes.told, self.all_wishes.limit
+            goals, told, limit = self.goals(), self.all_wishes.told, self.all_wishes.most_kpa
             optional = self.ground.inactive if self.all_wishes.optional else ()
             hurried = hurried and bool(goals)
             self.work.ask(Question(design, frame.stages, goals, told, limit, hurried, optional))
@@ -240,7 +243,6 @@ class AskDesk(QObject):
             self._session.cancel_preview()
         self._show()
         if not self.work.at_work and not answer.question.hurried:
-            QTimer.singleShot(0, self, self.handles.clear)  # once the card has its size
             announce(self.card, self.card.answer.text())
             due, self._apply_due = self._apply_due, False
             if due and is_as_wished(self.all_wishes, answer):  # what is only near was not seen yet
@@ -286,8 +288,7 @@ class AskDesk(QObject):
         else:
             self.card.show_optional(inactive_words(design, self.ground.inactive), self.all_wishes.optional)
             hint = self.drawing.hint()
-            views = wish_views(design, self.all_wishes, self.answer)
-            self.card.show_wishes(list(views), hint)
+            self.card.show_wishes(list(wish_views(self.all_wishes, self.answer)), hint)
             said = self.ground.said
             show_answer(self.card, design, self.all_wishes, self.answer, apart=said, busy=self._busy())
         self.handles.follow()

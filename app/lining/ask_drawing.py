@@ -100,7 +100,7 @@ class AskDrawing(QObject):
             goals = profile.goals(frame.stages)
         except UserError:
             return
-        self._desk.wish_curve(section, goals, profile)
+        self._desk.all_wishes.set_curve(section, goals, profile)
 
     def follow(self, frame: Frame) -> None:
         """Let profiles that are free be those of the body of a frame."""
@@ -109,7 +109,7 @@ class AskDrawing(QObject):
         for section, profile in list(self._desk.drawn.items()):
             if profile.is_free:
                 fresh = drawn(frame.stages, profile.section, frame.control_points)
-                self._desk.wish_curve(section, (), fresh)
+                self._desk.all_wishes.set_curve(section, (), fresh)
 
     def in_plane(self, plane: Plane) -> dict[str, Sequence[Floats]]:
         """Return the profiles that are wished in a plane, if any are, as flat places (k, 2) [mm]."""
@@ -150,16 +150,16 @@ class AskDrawing(QObject):
         return "right" if self._window.view.viewport.view.axes[2][0] < -_LEVEL else "left"
 
     def look_at(self, profile: Drawn) -> None:
-        """Look at a profile from its side, and over the card."""
+        """Look at a profile from its side, and over the tools."""
         from core.aims.drawn import in_space  # noqa: PLC0415
 
         view, viewport, frame = self._window.view, self._window.view.viewport, self._window.session.frame
         if frame is None:
             return
-        room, card = max(viewport.height(), 1), view.floating.seen(self._desk.card).top()
-        covered = min(max(view.height() - card, 0), room // 2 + 1)
+        room, tools = max(viewport.height(), 1), view.floating.seen(view.tools).top()
+        covered = max(view.height() - tools, 0) if view.tools.isVisible() else 0
         box = box_of(in_space(frame.stages, profile.section, profile.curve))
-        # As large as the part of the picture allows that the card leaves.
+        # As large as the part of the picture allows that the tools leave.
         middle, half = box[2].mean(), 0.5 * (np.ptp(box[2]) + 2.0 * _BESIDE) * room / (room - covered)
         box[2] = middle - half, middle + half
         framed = viewport.view.named(profile.section).framing(box, viewport.width() / room)

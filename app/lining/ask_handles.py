@@ -6,12 +6,11 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import QObject, QPoint, QRect
+from PySide6.QtCore import QObject
 
 from app.lining.ask_profile import AskProfile
 from app.presenting.bust import bust_move
-from app.seeing.camera import View
-from app.showing.bust_handle import SIZE, BustHandle
+from app.showing.bust_handle import BustHandle
 from app.wording.words import tr
 from core.aims.drawn import Drawn
 from core.frame import Frame
@@ -25,8 +24,6 @@ SIDES = ("left", "right")
 KINDS = {"bust": ("lift", "out"), "apex": ("apex lift", "apex out")}
 """What the handles wish for, up and out, by what they are dragged at."""
 
-_CLEAR = 12  # between the card and a handle [px]
-_SMALLEST = 0.5  # of what was seen: where there is no room at all nothing gets tiny [1]
 _ASIDE = 0.25  # of the way of a hand: less to the side of it is not meant [1]
 _STILL = 0.05  # no way at all; Shift drags in small steps [mm]
 _NAMES = {"left": lambda: tr("Left handle"), "right": lambda: tr("Right handle")}
@@ -47,9 +44,7 @@ class AskHandles(QObject):
         self.by_side: dict[str, BustHandle] = {}
         self.profile = AskProfile(window.view.viewport, self)
         self._before: tuple[dict[str, float | None], dict[str, Drawn]] | None = None
-        self._height = 0  # of the card, when the picture was moved for it
         self._pulled: dict[str, float] = {}  # how far the hand has gone each way since it closed [mm]
-        window.view.floating.rearranged.connect(self._clear_label)
         self.profile.taken.connect(self._take_profile)
         self.profile.pulled.connect(self._draw)
         self.profile.dropped.connect(self._drop)
@@ -74,7 +69,7 @@ class AskHandles(QObject):
 
     def put_away(self) -> None:
         """Show them no longer."""
-        self._before, self._height = None, 0
+        self._before = None
         for handle in self.by_side.values():
             handle.put_away()
         self.profile.put_away()
@@ -99,38 +94,6 @@ class AskHandles(QObject):
         feet = (watch.apex_places if self.kind == "apex" else watch.bust_points)(frame.control_points)
         for side, foot in zip(SIDES, feet, strict=True):
             self.by_side[side].show_at(foot + self._missing(frame, side), foot)
-
-    def clear(self) -> None:
-        """Move the picture up if the card has grown over handles: they could not be taken.
-
-        Where there is no room for all that were seen it gets smaller.
-        """
-        view, card = self._window.view, self._desk.card
-        if self.carries:
-            return
-        grown, self._height = card.height() > self._height, card.height()
-        # It may be on its way elsewhere: what is seen from there counts.
-        heading, room = view.viewport.heading, view.viewport.height()
-        floor = view.floating.seen(card).top() - _CLEAR - view.viewport.mapTo(view, QPoint()).y()
-        high, low = self._reach(heading)
-        if not grown or low <= floor:
-            return
-        if low - high > floor - _CLEAR:
-            heading = heading.zoom(max((floor - _CLEAR - SIZE) / (low - high - SIZE), _SMALLEST))
-            _, low = self._reach(heading)
-        self._desk.back.look(heading.pan(0.0, floor - low, room))
-
-    def _reach(self, view: View) -> tuple[float, float]:
-        """Return between which heights all handles are that a view shows, or has below it [px]."""
-        each = [handle.reach_from(view) for handle in (*self.by_side.values(), *self.profile.all())]
-        known = np.array([reach for reach in each if reach is not None and reach[1] > 0.0]).reshape(-1, 2)
-        return known[:, 0].min(initial=np.inf), known[:, 1].max(initial=-np.inf)
-
-    def _clear_label(self) -> None:
-        """Let the label of a line keep off the card."""
-        view, card = self._window.view, self._desk.card
-        taken = view.floating.seen(card) if card.isVisible() else QRect()
-        view.viewport.overlay.keep_off(taken.translated(-view.viewport.mapTo(view, QPoint())))
 
     def _make(self) -> None:
         for side in SIDES:

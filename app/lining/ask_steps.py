@@ -82,7 +82,9 @@ class AskSteps(QObject):
     def show(self, state: _State) -> None:
         """Ask for what was asked for once."""
         self._last = state
-        self._desk.restore(_copy(state.wishes), state.kind)
+        self._desk.handles.let_go()
+        self._desk.all_wishes = _copy(state.wishes)
+        self._desk.drawing.turn_to(state.kind)
 
     def _state(self) -> _State:
         return _State(_copy(self._desk.all_wishes), self._desk.handles.kind)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
@@ -20,11 +21,11 @@ from app.presenting.asking import (
     kept_words,
     off_words,
     profile_title,
-    values_words,
 )
-from app.presenting.conflicts import conflict_words, switched_words
+from app.presenting.conflicts import conflict_words, switched_words, unlimited_words
 from app.presenting.even import asks_to_be_even, evened_words
-from app.wording.words import joined, listed, number, tr
+from app.presenting.target_values import pressure_words, result_words, value_words
+from app.wording.words import joined, listed, tr
 from core.aims.figure import Goal
 from core.design import Design
 
@@ -52,7 +53,9 @@ def show_answer(
         if asks_to_be_even(asked) and wishes.only_limit is None:
             said, price, why = evened_words(reply, asked, answer.now, answer.then)
             conflicts = ()  # that sentence names the price
-        changes = "\n".join(filter(None, (*conflicts, switched, why, listed(change_words(design, reply)))))
+        free = "" if answer.unlimited is None else unlimited_words(answer.unlimited, asked, answer.now)
+        lines = listed(change_words(design, reply))
+        changes = "\n".join(filter(None, (free, why, lines, switched, *conflicts)))
         tone = "ok" if met else "" if is_near(reply, asked) else "warn"
         card.show_answer(said, tone, price, changes, note, can_apply=True)
 
@@ -67,29 +70,29 @@ def _is_met(wishes: Wishes, reply: Reply, asked: Sequence[Goal]) -> bool:
     return is_met(reply, asked) or (wishes.only_limit is not None and reply.agreed)
 
 
-def wish_views(design: Design, wishes: Wishes, answer: Answer | None) -> Iterator[WishView]:
-    """Yield the rows of the card; a free figure shows what it comes to in the answer that is shown."""
+def wish_views(wishes: Wishes, answer: Answer | None) -> Iterator[WishView]:
+    """Yield the rows of the card: each what it is now, what is asked for, what it comes to and its change."""
     now = answer.now if answer is not None else {}
-    come = {**now, **answer.then} if answer is not None else {}
+    then = answer.then if answer is not None else {}
     for name, value in wishes.figures.items():
-        shown, words = come.get(name, 0.0) if value is None else value, values_words(now, name)
-        priority = wishes.priorities.get(name, "normal")
-        signed, set_ = is_signed(name), value is not None
-        yield WishView(name, figure_title(name), shown, words, signed=signed, set_=set_, priority=priority)
+        signed, priority = is_signed(name), wishes.priorities.get(name, "normal")
+        before, result = value_words(now.get(name), signed), result_words(now, then, name)
+        yield WishView(name, figure_title(name), value, before, result, signed=signed, priority=priority)
     for section, goals in wishes.curves.items():
         reply = answer.reply if answer is not None else None
         words = off_words(answer.question.goals, reply.reached, section) if answer and reply else ""
         title, priority = profile_title(section.split()[1]), wishes.priorities.get(section, "normal")
-        yield WishView(section, title, None, words, set_=bool(goals), priority=priority)
-    if design.worn_elastics() and design.line_hold == "spring":
-        yield _pressure(wishes.limit, answer)
+        asked = 0.0 if goals else None
+        yield WishView(section, title, asked, words, typed=False, priority=priority)
+    yield _pressure(wishes, answer)
 
 
-def _pressure(limit: float | None, answer: Answer | None) -> WishView:
+def _pressure(wishes: Wishes, answer: Answer | None) -> WishView:
     presses = answer.presses if answer is not None else {}
-    seen = answer.reply.pressure if answer is not None and answer.reply is not None else {}
-    most = max((seen if set(seen) >= set(presses) else presses).values(), default=0.0)
-    words = tr("was {value}").format(value=number(max(presses.values()))) if presses else ""
-    shown, set_ = most if limit is None else limit, limit is not None
-    title = tr("Pressure at most")
-    return WishView(PRESSURE, title, shown, words, "kPa", signed=False, set_=set_, kept=not set_, priority="")
+    reply = answer.reply if answer is not None else None
+    before, result = pressure_words(presses, reply.pressure if reply is not None else {})
+    on = not math.isinf(wishes.most_kpa)
+    shown, title = wishes.most_kpa if on else None, tr("Pressure at most")
+    return WishView(
+        PRESSURE, title, shown, before, result, "kPa", signed=False, kept=True, priority="", on=on
+    )

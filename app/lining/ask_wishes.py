@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from core.aims.drawn import Drawn
 from core.aims.figure import Goal
 from core.aims.outline import section_of
+from core.sewing.comfort import comfort
 
 SEEN = ("lift", "out")
 """Figures that are always told: what is not asked for may move as well."""
@@ -24,7 +26,8 @@ class Wishes:
 
     ``priorities`` are those of figures and sections that are not "normal"; with ``optional`` lines that are
     off may be switched on. A figure without a value is shown as it is, and not asked for, nor is a profile
-    without goals. Without a limit none is broken but where the red light begins, straps aside.
+    without goals. Without a limit of its own the one is kept where the red light begins; an infinite one
+    is none.
     """
 
     figures: dict[str, float | None] = field(default_factory=dict)
@@ -56,13 +59,16 @@ class Wishes:
         else:
             self.figures[key] = value
 
+    def set_curve(self, section: str, goals: tuple[Goal, ...], profile: Drawn) -> None:
+        """Wish for the profile of a section, from the next question on."""
+        self.curves[section], self.drawn[section] = goals, profile
+
     def drop(self, key: str) -> None:
-        """Wish for a figure, a profile or a limit no longer."""
+        """Wish for a figure or a profile no longer."""
         self.figures.pop(key, None)
         self.curves.pop(key, None)
         self.drawn.pop(key, None)
         self.priorities.pop(key, None)
-        self.limit = None if key == PRESSURE else self.limit
 
     def of_key(self, key: str) -> tuple[object, ...]:
         """Return all that is wished by a key, to be compared; a free figure is as good as none."""
@@ -89,9 +95,19 @@ class Wishes:
         return tuple(dict.fromkeys((*self.figures, *SEEN)))
 
     @property
+    def most_kpa(self) -> float:
+        """The limit of pressure that is kept [kPa]; infinite if it is off."""
+        return comfort().red_kpa if self.limit is None else self.limit
+
+    @property
+    def set_limit(self) -> float | None:
+        """The limit of its own, if there is one."""
+        return None if self.limit is None or math.isinf(self.limit) else self.limit
+
+    @property
     def only_limit(self) -> float | None:
-        """The limit, if nothing else is wished."""
-        return None if self.asked else self.limit
+        """The limit of its own, if nothing else is wished."""
+        return None if self.asked else self.set_limit
 
     def goals(self, now: Mapping[str, float]) -> tuple[Goal, ...]:
         """Return what is asked for; with a limit alone that the first figure stays as ``now`` [mm]."""

@@ -38,7 +38,7 @@ class Question:
     stages: Stages
     goals: tuple[Goal, ...]
     figures: tuple[str, ...]
-    most_kpa: float | None = None
+    most_kpa: float
     hurried: bool = False
     optional: tuple[str, ...] = ()
 
@@ -47,7 +47,8 @@ class Question:
 class Answer:
     """What is ``now`` [mm], what ``presses`` [kPa], by name, and the ``reply``, if anything was wished.
 
-    ``then`` [mm] is what figures are in the reply, ``conflicts`` those of targets that are not all met.
+    ``then`` [mm] is what figures are in the reply, ``conflicts`` those of targets that are not all met,
+    ``unlimited`` the reply without a limit of pressure, where that keeps targets from being met.
     """
 
     question: Question
@@ -56,6 +57,7 @@ class Answer:
     reply: Reply | None
     then: Mapping[str, float] = field(default_factory=dict)
     conflicts: tuple[Conflict, ...] = ()
+    unlimited: Reply | None = None
 
 
 @dataclass(eq=False)
@@ -63,7 +65,7 @@ class _Known:
     """What is kept from question to question about one design."""
 
     design: Design
-    most_kpa: float | None
+    most_kpa: float
     optional: tuple[str, ...]
     asking: LineSelection
 
@@ -154,10 +156,12 @@ class AskWork(QObject):
             reply = answer(question.goals, progress) if question.goals else None
             then = known.asking.figures(question.figures, reply.points) if reply is not None else {}
             conflicts: tuple[Conflict, ...] = ()
+            unlimited = None
             if reply is not None and not question.hurried:
                 self.nearer.emit(question, reply.design)  # seen at once; the conflicts take as long again
                 conflicts = known.asking.conflicts(reply, question.goals, progress)
-            return Answer(question, dict(known.now), dict(known.presses), reply, then, conflicts)
+                unlimited = known.asking.unlimited(reply, question.goals, progress)
+            return Answer(question, dict(known.now), dict(known.presses), reply, then, conflicts, unlimited)
 
     def _open(self, question: Question, progress: Progress) -> _Known:
         from core.aims.line_selection import LineSelection  # noqa: PLC0415

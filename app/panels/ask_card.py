@@ -1,41 +1,38 @@
-"""The card on the view in which the result is asked for: wishes, the answer, what would change."""
+"""The page of the inspector in which the result is asked for: wishes, the answer, what would change."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
 
-from PySide6.QtCore import QEvent, QObject, Qt, Signal
-from PySide6.QtGui import QHideEvent
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QCheckBox, QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
-from app.dress.parts import IconLabel, OverCard, Segment, ToolButton, button, sentence
+from app.dress.door import page_head
+from app.dress.parts import Segment, ToolButton, button, hairline, sentence
 from app.dress.theme import label, set_tag
 from app.dress.tip import set_tip
-from app.panels.wish_row import WishRow, WishView
+from app.panels.wish_row import WishRow, WishView, columns
 from app.wording.words import tr
 
-WIDTH = 674
-"""Width of what the card holds [px]."""
-
-_COLUMNS = 2
-_BETWEEN = 20  # columns [px]
-_MOST = 0.5  # of the height of the view: what is more hides what is asked for [1]
+_SIDES = 16  # room left and right of what it holds [px]
 
 
-class AskCard(OverCard):
-    """Takes wishes and shows what comes of them.
+class AskCard(QWidget):
+    """Takes wishes and shows what comes of them; a page in the place of the lines, beside the body.
 
-    ``entered`` carries a wish's key and its value, ``removed`` its key; ``add_asked`` wants the menu under
-    ``add``. ``hand_chosen`` carries what the handles drag: "bust", "apex" or "profile"; ``linked`` whether
-    they move both sides; ``prioritized`` a wish's key and its priority, ``optional_chosen`` whether lines
-    that are off may be switched on. ``applied`` and ``left`` end it; ``helped`` is the button that shows when
-    nothing can be asked.
+    Rows stand above what depends on an answer, so that none moves when one comes. ``entered`` carries a
+    wish's key and its value, ``removed`` its key; ``add_asked`` wants the menu under ``add``. ``hand_chosen``
+    carries what the handles drag: "bust", "apex" or "profile"; ``linked`` whether they move both sides;
+    ``prioritized`` a wish's key and its priority, ``limited`` whether a limit is on, ``optional_chosen``
+    whether lines that are off may be switched on. ``applied`` and ``left`` end it; ``helped`` is the button
+    that shows when nothing can be asked.
     """
 
     entered = Signal(str, float)
     removed = Signal(str)
     prioritized = Signal(str, str)
+    limited = Signal(bool)
     optional_chosen = Signal(bool)
     add_asked = Signal()
     hand_chosen = Signal(str)
@@ -44,67 +41,99 @@ class AskCard(OverCard):
     left = Signal()
     helped = Signal()
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.wishes: dict[str, WishRow] = {}
         self._kind, self._tone, self._can_apply = "bust", "", False
-        column = QVBoxLayout()
-        column.setSpacing(8)
-        column.addLayout(self._head())
-        self._hint = sentence("")
-        column.addWidget(self._hint)
-        self._grid = QGridLayout()
-        self._grid.setHorizontalSpacing(_BETWEEN)
-        self._grid.setVerticalSpacing(4)
-        for at in range(_COLUMNS):
-            self._grid.setColumnStretch(at, 1)
-        column.addLayout(self._grid)
-        column.addLayout(self._said())
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addLayout(page_head(tr("Ask for the result"), tr("Leave without a change (Esc)"), self.left))
+        column.addWidget(self._scroll_area(), 1)
+        column.addWidget(hairline())
         column.addLayout(self._foot())
-        self.row.setContentsMargins(30, 20, 30, 30)
-        self.row.addLayout(column)
-        self.setFixedWidth(WIDTH + 60)
-        if parent is not None:
-            parent.installEventFilter(self)
-        self.hide()
 
-    def _head(self) -> QHBoxLayout:
-        head = QHBoxLayout()
-        head.setSpacing(8)
-        head.addWidget(IconLabel("target", "accent", 18))
-        head.addWidget(label(tr("Ask for the result"), "heading"))
-        head.addStretch(1)
-        close = ToolButton("x", tr("Leave without a change (Esc)"), size=14, room=26)
-        close.clicked.connect(self.left)
-        head.addWidget(close)
-        return head
+    def _scroll_area(self) -> QScrollArea:
+        inside = QWidget()
+        inside.setProperty("scrolled", "true")
+        column = QVBoxLayout(inside)
+        column.setContentsMargins(_SIDES, 2, _SIDES, 12)
+        column.setSpacing(0)
+        column.addLayout(self._hands())
+        self._heading = self._headed()
+        column.addWidget(self._heading)
+        self._rows = QVBoxLayout()
+        self._rows.setSpacing(0)
+        column.addLayout(self._rows)
+        column.addLayout(self._more())
+        column.addSpacing(8)
+        column.addLayout(self._said())
+        column.addStretch(1)
+        area = QScrollArea()
+        area.setAccessibleName(tr("Ask for the result"))
+        area.setWidgetResizable(True)
+        area.setFrameShape(QFrame.Shape.NoFrame)
+        area.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click on a button leaves the keyboard where it is
+        area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        area.setWidget(inside)
+        return area
 
-    def _said(self) -> QVBoxLayout:
-        said = QVBoxLayout()
-        said.setSpacing(2)
-        self.answer, self.price = sentence("", "name"), sentence("")
-        self.changes, self.note = sentence(""), sentence("", "caption")
-        for part in (self.answer, self.price, self.changes, self.note):
-            said.addWidget(part)
-        return said
-
-    def _foot(self) -> QHBoxLayout:
-        """Return the row of what is pressed: the card grows upwards from it, so it keeps its place."""
-        foot = QHBoxLayout()
-        foot.setSpacing(4)
+    def _hands(self) -> QHBoxLayout:
+        row = QHBoxLayout()
+        row.setSpacing(4)
         hands = [("bust", tr("Bust point")), ("apex", tr("Foremost place")), ("profile", tr("Profile"))]
-        self.hand = Segment(hands, small=True)
+        self.hand = Segment(hands, small=True, wide=True)
         self.hand.setAccessibleName(tr("What is dragged on the body"))
         self.hand.chosen.connect(self._choose_hand)
         self.link = ToolButton("link", tr("Drag left and right together"), size=16, room=28)
         self.link.setCheckable(True)
         self.link.setChecked(True)
         self.link.toggled.connect(self.linked)
+        row.addWidget(self.hand, 1)
+        row.addWidget(self.link)
+        return row
+
+    def _headed(self) -> QWidget:
+        """Return the heading of the columns."""
+        heading = QWidget()
+        row = QHBoxLayout(heading)
+        titles = tr("Now"), tr("Target"), tr("Result (change)")
+        now, target, result = (label(words, "caption") for words in titles)
+        now.setAlignment(Qt.AlignmentFlag.AlignRight)
+        columns(row, now, target, result)
+        row.setContentsMargins(0, 8, 0, 0)
+        self._target = target
+        return heading
+
+    def _more(self) -> QVBoxLayout:
+        more, row = QVBoxLayout(), QHBoxLayout()
         self.add = button(tr("Add a wish"), "quiet")
         self.add.clicked.connect(self._ask_more)
-        self.details = button(tr("Details"), "quiet")
-        self.details.setCheckable(True)
-        self.details.clicked.connect(self._fit)
+        self.optional = QCheckBox(tr("Use inactive lines"))
+        self.optional.clicked.connect(self.optional_chosen)
+        row.addWidget(self.add)
+        row.addStretch(1)
+        row.addWidget(self.optional)
+        more.addWidget(hairline())
+        more.addSpacing(4)
+        more.addLayout(row)
+        return more
+
+    def _said(self) -> QVBoxLayout:
+        said = QVBoxLayout()
+        said.setSpacing(6)
+        self._hint = sentence("")
+        self.answer, self.price = sentence("", "name"), sentence("")
+        self.changes, self.note = sentence(""), sentence("", "caption")
+        for part in (self._hint, self.answer, self.price, self.changes, self.note):
+            said.addWidget(part)
+            part.hide()
+        return said
+
+    def _foot(self) -> QHBoxLayout:
+        foot = QHBoxLayout()
+        foot.setContentsMargins(_SIDES, 10, _SIDES, 12)
+        foot.setSpacing(4)
         self.help_ = button(tr("Choose lines"), "secondary")
         self.help_.clicked.connect(self.helped)
         self.help_.hide()
@@ -112,14 +141,8 @@ class AskCard(OverCard):
         self.apply.clicked.connect(self._take)
         self.cancel = button(tr("Cancel"), "quiet")
         self.cancel.clicked.connect(self.left)
-        self.optional = ToolButton("bands", size=16, room=28)
-        self.optional.setCheckable(True)
-        self.optional.setAccessibleName(tr("Use inactive lines"))
-        self.optional.clicked.connect(self.optional_chosen)
-        for part in (self.hand, self.link, self.optional, self.add, self.details):
-            foot.addWidget(part)
         foot.addStretch(1)
-        for part in (self.help_, self.apply, self.cancel):
+        for part in (self.cancel, self.help_, self.apply):
             foot.addWidget(part)
         return foot
 
@@ -130,10 +153,12 @@ class AskCard(OverCard):
         if [wish.key for wish in wishes] != list(self.wishes):
             self._lay(wishes)
         for wish in wishes:
-            self.wishes[wish.key].show_view(wish)
+            row = self.wishes[wish.key]
+            row.show_view(wish)
+            self._target.setFixedWidth(row.field.width())
+        self._heading.setVisible(bool(wishes))
         self._hint.setText(hint)
         self._hint.setVisible(bool(hint))
-        self._fit()
 
     def show_answer(
         self,
@@ -145,17 +170,13 @@ class AskCard(OverCard):
         *,
         can_apply: bool = False,
     ) -> None:
-        """Show what came out: a sentence in a ``tone`` of "", "ok" or "warn", and what moves with it.
-
-        ``changes`` of lines and a ``note`` are folded where they would hide what is asked for.
-        """
+        """Show what came out: a sentence in a ``tone`` of "", "ok" or "warn", and what moves with it."""
         parts = (self.answer, self.price, self.changes, self.note)
         for part, words in zip(parts, (answer, price, changes, note), strict=True):
             part.setText(words)
             part.setVisible(bool(words))
         self._tone, self._can_apply = tone, can_apply
         self._follow_typing()
-        self._fit()
 
     def show_hand(self, kind: str) -> None:
         """Show what the handles drag; a profile is that of one side."""
@@ -189,13 +210,9 @@ class AskCard(OverCard):
         gone = [row for key, row in self.wishes.items() if key not in kept]
         self.wishes = kept
         for row in (*gone, *kept.values()):
-            self._grid.removeWidget(row)
-        at = 0
+            self._rows.removeWidget(row)
         for row in kept.values():
-            wide = row.breadth is None or row.breadth > (WIDTH - _BETWEEN) // _COLUMNS
-            at += at % _COLUMNS if wide else 0
-            self._grid.addWidget(row, at // _COLUMNS, at % _COLUMNS, 1, _COLUMNS if wide else 1)
-            at += _COLUMNS if wide else 1
+            self._rows.addWidget(row)
         for row in gone:
             self._put_away(row)
 
@@ -204,6 +221,7 @@ class AskCard(OverCard):
         row.field.entered.connect(partial(self.entered.emit, wish.key))
         row.field.typed.connect(self._follow_typing)
         row.prioritized.connect(partial(self.prioritized.emit, wish.key))
+        row.switched.connect(self.limited)
         row.remove.clicked.connect(partial(self._remove, wish.key))
         return row
 
@@ -252,34 +270,3 @@ class AskCard(OverCard):
         self.wishes[key].field.drop()
         self.commit()
         self.removed.emit(key)
-
-    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt names it
-        """Fold and unfold as the view gets lower and higher."""
-        if event.type() == QEvent.Type.Resize and self.isVisible():
-            self._fit()
-        return super().eventFilter(watched, event)
-
-    def hideEvent(self, event: QHideEvent) -> None:  # noqa: N802 - Qt names it
-        """Begin folded the next time."""
-        super().hideEvent(event)
-        self.details.setChecked(False)
-
-    def _fit(self) -> None:
-        """Be as high as what is shown; changes and note are folded where that is too high, unless opened."""
-        self._grow(folded=False)
-        view, (_, above, _, below) = self.parentWidget(), self.MARGINS
-        foldable = bool(self.changes.text() or self.note.text())
-        tight = view is not None and self.height() - above - below > _MOST * view.height()
-        self.details.setVisible(foldable and tight)
-        if foldable and tight:
-            self._grow(folded=not self.details.isChecked())
-
-    def _grow(self, *, folded: bool) -> None:
-        for part in (self.changes, self.note):
-            part.setVisible(bool(part.text()) and not folded)
-        parts: list[QLabel] = [self._hint, self.answer, self.price, self.changes, self.note]
-        for part in parts:
-            # A sentence that wraps is as high as it is at the width that it really gets.
-            part.setMinimumHeight(part.heightForWidth(WIDTH) if part.text() else 0)
-            part.updateGeometry()
-        self.adjustSize()

@@ -96,7 +96,7 @@ def answer_words(
         return tr("Reached within {length}.").format(length=length(most))
     if is_near(reply, goals):
         return _near_words(reply, goals, now or {})
-    nearest = listed(_nearest(reply, goals, now or {}))
+    nearest = nearest_words(reply, goals, now or {})
     if not reply.agreed:
         said = tr("Nearest so far: {nearest}. Lengths, elastics and pressures did not come to agree.")
         return said.format(nearest=nearest)
@@ -126,10 +126,15 @@ def _off_before(goals: Sequence[Goal], now: Mapping[str, float], section: str) -
 def _come(reply: Reply, goals: Sequence[Goal]) -> Iterable[str]:
     """Yield what figures come to that were to stay."""
     for goal in goals:
-        words = figure_words(goal.name, reply.reached[goal.name])
-        was = length_number(goal.value, 1, signed=is_signed(goal.name))
-        moved = abs(reply.reached[goal.name] - goal.value) > _MET
-        yield tr("{figure} (was {value})").format(figure=words, value=was) if moved else words
+        if abs(reply.reached[goal.name] - goal.value) > _MET:
+            yield _from_to(goal.name, goal.value, reply.reached[goal.name])
+        else:
+            yield figure_words(goal.name, reply.reached[goal.name])
+
+
+def nearest_words(reply: Reply, goals: Sequence[Goal], now: Mapping[str, float]) -> str:
+    """Return what targets that are missed come to, and how far profiles are off."""
+    return listed(_nearest(reply, goals, now))
 
 
 def _nearest(reply: Reply, goals: Sequence[Goal], now: Mapping[str, float]) -> Iterable[str]:
@@ -158,12 +163,15 @@ def beside_words(goals: Sequence[Goal], now: Mapping[str, float], then: Mapping[
         return ""
     asked = {goal.name.removesuffix(" left").removesuffix(" right") for goal in goals}
     free = [name for name in (LIFT, OUT) if name not in asked and name in now and name in then]
-    said = tr("{figure} {before} → {after}")
-    moved = []
-    for name in (name for name in free if abs(then[name] - now[name]) > _MET):
-        before, after = length_number(now[name], 1, signed=True), length(then[name], 1, signed=True)
-        moved.append(said.format(figure=figure_title(name), before=before, after=after))
+    moved = [_from_to(name, now[name], then[name]) for name in free if abs(then[name] - now[name]) > _MET]
     return tr("Moves along: {figures}").format(figures=listed(moved)) if moved else ""
+
+
+def _from_to(name: str, before: float, after: float) -> str:
+    """Return a figure with what it was and what it comes to: "Bust point up +0.2 → +0.4 mm"."""
+    said, signed = tr("{figure} {before} → {after}"), is_signed(name)
+    values = {"before": length_number(before, 1, signed=signed), "after": length(after, 1, signed=signed)}
+    return said.format(figure=figure_title(name), **values)
 
 
 def off_words(goals: Sequence[Goal], reached: Mapping[str, float], section: str) -> str:
@@ -202,12 +210,14 @@ def reasons_words(reply: Reply) -> str:
 def _reasons(reply: Reply) -> list[str]:
     long = [name for name in reply.at_end if reply.may_not_be_longer(name)]
     short = [name for name in reply.at_end if name not in long]
+    slack = [name for name in reply.slack if name not in reply.at_end]
     kpa = number(reply.limit)
     reasons = [
         said.format(lines=_titles(names, reply.design), kpa=kpa)
         for names, said in (
             (short, tr("{lines} may not be shorter")),
             (long, tr("{lines} may not be longer: a longer line would have to push")),
+            (slack, tr("{lines} would have to push, which no band can")),
             (reply.pressing, tr("{lines} may not press more than {kpa} kPa")),
         )
         if names
@@ -223,8 +233,9 @@ def change_words(before: Design, reply: Reply) -> list[str]:
     for title, name in _rows(sorted(after.worn()), after):
         one, other = before.ratio(name), after.ratio(name)
         if abs(one - other) >= SAME:
-            words = tr("{line} {before} → {after} %")
+            words = tr("{line} {before} → {after} %") + " ({change})"
             values = {"before": number(100.0 * one), "after": number(100.0 * other)}
+            values["change"] = number(100.0 * (other - one), 1, True)
             said.append(words.format(line=title, **values))
     said = said or [tr("No line changes")]
     if reply.pressure:
@@ -272,10 +283,3 @@ def _rows(names: Iterable[str], design: Design) -> list[tuple[str, str]]:
     for name in names:
         rows.setdefault(told_title(name, design), name)
     return list(rows.items())
-
-
-def values_words(values: Mapping[str, float], name: str) -> str:
-    """Return what a figure was before, in a few words; nothing before it is known."""
-    if name not in values:
-        return ""
-    return tr("was {value}").format(value=length_number(values[name], 1, signed=is_signed(name)))

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from app.presenting.asking import figure_title, is_signed
+from app.presenting.asking import figure_title, is_met, is_signed, nearest_words
 from app.presenting.lines import told_title
 from app.wording.lengths import length, length_unit
 from app.wording.words import listed, number, tr
+from core.aims.figure import Goal
 from core.aims.outline import section_of
 from core.design import Design
 
 if TYPE_CHECKING:
     from core.aims.conflicts import Conflict
+    from core.request import Reply
 
 
 def conflict_words(conflicts: Iterable[Conflict]) -> tuple[str, ...]:
@@ -40,6 +42,15 @@ def _sentence(conflict: Conflict) -> str:
 def _value(name: str, value: float) -> str:
     size = length(value, 1, signed=is_signed(name))
     return tr("{length} off").format(length=size) if section_of(name) else size
+
+
+def unlimited_words(free: Reply, goals: Sequence[Goal], now: Mapping[str, float]) -> str:
+    """Return what targets come to without a limit of pressure, and what lines press with then."""
+    most = number(max(free.pressure.values(), default=0.0))
+    if is_met(free, goals):
+        return tr("All targets are met without the pressure limit, with {kpa} kPa.").format(kpa=most)
+    words = tr("Nearest without the pressure limit: {figures}, with {kpa} kPa.")
+    return words.format(figures=nearest_words(free, goals, now), kpa=most)
 
 
 def switched_words(before: Design, after: Design) -> str:

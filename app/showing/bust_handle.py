@@ -56,13 +56,6 @@ class BustHandle(Knob):
         self._wanted = False
         self._stand_anew()
 
-    def reach_from(self, view: View) -> tuple[float, float] | None:
-        """Return how high and how low it reaches in a view [px]; None where it is not shown from there."""
-        if not (self._wanted and self._viewport.shows_body and faces(view, self.side)):
-            return None
-        spot = view.to_picture(self._place[None], self._viewport.width(), self._viewport.height())[0]
-        return float(spot[1]) - self._size / 2.0, float(spot[1]) + self._size / 2.0
-
     def _stand_anew(self) -> None:
         shown = self._wanted and self._viewport.shows_body and faces(self._viewport.scene.view, self.side)
         if self._thread is not None:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from PySide6.QtCore import QPointF, QRect, QRectF, Qt
+from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
@@ -94,7 +94,6 @@ class Overlay(QWidget):
         self._band: BandLabel | None = None
         self._view = View()
         self._hidden: frozenset[str] = frozenset()
-        self._taken = QRect()
 
     @property
     def pins(self) -> tuple[Pin, ...]:
@@ -110,12 +109,6 @@ class Overlay(QWidget):
         """Show a label at a line, or none."""
         self._band = band
         self.update()
-
-    def keep_off(self, taken: QRect) -> None:
-        """Keep the label of a band off a place where something lies on the view."""
-        if taken != self._taken:
-            self._taken = taken
-            self.update()
 
     def follow(self, view: View, hidden: Iterable[str]) -> None:
         """Look from ``view``; the pins called ``hidden`` lie behind the body and are drawn hollow."""
@@ -206,8 +199,6 @@ class Overlay(QWidget):
         drop = 18.0 if left == beside else 64.0
         top = min(max(y + drop, MARGIN), self.height() - MARGIN - PILL)
         pill = QRectF(left, top, width, PILL)
-        if pill.intersects(QRectF(self._taken)):
-            pill.moveBottom(self._taken.top() - MARGIN)
         return pill, left == beside
 
     def _paint_band(self, painter: QPainter, band: BandLabel) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Sequence
 
 from core.aims.conflicts import Conflict
@@ -80,6 +81,17 @@ class LineSelection:
     ) -> tuple[Conflict, ...]:
         """Return which of the ``goals`` conflict in the last reply; see ``Asking.conflicts``."""
         return self._solver(self._chosen).conflicts(reply, goals, progress)
+
+    def unlimited(self, reply: Reply, goals: Sequence[Goal], progress: Progress = quiet) -> Reply | None:
+        """Return the answer without a limit of pressure where that is what keeps ``goals`` from being met.
+
+        Else there is none. Raises UserError, Cancelled.
+        """
+        if reply.reachable or not reply.pressing:
+            return None
+        chosen = [name for name in self._chosen if name in reply.design.worn()]
+        free = LineSelection(self._stages, chosen, self._bounds, math.inf)
+        return free.reply(goals, progress)
 
     def now(self, names: Collection[str]) -> tuple[dict[str, float], dict[str, float]]:
         """Return what quantities and pressures are in the design as it is; see ``Asking.now``."""

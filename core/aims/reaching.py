@@ -16,10 +16,11 @@ import numpy as np
 from scipy.optimize import minimize
 
 from core.aims.answers import PERCENT, Answers, Look
+from core.aims.candidate import Candidate
 from core.aims.curved import learnt, next_reach
 from core.aims.figure import Goal, ReadMany
 from core.aims.readings import Figures
-from core.aims.wanted import Wanted, weights_of
+from core.aims.wanted import Slopes, Wanted, tension_of, weights_of
 from core.answer import NoBalanceError
 from core.design import Design
 from core.errors import UserError
@@ -28,10 +29,14 @@ from core.lines import RATIO_LIMITS
 from core.mesh import Floats
 from core.pipeline import Stages
 from core.progress import Progress, quiet
+from core.sewing.tensions import SLACK
+from core.solving.newtons import newtons_per_unit
 from core.worn_lines import free_lines
 
 LOOSEST = 1.0
 """A line is not asked to be longer than at rest: it would push [1]."""
+
+_PUSH = 0.5 * SLACK  # half of what counts as none: a run ends a hair beside its exact answer [N]
 
 _STEPS, _ELSEWHERE = 24, 12  # answers after which a search is given up, from the start and from elsewhere
 _HALFWAY = 0.9  # ratio at which a search begins anew
@@ -45,9 +50,6 @@ _QUICK = 16  # Newton steps after which a step was too bold
 _BESIDE = 0.5  # so near to where another start led, and no better, it leads there as well [%]
 _AT_LIMIT = 1e-3  # room to a limit [1]
 _AT_END = 0.01  # [%]
-_SLACK = 0.03  # of the tension at the start: about as much counts as none
-
-Slopes = tuple[float, Floats]
 
 
 @dataclass(frozen=True)
@@ -60,24 +62,6 @@ class Bounds:
     shortest: Mapping[str, float]
     kept: Collection[str] = ()
     longest: float = LOOSEST
-
-
-@dataclass(frozen=True, eq=False)
-class Candidate:
-    """A design with the ``lengths`` that were found [%], the exact answer there, and what keeps it there.
-
-    ``reached`` tells whether the answer is what was asked for. ``at_end`` names the lines as short or as long
-    as they may be, ``pulled`` those with the most tension they may have; ``strained`` tells that the shape
-    would strain beyond what looks natural.
-    """
-
-    design: Design
-    lengths: Floats
-    look: Look
-    reached: bool
-    at_end: tuple[str, ...]
-    pulled: tuple[str, ...]
-    strained: bool
 
 
 class Search:
@@ -112,10 +96,16 @@ class Search:
         self._wanted = Wanted(values, weights_of(goals), self._low, self._high, lines)
         set_ = [stages.design.ratio(group[0]) / PERCENT for group in self._groups]
         self.start = np.clip(set_, self._low, self._high)
+        self._bar_pushing()
 
     def __len__(self) -> int:
         """The number of answers that were worked out."""
         return len(self._answers)
+
+    @property
+    def free(self) -> frozenset[str]:
+        """The names of the lines that may change."""
+        return frozenset(name for group in self._groups for name in group)
 
     def want(self, goals: Sequence[Goal]) -> None:
         """Look for other values of the same figures, or with other priorities, from now on."""
@@ -125,6 +115,18 @@ class Search:
     def limit(self, hardest: Mapping[str, float]) -> None:
         """Let named lines pull no harder than so, in the model's unit, from now on."""
         self._wanted.hardest = dict(hardest)
+
+    def _bar_pushing(self) -> None:
+        """Let no line push, as no band can; one that stays and pushes at the start may push no more."""
+        model = self.stages.model
+        self._wanted.newton = 1.0 / newtons_per_unit(model, self.stages.design.tissue_stiffness)
+        least = -_PUSH * self._wanted.newton
+        free = self.free
+        self._wanted.loosest = {model.lines[at].name: least for at in model.pulling}
+        if not free.issuperset(self._wanted.loosest) and (look := self._look(self.start)) is not None:
+            pulls = {model.lines[at].name: float(look.pulls[at]) for at in model.pulling}
+            loosest = {name: least if name in free else min(least, pull) for name, pull in pulls.items()}
+            self._wanted.loosest = loosest
 
     def at(self, lengths: Floats, limit: int = NEWTON_LIMIT) -> Look:
         """Return the exact answer at ``lengths``. Raises NoBalanceError, Cancelled."""
@@ -231,7 +233,7 @@ class Search:
         unit = max(float(np.abs(before.pulls).sum()), 1e-9)
 
         def tension(lengths: Floats) -> Slopes:
-            return _tension(self.at(lengths), unit)
+            return tension_of(self.at(lengths), unit)
 
         wanted = _constraint(
             "eq", lambda at: (self.at(at).values - self._wanted.values, self.at(at).by_values)
@@ -246,7 +248,7 @@ class Search:
             after = self.at(found)
         except NoBalanceError:
             return start
-        less = _tension(after, unit)[0] < _tension(before, unit)[0]
+        less = tension_of(after, unit)[0] < tension_of(before, unit)[0]
         return found if self._wanted.is_met(after) and less else start
 
     def design(self, lengths: Floats) -> Design:
@@ -263,10 +265,13 @@ class Search:
         at_end = tuple(
             name for group, there in zip(self._groups, ends, strict=True) if there for name in group
         )
-        pulls, strains = np.split(self._wanted.rooms(look)[0] < _AT_LIMIT, [len(self._wanted.hardest)])
-        pulled = tuple(name for name, there in zip(self._wanted.hardest, pulls, strict=True) if there)
+        hardest, loosest = self._wanted.hardest, self._wanted.loosest
+        tight = self._wanted.rooms(look)[0] < _AT_LIMIT
+        pulls, pushes, strains = np.split(tight, [len(hardest), len(hardest) + len(loosest)])
+        pulled = tuple(name for name, there in zip(hardest, pulls, strict=True) if there)
+        slack = tuple(name for name, there in zip(loosest, pushes, strict=True) if there)
         met, strained = self._wanted.is_met(look), bool(strains.any())
-        return Candidate(self.design(lengths), lengths, look, met, at_end, pulled, strained)
+        return Candidate(self.design(lengths), lengths, look, met, at_end, pulled, slack, strained)
 
     def _look(self, lengths: Floats, limit: int = NEWTON_LIMIT) -> Look | None:
         try:
@@ -282,16 +287,6 @@ class Search:
         how |= {"constraints": constraints, "options": {"maxiter": _TRIES, "ftol": _GOOD}}
         found = minimize(figure, start, method="SLSQP", **how)
         return np.asarray(np.clip(found.x, self._low, self._high))
-
-
-def _tension(look: Look, unit: float) -> Slopes:
-    """Return the sum of all tensions over ``unit`` and its slopes, shape (p,).
-
-    A line that pushes counts as slack; the way from pulling to slack is smooth.
-    """
-    pulls, by_pulls = look.pulls / unit, look.by_pulls / unit
-    size = np.hypot(pulls, _SLACK)
-    return 0.5 * float((pulls + size).sum()), 0.5 * np.asarray((1.0 + pulls / size) @ by_pulls)
 
 
 def _constraint(kind: str, figures: Callable[[Floats], Sequence[Floats]]) -> dict[str, Any]:

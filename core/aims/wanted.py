@@ -21,6 +21,11 @@ INSIDE = 5e-3
 """So far inside the limit of strain lengths stay: a run ends a hair beside its exact answer [1]."""
 
 _BROKEN = -1e-4  # room to a limit [1]
+_SLACK = 0.03  # of the tension at the start: about as much counts as none [1]
+_FIRM = 10.0  # what the room of a line to pushing is counted in [N]
+
+
+Slopes = tuple[float, Floats]
 
 
 @dataclass
@@ -28,7 +33,8 @@ class Wanted:
     """Figures that are to have ``values`` (m,) [mm], with ``low`` and ``high`` ends of lengths (p,) [%].
 
     ``weights`` (m,) are what figures count for; those of no weight are read and not wanted. ``lines`` names
-    those of the model; ``hardest`` is the most that some may pull with, in the model's unit.
+    those of the model; ``hardest`` is the most that some may pull with and ``loosest`` the least, negative
+    where they may push, in the model's unit. ``newton`` is one newton in that unit.
     """
 
     values: Floats
@@ -37,22 +43,26 @@ class Wanted:
     high: Floats
     lines: Sequence[str]
     hardest: Mapping[str, float] = field(default_factory=dict)
+    loosest: Mapping[str, float] = field(default_factory=dict)
+    newton: float = 1.0
 
     def rooms(self, look: Look) -> tuple[Floats, Floats]:
-        """Return the room to the most tensions and to strain of the edges, (k,) [1], and slopes, (k, p)."""
+        """Return the room to the most and least tensions and to strain of the edges, (k,) [1], and slopes."""
         pulls, by_pulls = self._pulls(look)
         return np.append(pulls, look.margins - INSIDE), np.concatenate([by_pulls, look.by_margins])
 
     def smooth_room(self, look: Look) -> tuple[Floats, Floats]:
-        """Return the room to the most tensions and to strain in all, (k,) [1], and slopes, (k, p)."""
+        """Return the room to the most and least tensions and to strain in all, (k,) [1], and slopes."""
         pulls, by_pulls = self._pulls(look)
         margin, by_margin = look.least_margin()
         return np.append(pulls, margin - INSIDE), np.concatenate([by_pulls, by_margin[None]])
 
     def _pulls(self, look: Look) -> tuple[Floats, Floats]:
-        lines = [self.lines.index(name) for name in self.hardest]
-        most = np.array(list(self.hardest.values()))
-        return 1.0 - look.pulls[lines] / most, -look.by_pulls[lines] / most[:, None]
+        hard, loose = ([self.lines.index(name) for name in each] for each in (self.hardest, self.loosest))
+        most, least = (np.array(list(each.values())) for each in (self.hardest, self.loosest))
+        firm = _FIRM * self.newton
+        room = np.append(1.0 - look.pulls[hard] / most, (look.pulls[loose] - least) / firm)
+        return room, np.concatenate([-look.by_pulls[hard] / most[:, None], look.by_pulls[loose] / firm])
 
     def is_met(self, look: Look) -> bool:
         """Tell whether a look is what is wanted, with no limit broken."""
@@ -103,3 +113,13 @@ def weights_of(goals: Sequence[Goal]) -> Floats:
     count = np.array([float(sections.count(section)) for section in sections])
     scale = np.array([PRIORITIES[goal.priority] / tolerance(goal.name) for goal in goals])
     return np.asarray(scale / scale.max() / np.sqrt(count))
+
+
+def tension_of(look: Look, unit: float) -> Slopes:
+    """Return the sum of all tensions over ``unit`` and its slopes, shape (p,).
+
+    A line that pushes counts as slack; the transition is smooth.
+    """
+    pulls, by_pulls = look.pulls / unit, look.by_pulls / unit
+    size = np.hypot(pulls, _SLACK)
+    return 0.5 * float((pulls + size).sum()), 0.5 * np.asarray((1.0 + pulls / size) @ by_pulls)
