@@ -207,3 +207,19 @@ def test_every_choice_has_its_words_and_the_door_says_what_is_not_usual() -> Non
     assert all(setting.tip.endswith(".") and setting.words(values[setting.key]) for setting in settings)
     assert summary(values) == "Sticks to the skin · Springs back"
     assert summary(values | {"firm_chest": 0.3}) == "Sticks to the skin · Springs back · Firm"
+
+
+def test_another_body_is_opened_with_its_lines_in_sight() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        for show, page in ((window.desk.show_model, "lines"), (window.worn_desk.show_page, "result")):
+            show()
+            left = window.inspector.panel()
+            before = window.session.frame.stages.body
+            window.session.undo_stack.setClean()
+            window.desk.open_sample("person" if page == "lines" else "mannequin")
+            yield lambda before=before: window.session.frame.stages.body is not before
+            yield settled(window)
+            assert window.inspector.panel() is window.inspector._panels[page] is not left
+
+    run_undrawn([], script)

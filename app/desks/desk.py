@@ -61,6 +61,9 @@ class Desk(QObject):
         window.actions_.enable_document()
         window.notices.clear()
         self.show_title()
+        pages = {window.model: "lines", window.worn_desk.page: "result"}  # they are of the body before
+        if (page := window.inspector.panel()) in pages:
+            window.inspector.open(pages[page])
         if self._is_chosen_scan(frame.stages.design):
             self.go_to("scan")
         self.select_line(window.view.selected_line)
