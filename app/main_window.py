@@ -155,7 +155,9 @@ class MainWindow(QMainWindow):
         lines.setFocusProxy(self.lines)
         self.inspector.add("scan", self.scan)
         self.inspector.add("landmarks", self.landmarks)
-        self.lines_page.addWidget(lines)
+        page = self.lines_page
+        page.currentChanged.connect(lambda at: page.setFocusProxy(page.widget(at)))
+        page.addWidget(lines)
         self.inspector.add("lines", self.lines_page, tr("Lines"))
         self.inspector.add("result", self.result, tr("Measures"))
         self.inspector.add("garment", self.garment, tr("Garment"))
