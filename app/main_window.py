@@ -156,7 +156,7 @@ class MainWindow(QMainWindow):
         self.inspector.add("scan", self.scan)
         self.inspector.add("landmarks", self.landmarks)
         page = self.lines_page
-        page.currentChanged.connect(lambda at: page.setFocusProxy(page.widget(at)))
+        page.currentChanged.connect(lambda at: page.setFocusProxy(page.widget(at) or lines))
         page.addWidget(lines)
         self.inspector.add("lines", self.lines_page, tr("Lines"))
         self.inspector.add("result", self.result, tr("Measures"))
