@@ -70,6 +70,7 @@ def _connect_session(window: MainWindow) -> None:
     session.frame_ready.connect(window.export_desk.show_frame)
     session.frame_ready.connect(lambda *_: window.report_desk.follow())
     session.design_changed.connect(lambda *_: window.report_desk.follow())
+    session.failed.connect(lambda *_: window.report_desk.follow())
     session.opened.connect(window.report_desk.forget)
     session.design_changed.connect(desk.show_design)
     session.failed.connect(desk.show_failure)

@@ -51,7 +51,7 @@ class Finding:
 
 
 UNKNOWN_PRESSURE = Finding(
-    *("pressure", CAUTION, "The contact pressure could not be computed."),
+    *("pressure", CAUTION, "The contact pressure was not computed."),
     "Change a length to compute it again.",
 )
 

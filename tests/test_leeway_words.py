@@ -94,13 +94,13 @@ def test_what_the_other_lines_do_is_told_as_theirs() -> None:
 
 def test_an_opened_row_has_a_key_to_its_zones(qtbot: QtBot) -> None:
     assert {tone: plain(words) for tone, words in key(LEEWAY).items()} == {
-        "green": "Valid shape from 93.9 to 98.1 %",
+        "green": "Valid shape (without pressure) from 93.9 to 98.1 %",
         "amber": "Strained below 93.9 %",
         "red": "Folds below 86.0 %",
         "slack": "Slack above 98.1 %",
     }
     free = Leeway("waist", (Zone("green", 0.5, 1.3),))
-    assert key(free) == {"green": "Valid shape at any length"}
+    assert key(free) == {"green": "Valid shape (without pressure) at any length"}
     shown = LeewayKey()
     qtbot.addWidget(shown)
     for leeway, ratio, lit in (
@@ -121,17 +121,16 @@ def test_the_key_says_where_green_is_no_word_on_pressure(qtbot: QtBot) -> None:
     shown = LeewayKey()
     qtbot.addWidget(shown)
     green = Zone("green", 0.5, 1.3)
-    for leeway, told in (
-        (Leeway("waist", (green,)), True),
-        (Leeway("waist", (green,), pressure_known=True), False),
-        (Leeway("waist", (Zone("red", 0.5, 1.3, (FOLDED,)),)), False),
-    ):
-        shown.show_leeway(leeway, 0.9, stale=False)
-        assert shown.pressure.isHidden() is not told
-    assert shown.pressure.text() == "Pressure is not looked at here: see Garment."
-    shown.show_leeway(Leeway("waist", (green,)), 0.9, False, "47.7 kPa · tight", "bad")
-    assert shown.pressure.text() == "Pressure now: 47.7 kPa · tight"
-    assert shown.pressure.property("tone") == "bad", "green of the shape is no green of the pressure"
+    words = shown.rows["green"][1]
+    for known, told in ((False, "Valid shape (without pressure)"), (True, "Valid shape")):
+        shown.show_leeway(Leeway("waist", (green,), pressure_known=known), 0.9, stale=False)
+        assert words.text() == f"{told} at any length"
+        assert shown.pressure.isHidden()
+    for pressed, tone, seen in (("1.0 kPa", "ok", ""), ("3.0 kPa", "warn", "warn"), ("47.7 kPa", "bad", "bad")):
+        shown.show_leeway(Leeway("waist", (green,)), 0.9, False, pressed, tone)
+        assert shown.pressure.text() == f"Pressure now: {pressed}"
+        assert shown.pressure.property("tone") == tone
+        assert words.property("tone") == seen, "a valid shape has no other colour than its pressure"
 
 
 def test_what_a_line_stands_in_and_why_a_hand_is_held_is_told() -> None:

@@ -95,7 +95,7 @@ def test_figures_of_a_former_shape_are_faint_and_have_no_light(card: PressureCar
 
 
 def test_a_light_is_a_word_too(card: PressureCard) -> None:
-    for light, word in ((GREEN, "gentle"), (AMBER, "snug"), (RED, "tight")):
+    for light, word in ((GREEN, "gentle"), (AMBER, "snug"), (RED, "too tight")):
         listed = PressList((replace(ROW, light=light),), {})
         card.show_summary(pressure_summary(listed, DESIGN), faint=False)
         assert (card.light.word, card.light.accessibleName()) == (word, word)

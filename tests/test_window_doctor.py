@@ -13,6 +13,7 @@ import app.keeping.pressure_desk
 from app.desks.doctor_desk import ABOUT
 from app.main_window import MainWindow
 from app.panels.notice import REFUSED, Notice
+from app.presenting.assessment import tone
 from core.press_list import press_list
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -42,6 +43,7 @@ def test_a_vibration_is_told_at_once_and_ended_by_one_button() -> None:
         window.session.change({"gain": 1.7}, "gain")
         yield settled(window)
         assert "does not come to rest" in notice_of(window).sentence
+        assert notice_of(window).tone == "bad", "as the verdict"
         assert words(window) == [], "what was not tried is not offered"
         yield lambda: told(window)
         notice = notice_of(window)
@@ -82,7 +84,8 @@ def test_strain_is_told_calmly_once_and_never_again() -> None:
         assert window.notices.notice() is None
         assert window.doctor_desk._later.isActive(), "who is still at work hears nothing"
         yield lambda: told(window)
-        assert notice_of(window).tone == "info"
+        overall = window.verdict_desk.of(window.session.frame)
+        assert notice_of(window).tone == tone(overall.level), "not calm beside a red verdict"
         assert not notice_of(window).lasting
         assert words(window)[0].startswith("Lengthen Mid-bust by ")
         window.notices.close_notice()
@@ -133,7 +136,7 @@ def test_asked_of_a_calm_design_he_says_that_nothing_is_wrong() -> None:
         command.trigger()
         yield lambda: told(window)
         overall = window.verdict_desk.of(window.session.frame)
-        assert notice_of(window).tone == {"bad": "warn", "caution": "info", "good": "ok"}[overall.level]
+        assert notice_of(window).tone == tone(overall.level)
         for message, _ in overall.reasons:
             assert message in notice_of(window).sentence, "it contradicts the verdict nowhere"
         window.lines_desk.commit_length("mid-bust", 0.97)
@@ -167,9 +170,23 @@ def test_asked_before_the_verdict_is_known_he_says_what_presses(monkeypatch: pyt
         run_undrawn([], script)
     finally:
         known.set()
-    ((tone, sentence),) = asked
-    assert tone == "warn", "not calm beside a red verdict"
+    ((seen, sentence),) = asked
+    assert seen == "bad", "not calm beside a red verdict"
     assert "Mid-bust presses with" in sentence
+
+
+def test_what_is_asked_before_the_first_frame_is_answered_with_it() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        window.lines_desk.commit_length("mid-bust", 0.97)
+        assert not window.session.is_answered
+        window.doctor_desk.ask()
+        yield settled(window)
+        yield lambda: told(window)
+        assert notice_of(window).lasting
+        assert window.doctor_desk._about is window.session.design
+
+    run_undrawn([], script)
 
 
 def test_what_was_closed_stays_away_until_something_else_is_wrong() -> None:
@@ -248,7 +265,8 @@ def test_the_pill_opens_what_the_button_ends_and_what_will_still_be_strained() -
         QTest.keyClick(chip, Qt.Key.Key_Space)
         yield lambda: told(window)
         notice = notice_of(window)
-        assert (notice.tone, notice.lasting) == ("info", True), "who asks is not hurried"
+        level = window.verdict_desk.of(window.session.frame).level
+        assert (notice.tone, notice.lasting) == (tone(level), True), "who asks is not hurried"
         assert "pull against each other: skin is pressed" in notice.sentence
         assert "apart in what they do to the skin" in notice.details.splitlines()[0]
         assert "each tried" in notice.details.splitlines()[1]

@@ -47,6 +47,9 @@ def test_a_solver_that_fails_for_long_loses_nothing(
         assert window.rail.items["result"].state() == "available", "no tick on what is not computed"
         assert window.lines.rows["mid-bust"].slider.ratio() == pytest.approx(0.9), "as it is set"
         assert "Settled" not in window.status._facts.text()
+        window.report_desk.open()
+        assert window.report_desk.page.state.text().startswith("The shape could not be computed")
+        window.report_desk.leave()
         drag(window, "full-bust", -20)
         yield lambda: session.failure.revision == session._revision
         session.undo_stack.undo()

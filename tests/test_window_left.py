@@ -71,6 +71,9 @@ def test_what_is_stopped_says_so_and_is_worked_out_when_it_is_looked_at_again(ga
         window.inspector.open("garment")
         stop(window, "Working out the pressure")
         assert window.notices.notice().sentence == "Stopped: Working out the pressure"
+        yield lambda: window.strip.chip.state() != "pending"  # nothing is computed any more
+        assert "pressure was not computed" in window.strip._hint.text()
+        assert "was not computed" in window.pressure_desk.card.says.text()
         window.desk.go_to("result")
         stop(window, "Measuring the body")
         assert window.result._waiting.text().startswith("Stopped")
@@ -119,7 +122,7 @@ def test_what_fails_is_told_and_waits_no_longer(monkeypatch: pytest.MonkeyPatch)
         window.desk.go_to("result")
         yield lambda: window.result._waiting.text() == "The body could not be measured."
         assert "inside Busk" in window.notices.notice().sentence
-        yield lambda: "pressure could not be computed" in window.strip._hint.text()
+        yield lambda: "pressure was not computed" in window.strip._hint.text()
         window.report_desk.open()
         yield lambda: window.report_desk.page.state.text() == "The sheet could not be made."
 

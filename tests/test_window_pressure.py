@@ -237,7 +237,7 @@ def limits_and_what_is_left_out_are_told(card: PressureCard) -> None:
     limits = comfort()
     assert limits.sources[0].name in card.limits.text()
     assert "estimate" in card.sure.text()
-    assert card.scale._limits.words == ("gentle", "snug", "tight")
+    assert card.scale._limits.words == ("gentle", "snug", "too tight")
     for fold, sentences in zip(card.folds, ([each.name for each in limits.sources], LEFT_OUT), strict=True):
         shut = {each.text() for each in card.findChildren(QLabel) if each.isVisible()}
         fold.click()
@@ -279,7 +279,7 @@ def test_pressures_that_cannot_be_computed_are_no_reason_to_wait(monkeypatch: py
         yield lambda: window.notices.notice() is not None
         view = window.verdict_desk.of(window.session.frame)
         assert (view.level, view.waiting) == ("caution", "")
-        assert view.first.startswith("The contact pressure could not be computed.")
+        assert view.first.startswith("The contact pressure was not computed.")
         assert window.rail.items["result"].state() == "look"
         monkeypatch.setattr(desk_module, "press_list", pressing)
         drag(window, "mid-bust", -10)

@@ -13,12 +13,12 @@ from PySide6.QtCore import QObject, QTimer
 from app.asking.jobs import Job
 from app.panels.notice import REFUSED, Action
 from app.presenting import doctor as words
-from app.presenting.assessment import assessment_view
+from app.presenting.assessment import AssessmentView, assessment_view, tone
 from app.presenting.lines import titled
 from app.presenting.verdict import plain_sentence, state_of, swing_mm
 from app.wording.words import joined, say, tr
 from core.answer import NoBalanceError
-from core.assessment import BAD, PENDING, Assessment
+from core.assessment import BAD, CAUTION, GOOD, LEVELS, PENDING, Assessment
 from core.design import Design
 from core.doctor import Diagnosis, diagnose
 from core.errors import UserError
@@ -39,6 +39,7 @@ REASONS = 2
 """Reasons of the verdict that a notice names; the others are in its details."""
 
 _BAD = ("vibrating", "diverging", "folded", "overstrained")
+_CALM = ("strained", "settling")
 _CURED = ("lines", "traits", "gain", "volume", "line_force", "line_hold")
 
 
@@ -54,6 +55,14 @@ class _Trouble:
         return self.complaint == other.complaint and (
             None in (self.pair, other.pair) or self.pair == other.pair
         )
+
+
+def _level_of(complaint: str) -> str:
+    return CAUTION if complaint == "strained" else BAD
+
+
+def _severity(level: str) -> int:
+    return LEVELS.index(level) if level in LEVELS else 0
 
 
 class DoctorDesk(QObject):
@@ -72,6 +81,7 @@ class DoctorDesk(QObject):
         self._said: _Trouble | None = None
         self._closed: _Trouble | None = None
         self._job: Job | None = None
+        self._asked = False
         window.notices.closed.connect(self._note_closed)
         self._later = QTimer(self, interval=PATIENCE, singleShot=True)
         self._later.timeout.connect(self._look)
@@ -83,6 +93,8 @@ class DoctorDesk(QObject):
         """Tell of a design that has come to its end; whatever is edited meanwhile ends that."""
         self._frame = frame
         design = frame.stages.design
+        if self._asked:
+            self._begin_asked()
         if design is self._about:
             return
         self._forget()
@@ -115,13 +127,20 @@ class DoctorDesk(QObject):
             self._run(work, partial(self._tell_refused, error))
 
     def ask(self) -> None:
-        """Say what is wrong with the design that is shown, or that nothing is."""
-        frame = self._frame
-        if frame is not None:
-            self._forget()
-            self._closed = None
-            self._about = frame.stages.design
-            self._run(partial(diagnose, frame.stages), partial(self._answer, frame), waited=True)
+        """Say what is wrong with the present design, once it is shown, or that nothing is."""
+        self._asked = True
+        self._begin_asked()
+
+    def _begin_asked(self) -> None:
+        """Begin with what was asked for, unless the first frame of the design is still to come."""
+        frame, session = self._frame, self._window.session
+        if frame is None or not (frame is session.frame and (session.is_answered or session.failure)):
+            return
+        self._asked = False
+        self._forget()
+        self._closed = None
+        self._about = frame.stages.design
+        self._run(partial(diagnose, frame.stages), partial(self._answer, frame), waited=True)
 
     def _forget(self) -> None:
         """Let go of what was said or looked for of another design."""
@@ -153,7 +172,7 @@ class DoctorDesk(QObject):
 
     def _tell_at_once(self, frame: Frame) -> None:
         hint = tr("No garment does that: what is seen here is no result.")
-        self._show("warn", plain_sentence(frame), hint, [], "", _Trouble(state_of(frame)))
+        self._show(BAD, plain_sentence(frame), hint, [], "", _Trouble(state_of(frame)))
 
     def _found(self, frame: Frame, found: object, *, asked: bool = False) -> None:
         """Tell what was found in place of what was told at once."""
@@ -162,13 +181,13 @@ class DoctorDesk(QObject):
         if not found.complaint:
             return  # from rest it does come to rest: what was told at once still holds for what is seen
         found, swing = found.seen(frame.verdict), swing_mm(frame)[1]
-        tone = "info" if found.complaint in ("strained", "settling") else "warn"
+        level = max(_level_of(found.complaint), self._judged(frame, found).level, key=_severity)
         actions = self._fixes(found)
         self._quiet.add(frame.stages.design)
         worst = found.fight.worst
         trouble = _Trouble(found.complaint, (worst.one.lines, worst.other.lines) if worst else ())
         said = words.sentence(found, swing)
-        self._show(tone, said, words.hint(found), actions, words.details(found), trouble, asked)
+        self._show(level, said, words.hint(found), actions, words.details(found), trouble, asked)
 
     def _answer(self, frame: Frame, found: object) -> None:
         """Tell what was asked for, well or not."""
@@ -179,22 +198,26 @@ class DoctorDesk(QObject):
         self._job = None
         # It may have come to rest since it was asked.
         frame = self._frame or frame
-        overall = self._window.verdict_desk.of(frame)
+        overall = self._judged(frame, found)
         level, reasons = overall.level, overall.reasons
-        if level == PENDING:  # the diagnosis knows already what the verdict waits for
-            own = assessment_view(Assessment(found.findings), frame.stages.design)
-            level, reasons = own.level, (*own.reasons, *reasons)
         if reasons:
-            tone = "warn" if level == BAD else "info"
             said = joined(message for message, _ in reasons[:REASONS])
             actions = self._fixes(found)
             trouble = _Trouble("checked")
             hint = words.hint(found) if found.findings else joined(reasons[0][1:])
             details = "\n".join((*map(joined, reasons), words.details(found)))
-            self._show(tone, said, hint, actions, details, trouble, asked=True)
+            self._show(level, said, hint, actions, details, trouble, asked=True)
             return
         said = tr("Nothing is wrong: the calculation comes to rest, and the skin is calm.")
-        self._show("ok", said, "", [], words.details(found), None)
+        self._show(GOOD, said, "", [], words.details(found), None)
+
+    def _judged(self, frame: Frame, found: Diagnosis) -> AssessmentView:
+        """Return the overall verdict of a frame; what it waits for the diagnosis knows already."""
+        overall = self._window.verdict_desk.of(frame)
+        if overall.level != PENDING:
+            return overall
+        own = assessment_view(Assessment(found.findings), frame.stages.design)
+        return replace(own, reasons=(*own.reasons, *overall.reasons))
 
     def _tell_refused(self, error: NoBalanceError, found: object) -> None:
         """Tell why lengths were refused, and the nearest that are not, in place of the bare refusal."""
@@ -217,7 +240,7 @@ class DoctorDesk(QObject):
 
     def _show(
         self,
-        tone: str,
+        level: str,
         sentence: str,
         hint: str,
         actions: list[Action],
@@ -225,15 +248,16 @@ class DoctorDesk(QObject):
         trouble: _Trouble | None,
         asked: bool = False,
     ) -> None:
-        """Show a notice in place of the last, unless the same ``trouble`` was closed by hand.
+        """Show a notice in the tone of a verdict's ``level`` in place of the last.
 
-        What was ``asked`` for stays till it is closed.
+        The same ``trouble`` is not told again once it was closed by hand. Mere strain leaves by itself;
+        what was ``asked`` for stays till it is closed.
         """
         if trouble and self._closed and trouble.is_that(self._closed):
             return
         self._withdraw()
-        lasting = asked or tone == "warn"
-        self._window.notices.show_notice(tone, sentence, hint, actions, lasting, details, ABOUT)
+        lasting = asked or (trouble is not None and trouble.complaint not in _CALM)
+        self._window.notices.show_notice(tone(level), sentence, hint, actions, lasting, details, ABOUT)
         self._said = trouble if lasting else None
 
     def _withdraw(self) -> None:

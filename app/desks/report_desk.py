@@ -201,12 +201,17 @@ class ReportDesk(QObject):
             # Not with every frame of a run: it takes as long as some of them.
             self._laid = self.handout, self._language
             self.pages = pages_of(self.handout, self._language) if self.handout is not None else None
-        words = ""
-        if stale:
-            made, rests = tr("The sheet is being made."), tr("The sheet is made as soon as the run rests.")
-            words = self._refused or (made if window.is_settled() else window.ask_desk.around.first(rests))
+        words = (self._refused or self._waits_for()) if stale else ""
         self.page.show_choices(design.customer if design else "", self._language)
         self.page.show_pages(self.pages, words, stale=stale)
+
+    def _waits_for(self) -> str:
+        """Return why there is no sheet yet."""
+        if self._window.session.failure is not None:
+            return tr("The shape could not be computed: there is no sheet of this design.")
+        if self._window.is_settled():
+            return tr("The sheet is being made.")
+        return self._window.ask_desk.around.first(tr("The sheet is made as soon as the run rests."))
 
     def _heading(self) -> Heading:
         document = self._window.session.document

@@ -9,7 +9,7 @@ from PySide6.QtCore import QObject, Signal
 
 from app.panels.garment import GarmentPanel
 from app.panels.pressure_card import PressureCard
-from app.presenting.pressure import light_limits, pressure_summary, pressure_views
+from app.presenting.pressure import light_limits, pressure_summary, pressure_views, unknown_pressure
 from app.presenting.verdict import doubt_of
 from app.wording.words import tr
 from core.live import Frame
@@ -42,9 +42,10 @@ class PressureDesk(QObject):
         self._known: WeakKeyDictionary[Frame, PressList] = WeakKeyDictionary()
         self._asked: WeakSet[Frame] = WeakSet()
         self._failed: WeakSet[Frame] = WeakSet()
+        self._left: WeakSet[Frame] = WeakSet()
         self.found.connect(self.follow)
         self.card.place_asked.connect(self.place_asked)
-        panel.opened.connect(self.follow)
+        panel.opened.connect(self._begin_again)
 
     def of(self, frame: Frame) -> PressList | None:
         """Return what the lines of a frame press with; if that is not known yet it is worked out beside.
@@ -64,8 +65,8 @@ class PressureDesk(QObject):
         return self._known.get(frame)
 
     def has_failed(self, frame: Frame) -> bool:
-        """Return whether the pressures of a frame could not be computed, and are not on their way."""
-        return frame in self._failed
+        """Return whether the pressures of a frame were not computed, and are not on their way."""
+        return frame in self._failed or frame in self._left
 
     def of_listed(self, frame: Frame) -> PressList | None:
         """Return the same for the list of lines: only where it is seen, and a line is worn."""
@@ -86,10 +87,11 @@ class PressureDesk(QObject):
         if frame.stages.body is not self._body:
             self._body, self._shown, self._stale = frame.stages.body, None, None
         stale = known is None
-        if (known or self._shown) is self._shown and stale == self._stale:
+        doubt = doubt_of(frame) or (unknown_pressure() if self.has_failed(frame) else "")
+        if (known or self._shown) is self._shown and (stale, doubt) == (self._stale, self._doubt):
             return
         self._shown, self._stale = known or self._shown, stale
-        design, self._doubt = frame.stages.design, doubt_of(frame)
+        design, self._doubt = frame.stages.design, doubt
         told = None if self._doubt else self._shown
         self._panel.set_pressures(pressure_views(told, design, stale) if told else {})
         self.card.show_summary(pressure_summary(told, design, self._doubt), stale and told is not None)
@@ -105,5 +107,16 @@ class PressureDesk(QObject):
         self.found.emit()
 
     def _leave_off(self, frame: Frame) -> None:
-        self._asked.discard(frame)
+        self._left.add(frame)
         self._window.desk.show_left(tr("Working out the pressure"))
+        self.found.emit()  # who waits for it does so no longer
+
+    def _begin_again(self) -> None:
+        """Work out what the user stopped: it is looked at again."""
+        for frame in self._left:
+            self._asked.discard(frame)
+        stopped = bool(self._left)
+        self._left.clear()
+        self.follow()
+        if stopped:
+            self.found.emit()

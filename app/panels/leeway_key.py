@@ -12,7 +12,10 @@ from app.dress.theme import set_tag, tokens_of
 from app.panels.leeway_words import KEY_ORDER, key, tone_at
 from app.panels.length_groove import GROOVE_HEIGHT, STALE, paint_zone
 from app.wording.words import tr
-from core.leeway import GREEN, Leeway
+from core.leeway import Leeway
+
+
+_ORDER = ("", "warn", "bad")
 
 
 class Swatch(QWidget):
@@ -41,7 +44,8 @@ class Swatch(QWidget):
 class LeewayKey(QWidget):
     """A row for each kind of zone that a line has: a swatch and words; the one it stands in is told apart.
 
-    Beneath them stands the ``pressure`` at the present length, or that zones do not include it.
+    Beneath them is the ``pressure`` at the present length. A length in a green zone whose pressure is too
+    high has the tone of the pressure.
     """
 
     def __init__(self) -> None:
@@ -67,13 +71,13 @@ class LeewayKey(QWidget):
         ``pressed`` is its pressure now in words, in the tone of its light, empty where that is not known.
         """
         told, here = key(leeway), leeway.at(ratio).tone
+        in_force = max(tone_at(leeway, ratio), pressed_tone.replace("ok", ""), key=_ORDER.index)
         for tone, (swatch, words) in self.rows.items():
             words.setText(told.get(tone, ""))
-            set_tag(words, "tone", "faint" if stale else tone_at(leeway, ratio) if tone == here else "")
+            set_tag(words, "tone", "faint" if stale else in_force if tone == here else "")
             swatch.show_stale(stale)
             for each in (swatch, words):
                 each.setVisible(tone in told)
-        unseen = tr("Pressure is not looked at here: see Garment.")
-        self.pressure.setText(tr("Pressure now: {pressure}").format(pressure=pressed) if pressed else unseen)
+        self.pressure.setText(tr("Pressure now: {pressure}").format(pressure=pressed))
         set_tag(self.pressure, "tone", pressed_tone)
-        self.pressure.setVisible(bool(pressed) or (GREEN in told and not leeway.pressure_known))
+        self.pressure.setVisible(bool(pressed))

@@ -37,7 +37,8 @@ def _in_a_row(words: list[str]) -> str:
 def _in_key(leeway: Leeway, tone: str) -> list[str]:
     zones = [zone for zone in leeway.zones if zone.tone == tone]
     if tone == GREEN:
-        return [_range(tr("valid shape"), zone.short, zone.long) for zone in zones]
+        valid = tr("valid shape") if leeway.pressure_known else tr("valid shape (without pressure)")
+        return [_range(valid, zone.short, zone.long) for zone in zones]
     reasons = sorted({reason for zone in zones for reason in _told(zone)}, key=lambda each: -each.long)
     if tone == RED:  # what is worse lies below
         red = [reason for zone in zones for reason in _told(zone)]

@@ -44,6 +44,11 @@ def headline(level: str) -> str:
     }[level]
 
 
+def tone(level: str) -> str:
+    """Return the tone of a notice about a design of a level."""
+    return {GOOD: "ok", CAUTION: "warn", BAD: "bad"}.get(level, "info")
+
+
 def assessment_view(
     assessment: Assessment, design: Design | None = None, titles: Mapping[str, str] | None = None
 ) -> AssessmentView:

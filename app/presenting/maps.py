@@ -111,7 +111,7 @@ def _pressure_tip() -> str:
     )
     return tr(
         "What the worn bands press the skin with: their pull over their width and the radius that they bend "
-        "with. 1 kPa is 7.5 mmHg. Marked: snug from {amber}, tight from {red}. An estimate: tissue gives "
+        "with. 1 kPa is 7.5 mmHg. Marked: snug from {amber}, too tight from {red}. An estimate: tissue gives "
         "way, and sensors read less."
     ).format(amber=amber, red=red)
 

@@ -10,6 +10,7 @@ from app.panels.pressure_card import TONES, LightLimits, PressureSummary
 from app.presenting.lines import line_colours, line_title, titled
 from app.wording.lengths import length
 from app.wording.words import joined, language, listed, number, say, tr
+from core.assessment import UNKNOWN_PRESSURE
 from core.design import Design
 from core.press_list import PressList, PressRow
 from core.pressure import LEFT_OUT, NOT_FOR_STRAPS, mmhg
@@ -18,7 +19,7 @@ from core.sewing.comfort import AMBER, GREEN, RED, comfort
 
 def light_word(light: str) -> str:
     """Return in a word what "green", "amber" or "red" means."""
-    return {GREEN: tr("gentle"), AMBER: tr("snug"), RED: tr("tight")}[light]
+    return {GREEN: tr("gentle"), AMBER: tr("snug"), RED: tr("too tight")}[light]
 
 
 def light_limits() -> LightLimits:
@@ -110,6 +111,11 @@ def place_words(row: PressRow) -> str:
     height = length(row.height_mm or 0.0, 0)
     words = tr("{side}, {length} above the lowest point of the scan")
     return words.format(side=side_words(row.where), length=height)
+
+
+def unknown_pressure() -> str:
+    """Return that the pressures of a shape were not computed, and what to do."""
+    return joined((say(UNKNOWN_PRESSURE.message), say(UNKNOWN_PRESSURE.action)))
 
 
 def pressure_summary(listed: PressList | None, design: Design, doubt: str = "") -> PressureSummary:
