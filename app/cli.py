@@ -53,6 +53,8 @@ def _run(words: list[str]) -> int:
             return COMMANDS[words[0]](command_options(words[0], words[1:]))
     options = window_options(words)
     file = None if options.file is None else path_of(options.file)
+    if file == "":
+        raise UserError("No file is named.", "Name a scan or a project, or see 'busk --help'.")
     if file is not None and not os.path.exists(file) and not is_seen_in_window(file):
         raise UserError(f"There is no file {file}, and no such command.", "See 'busk --help'.")
     # Thousands of modules come now and stay: looking for garbage among them costs a tenth of the start.
@@ -74,9 +76,7 @@ def solve(options: argparse.Namespace) -> int:
     design = replace(design, volume=options.volume or design.volume)
     place = partial(_folder, options.out)
     found = run_solve(design, options.line or [], options.elastic or [], options.turns, place)
-    warn(found.warnings)
-    print(*found.lines, sep="\n")
-    return SETTLED if found.settled else NOT_SETTLED
+    return told("\n".join(found.lines), found.settled, found.warnings)
 
 
 def sweep(options: argparse.Namespace) -> int:

@@ -63,6 +63,11 @@ def shown(text: str) -> str:
     return _CONTROLS.sub(lambda found: ascii(found[0])[1:-1], text)
 
 
+def shown_line(text: str) -> str:
+    """Return a text that is one line with the ends of lines in it spelled too: a name may hold some."""
+    return re.sub("[\t\r\n]", lambda found: ascii(found[0])[1:-1], shown(text))
+
+
 def _is_unprintable(letter: str) -> bool:
     noncharacter = ord(letter) & 0xFFFE == 0xFFFE  # no XML file may hold one
     return category(letter) in _UNPRINTABLE or letter in _TURNING or noncharacter

@@ -13,7 +13,7 @@ from core.design import ScanSource
 from core.document import Document
 from core.document_limits import LARGEST_PICTURE, LARGEST_SCAN, LARGEST_TEXT, check_size
 from core.document_text import DESIGN, VARIANTS, from_texts, to_texts
-from core.errors import ProjectError, UserError
+from core.errors import ProjectError, ScanError, UserError
 from core.progress import Progress, quiet
 from core.project_archive import member_bytes, project_archive
 from core.reading.scan_file import scan_bytes
@@ -89,6 +89,8 @@ def with_scan(document: Document, path: str, member: str) -> Document:
 
 def read_scan_file(source: ScanSource, progress: Progress = quiet) -> ScanFile:
     """Read the bytes of a scan, alone or inside a project. Raises ScanError, ProjectError, Cancelled."""
+    if not source.path:
+        raise ScanError("No file is named.", "Choose a scan or a project.")
     if source.member:
         with project_archive(Path(source.path)) as archive:
             return ScanFile(source.name, member_bytes(archive, source.member, LARGEST_SCAN))

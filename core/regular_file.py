@@ -8,6 +8,8 @@ import stat
 from pathlib import Path
 
 TOO_LARGE = "it is far too large"
+NOT_A_FILE = "it is not a file"
+"""Reasons why something cannot be read: a folder, a pipe and a device are not files."""
 
 
 def open_regular(path: str | os.PathLike[str]) -> int:
@@ -40,6 +42,6 @@ def read_text(path: Path, most: int, encoding: str = "utf-8", errors: str = "str
 
 def _check(kind: os.stat_result) -> None:
     if stat.S_ISDIR(kind.st_mode):
-        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+        raise IsADirectoryError(errno.EISDIR, NOT_A_FILE)
     if not stat.S_ISREG(kind.st_mode):
-        raise OSError(errno.EINVAL, "it is not a file")
+        raise OSError(errno.EINVAL, NOT_A_FILE)

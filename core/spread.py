@@ -30,6 +30,10 @@ SLIDING = (
     "lift, not 95 %, and single ones lay far outside."
 )
 
+WAIST = (
+    "The waist girth is measured where the trunk is narrowest: the anatomical waist may be elsewhere, and "
+    "its girth may differ by several centimetres, which the ± does not include."
+)
 
 _UNTOLD = tuple(f"{kind}:asymmetry_volume" for kind in (BEFORE, AFTER))
 """Figures whose ± is known not to hold: a root goes with its bust point, see docs/even.md."""
@@ -85,8 +89,10 @@ def spread_of(stages: Stages, sizes: Assumed | None = None, progress: Progress =
     return Spreading(Trials(stages), sizes).whole(progress)
 
 
-def cautions(design: Design) -> Iterator[str]:
-    """Yield where the ± of a design says less than it seems to."""
+def cautions(design: Design, doubts: Mapping[str, object]) -> Iterator[str]:
+    """Yield where the ± of a design says less than it seems to, of the figures that have ``doubts``."""
+    if f"{BEFORE}:waist_girth" in doubts:
+        yield WAIST
     if design.worn() and design.line_contact == "sliding":
         yield SLIDING
 
@@ -128,7 +134,7 @@ def _spread(propagation: Propagation, found: list[Effect], sizes: Assumed, faile
         failed=failed,
         figures=MappingProxyType(propagation.trials.figures),
         bare=propagation.trials.bare,
-        cautions=tuple(cautions(propagation.stages.design)),
+        cautions=tuple(cautions(propagation.stages.design, doubts)),
     )
 
 

@@ -14,6 +14,7 @@ from glob import escape
 from pathlib import Path
 
 from core.errors import ProjectError
+from core.regular_file import NOT_A_FILE
 
 PRIVATE_FILE, PRIVATE_FOLDER = 0o600, 0o700
 """Access rights of personal data: its owner's alone."""
@@ -129,9 +130,9 @@ def _former(target: Path) -> os.stat_result | None:
     except FileNotFoundError:
         return None
     if stat.S_ISDIR(former.st_mode):
-        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+        raise IsADirectoryError(errno.EISDIR, NOT_A_FILE)
     if not stat.S_ISREG(former.st_mode):  # a pipe, a device, or links in a circle
-        raise OSError(errno.EINVAL, "it is not a file")
+        raise OSError(errno.EINVAL, NOT_A_FILE)
     return former
 
 

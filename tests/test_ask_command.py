@@ -13,6 +13,7 @@ from app.cli import BAD_INPUT, main
 from app.commands.asked import goals_of
 from app.commands.ending import NOT_SETTLED, SETTLED
 from app.commands.settings import WANT_HELP
+from app.presenting.assessment import headline
 from core.aims.figure import Goal
 from core.aims.readings import NAMES
 from core.errors import UserError
@@ -50,6 +51,7 @@ def test_what_is_reached_is_told_and_saved(tmp_path: Path, capsys: pytest.Captur
     out = tmp_path / "found.busk"
     assert main(["ask", SCAN, *WORN, "--want", "girth=870mm", "--out", str(out)]) == SETTLED
     told = capsys.readouterr().out
+    assert told.startswith("Verdict: ")
     assert re.search(r"^girth +870\.0 mm +870\.0 mm$", told, re.M)
     assert "Reached." in told
     design = open_project(out).design
@@ -57,6 +59,7 @@ def test_what_is_reached_is_told_and_saved(tmp_path: Path, capsys: pytest.Captur
         assert f"{line.name}: {100.0 * line.ratio:.1f} %" in told
     assert main(["ask", str(out), "--want", "girth=870mm", "--json"]) == SETTLED
     again = json.loads(capsys.readouterr().out)
+    assert told.startswith(f"Verdict: {headline(again['assessment']['level'])}\n"), "on what was found"
     assert again["figures"]["girth"]["reached_mm"] == pytest.approx(870.0, abs=0.05)
     assert again["lines"]["mid-bust"]["before_percent"] == pytest.approx(100.0 * design.ratio("mid-bust"))
 

@@ -22,7 +22,9 @@ def test_the_light_goes_by_the_largest_pressure() -> None:
 
 def test_a_pressure_is_not_called_near_to_what_it_is_far_above() -> None:
     limits = comfort()
-    said = [limits.says(kpa).en.split(".")[0].split(",")[0] for kpa in (0.5, 2.0, 4.0, 4.6, 4.7, 9.0, 9.2, 374.7)]
+    said = [
+        limits.says(kpa).en.split(".")[0].split(",")[0] for kpa in (0.5, 2.0, 4.0, 4.6, 4.7, 9.0, 9.2, 374.7)
+    ]
     assert said[2:4] == ["Near the pressure that wearers complained of"] * 2
     assert said[4:6] == ["Beyond the pressure that wearers complained of"] * 2
     assert said[6:] == ["Far above all that was measured under garments"] * 2

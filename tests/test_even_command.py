@@ -11,6 +11,7 @@ from shapes import SAMPLES
 
 from app.cli import BAD_INPUT, main
 from app.commands.ending import NOT_SETTLED, SETTLED
+from app.presenting.assessment import headline
 from core.backups import backups
 from core.project import open_project
 
@@ -23,12 +24,14 @@ WORN = (*PERSON, *STRAPS, "--line", "full-bust=97%", "--line", "strap left=97%",
 def test_how_left_and_right_differ_is_told_side_by_side(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["even", *PERSON]) == SETTLED
     told = capsys.readouterr().out
+    verdict = told.partition("\n")[0]
     assert re.search(r"^bust point higher +right 11\.8 mm +right 11\.\d mm$", told, re.M)
     assert re.search(r"^stands out more, in all +left 1\d\.\d ml +left 1\d\.\d ml$", told, re.M)
     assert re.search(r"^left stands out more +5\d\.\d ml +5\d\.\d ml$", told, re.M)
     assert "made even" not in told
     assert main(["even", *PERSON, "--json"]) == SETTLED
     figures = json.loads(capsys.readouterr().out)
+    assert verdict == f"Verdict: {headline(figures['assessment']['level'])}"
     assert figures["rows"]["higher"]["before"] == pytest.approx(-11.8, abs=0.1)
     assert figures["rows"]["left_more"]["unit"] == "ml"
     assert figures["made"] is None

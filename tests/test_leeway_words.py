@@ -126,7 +126,11 @@ def test_the_key_says_where_green_is_no_word_on_pressure(qtbot: QtBot) -> None:
         shown.show_leeway(Leeway("waist", (green,), pressure_known=known), 0.9, stale=False)
         assert words.text() == f"{told} at any length"
         assert shown.pressure.isHidden()
-    for pressed, tone, seen in (("1.0 kPa", "ok", ""), ("3.0 kPa", "warn", "warn"), ("47.7 kPa", "bad", "bad")):
+    for pressed, tone, seen in (
+        ("1.0 kPa", "ok", ""),
+        ("3.0 kPa", "warn", "warn"),
+        ("47.7 kPa", "bad", "bad"),
+    ):
         shown.show_leeway(Leeway("waist", (green,)), 0.9, False, pressed, tone)
         assert shown.pressure.text() == f"Pressure now: {pressed}"
         assert shown.pressure.property("tone") == tone

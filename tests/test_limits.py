@@ -163,7 +163,9 @@ def test_the_command_prints_a_table_and_the_same_as_json(person, capsys):
 def test_the_command_tells_where_an_elastic_presses_too_much(person, capsys):
     worn = ["--line", "mid-bust=90%", "--elastic", "mid-bust=strap 15", "--line", "full-bust=98%"]
     assert main(["limits", str(person), *worn]) == 0
-    mid, full = capsys.readouterr().out.split("full-bust, at rest")
+    told = capsys.readouterr().out
+    assert told.startswith("Verdict: Do not use\n"), "of what is set, whatever else may be"
+    mid, full = told.split("full-bust, at rest")
     assert re.search(r"pressing +below 7\d\.\d % +more than 4 kPa", mid)
     assert "its elastic would go beyond its table" in mid
     assert "pressing      not known" in full

@@ -248,7 +248,9 @@ def test_lights_are_told_apart_without_colour(sheet: Sheet, tmp_path: Path) -> N
         same = tuple(replace(row, light=light, notes=()) for row in sheet.pressures)
         pdf = written(handout(replace(sheet, pressures=same)), tmp_path / f"{light}.pdf")
         grey = pdf.pixels(0, 300).mean(axis=2)
-        word = [p for p in pdf.pieces(0) if p.left > MARGIN + 160.0 and p.text in ("gentle", "snug", "too tight")]
+        word = [
+            p for p in pdf.pieces(0) if p.left > MARGIN + 160.0 and p.text in ("gentle", "snug", "too tight")
+        ]
         assert len({piece.text for piece in word}) == 1
         dot = 300.0 / 25.4
         box = grey[

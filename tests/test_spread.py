@@ -38,7 +38,7 @@ from core.profile import Plane, Slicer
 from core.progress import Cancelled
 from core.sewing.tensions import line_tensions
 from core.solution import run
-from core.spread import Spreading, cautions
+from core.spread import SLIDING, WAIST, Spreading, cautions
 
 SURE = replace(assumed(), unsure_landmark_mm=0.0)
 """Of the mannequin only the folds are sure: fewer landmarks are quicker."""
@@ -288,7 +288,8 @@ def test_a_bare_body_is_neither_fitted_nor_solved(plain: Stages, monkeypatch: py
 
 
 def test_where_the_spread_says_too_little_it_says_so(plain: Stages, told: list[Spread]) -> None:
-    assert told[-1].cautions == ()
+    assert "before:waist_girth" in told[-1].doubts
+    assert told[-1].cautions == (WAIST,), "the narrowest place is not the anatomical waist"
     sliding = replace(plain.design, line_contact="sliding", volume="conventional")
-    assert len(list(cautions(sliding))) == 1
-    assert list(cautions(replace(sliding, lines=()))) == []
+    assert list(cautions(sliding, {})) == [SLIDING]
+    assert list(cautions(replace(sliding, lines=()), {})) == []

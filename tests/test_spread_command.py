@@ -28,6 +28,7 @@ def test_it_prints_figures_with_what_they_may_be_off_by(
 ) -> None:
     assert main(["spread", str(mannequin), *WORN, *QUICK]) == 0
     said = capsys.readouterr().out
+    assert said.startswith("Verdict: Check before use\n  Mid-bust presses with ")
     assert re.search(r"Waist girth \(narrowest\) {18}69\d\.\d ±  2\.5 ", said)
     assert "mid-bust: length to cut" in said
     assert "if the line slides over it" in said
@@ -42,6 +43,7 @@ def test_it_writes_shares_as_json_and_standard_deviations_as_a_table(
     wider = (*WORN, *QUICK, "--assume", "sds=3", "--assume", "skin_mm=0.4")
     assert main(["spread", str(mannequin), *wider, "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
+    assert told["assessment"]["level"] == "caution"
     waist = told["figures"]["before:waist_girth"]
     assert waist["plus_minus"] == pytest.approx(3.0 * 2.0 * 1.26, rel=0.02)
     assert waist["shares"]["scan"] == pytest.approx(1.0)
@@ -60,8 +62,9 @@ def test_it_writes_shares_as_json_and_standard_deviations_as_a_table(
 def test_a_bare_body_is_told_at_rest_alone(mannequin: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["spread", str(mannequin), *QUICK]) == 0
     said = capsys.readouterr().out
-    assert said.startswith("No line is worn: the body at rest.")
+    assert said.startswith("Verdict: No active lines\n\nNo line is worn: the body at rest.")
     assert re.search(r"Waist girth \(narrowest\) {18}69\d\.\d ±  2\.5 mm", said)
+    assert "anatomical waist may be elsewhere" in said
     assert not any(word in said for word in ("change", "slides", "Bust point up", "Elastics:"))
 
 

@@ -59,13 +59,15 @@ def limits(options: argparse.Namespace) -> int:
     """Print how far each line can go: where it strains, folds, vibrates, presses too much or is slack."""
     from app.commands.limits import limits_text
     from core.advice.limits import all_limits
+    from core.assessment import assessed
     from core.pipeline import build
+    from core.solution import run
 
     design = design_of(options.input, options)
     stages = build(design)
     worn = dressed(design, stages.model.lines, options.line or [])
     stages = build(made_of(worn, options.elastic or []), stages)
-    print(limits_text(list(all_limits(stages)), stages, options.json))
+    print(limits_text(list(all_limits(stages)), stages, assessed(run(stages)), options.json))
     return SETTLED
 
 
@@ -76,7 +78,7 @@ def spread(options: argparse.Namespace) -> int:
     design, lengths, elastics = design_of(options.input, options), options.line or [], options.elastic or []
     found = run_spread(design, lengths, elastics, options.assume or [])
     kind = "json" if options.json else "csv" if options.csv else ""
-    return told(spread_text(found, kind, options.out), found.settled, found.warnings)
+    return told(spread_text(found, kind, options.out), found.worn.settled, found.worn.warnings)
 
 
 ADVICE: dict[str, Callable[[argparse.Namespace], int]] = {

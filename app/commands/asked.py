@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from app.commands.settings import dressed, made_of
+from app.presenting.assessment import assessment_lines
 from core import __version__
 from core.aims.conflicts import Conflict
 from core.aims.curve_file import profile_goals, read_profile
@@ -22,6 +23,7 @@ from core.aims.line_selection import LineSelection, optional_lines, switched_on
 from core.aims.outline import profiles_off, section_of
 from core.aims.reaching import Bounds
 from core.aims.readings import NAMES
+from core.assessment import Assessment, assessed
 from core.backups import backed_up
 from core.design import Design
 from core.document import Document
@@ -31,6 +33,7 @@ from core.mesh import Floats
 from core.pipeline import Stages, build
 from core.project import SUFFIX, is_project, open_project, save_project
 from core.request import Reply
+from core.solution import run
 
 _WANT = re.compile(
     r"\s*([a-z ]+?)\s*=\s*([+-]?\d+(?:[.,]\d+)?)\s*(mm|cm|in)?\s*(?:@\s*(high|normal|low)\s*)?"
@@ -62,13 +65,15 @@ class AskWishes:
 class Asked:
     """The ``reply`` to ``goals`` for a design as it was before, ``stages``; ``out`` is where it was saved.
 
-    ``conflicts`` are those of goals that are not all met.
+    ``assessment`` is the overall verdict on the design found, ``conflicts`` are those of goals that are not
+    all met.
     """
 
     stages: Stages
     goals: tuple[Goal, ...]
     reply: Reply
     out: str
+    assessment: Assessment
     conflicts: tuple[Conflict, ...] = ()
 
 
@@ -104,7 +109,8 @@ def run_ask(
         document = open_project(source) if is_project(source) else Document.of(reply.design)
         with backed_up(Path(wishes.out)):
             save_project(wishes.out, document.with_design(reply.design), stages.scan, None)
-    return Asked(stages, goals, reply, wishes.out, conflicts)
+    assessment = assessed(run(build(reply.design, stages)))
+    return Asked(stages, goals, reply, wishes.out, assessment, conflicts)
 
 
 def goals_of(wants: Sequence[str]) -> tuple[Goal, ...]:
@@ -174,6 +180,7 @@ def _plain(asked: Asked) -> Iterator[str]:
     reply, added = asked.reply, switched_on(asked.stages.design, asked.reply.design)
     single = [goal for goal in asked.goals if not section_of(goal.name)]
     wide = max([12, *(len(goal.name) + 1 for goal in single)])
+    yield from (*assessment_lines(asked.assessment, reply.design), "")
     if single:
         yield f"{'':{wide}}{'asked for':>12}{'reached':>12}"
     for goal in single:
@@ -246,6 +253,7 @@ def _figures(asked: Asked) -> dict[str, Any]:
     reply, before = asked.reply, asked.stages.design
     lines = {line.name: line for line in asked.stages.model.lines if line.name in reply.design.worn()}
     return {
+        "assessment": asked.assessment.as_data(),
         "figures": {
             goal.name: {
                 "wanted_mm": goal.value,

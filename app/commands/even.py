@@ -11,9 +11,11 @@ from typing import Any
 from app.commands.asked import reasons
 from app.commands.settings import dressed, made_of
 from app.commands.worn import run_to_body
+from app.presenting.assessment import assessment_lines
 from core import __version__
 from core.advice.evening import EVEN, Evened, make_even
 from core.advice.parting import ENOUGH
+from core.assessment import Assessment, assessed
 from core.backups import backed_up
 from core.design import Design
 from core.document import Document
@@ -51,13 +53,15 @@ class Even:
 
     ``settled`` tells whether what the worn lines do is a result; ``out`` is where a project was saved. What
     makes them alike is found among exact answers, and then ``told`` are those too; ``turned`` is how the
-    design that was found differs as it is solved, None where its turns do not come to rest.
+    design that was found differs as it is solved, None where its turns do not come to rest. ``assessment`` is
+    the overall verdict on the design that was found, or on that which there was.
     """
 
     stages: Stages
     told: BeforeAfter
     settled: bool
     warnings: list[str]
+    assessment: Assessment
     made: Evened | None = None
     turned: Evenness | None = None
     out: str = ""
@@ -96,12 +100,13 @@ def run_even(
     solution = run_to_body(stages)
     told = evenness(stages, solution.control_points)
     warnings = [*edit_doubts(stages.body), *shape_warnings(solution)]
-    even = Even(stages, told, _settled(solution), warnings)
+    even = Even(stages, told, _settled(solution), warnings, assessed(solution))
     if make and not even.enough:
         made = make_even(stages)
         # The adaptive control keeps both volumes together and the exact answer each: they do not compare.
         even = replace(even, told=replace(told, after=made.before), made=made)
-        even = replace(even, turned=_turned(build(even.found, stages)))
+        solved = run(build(even.found, stages))
+        even = replace(even, turned=_turned(solved), assessment=assessed(solved))
     if out:
         document = open_project(source) if is_project(source) else Document.of(even.found)
         with backed_up(Path(out)):
@@ -110,10 +115,9 @@ def run_even(
     return even
 
 
-def _turned(stages: Stages) -> Evenness | None:
-    """Return how left and right differ as the design is solved, None if that is no result."""
-    solution = run(stages)
-    return evenness(stages, solution.control_points).after if _settled(solution) else None
+def _turned(solution: Solution) -> Evenness | None:
+    """Return how left and right differ as a design is solved, None if that is no result."""
+    return evenness(solution.stages, solution.control_points).after if _settled(solution) else None
 
 
 def _settled(solution: Solution) -> bool:
@@ -129,6 +133,7 @@ def _plain(even: Even, made: bool) -> Iterator[str]:
     rows = even_rows(even.told.before, even.told.after)
     made_rows = {row.key: row.after for row in _made_rows(even)}
     heading = ("before", "after", *([_heading(even.made)] if even.made else []))
+    yield from (*assessment_lines(even.assessment, even.found), "")
     yield f"{'':26}" + "".join(f"{each:>17}" for each in heading)
     for row in rows:
         values = [row.before, row.after, *([made_rows[row.key]] if made_rows else [])]
@@ -219,6 +224,7 @@ def _why(made: Evened) -> list[str]:
 def _figures(even: Even) -> dict[str, Any]:
     made = even.made
     return {
+        "assessment": even.assessment.as_data(),
         "rows": {
             row.key: {**asdict(row), "title": TITLES[row.key]}
             for row in even_rows(even.told.before, even.told.after)

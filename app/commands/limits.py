@@ -6,7 +6,9 @@ import json
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from app.presenting.assessment import assessment_lines
 from core.advice.limits import Length, Limits
+from core.assessment import Assessment
 from core.leeway import GREEN, Leeway, leeway
 from core.lines import RATIO_LIMITS
 from core.pipeline import Stages
@@ -30,12 +32,15 @@ OTHERS = {
 """What else there is at some lengths, in words."""
 
 
-def limits_text(found: Sequence[Limits], stages: Stages, as_json: bool = False) -> str:
-    """Return what is to be printed: tables for people, or the same figures as JSON."""
+def limits_text(
+    found: Sequence[Limits], stages: Stages, assessment: Assessment, as_json: bool = False
+) -> str:
+    """Return what is to be printed, the verdict on the design as it is set first: tables, or JSON."""
     if as_json:
-        return json.dumps(_figures_of(found, stages), indent=1)
+        data = {"assessment": assessment.as_data(), **_figures_of(found, stages)}
+        return json.dumps(data, indent=1)
     tables = [line for limits in found for line in _table(limits, stages)]
-    return "\n".join([*tables, *still_lines(stages)])
+    return "\n".join([*assessment_lines(assessment, stages.design), "", *tables, *still_lines(stages)])
 
 
 def _table(limits: Limits, stages: Stages) -> Iterator[str]:

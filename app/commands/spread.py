@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from app.commands.told import told
-from app.commands.worn import run_worn
+from app.commands.worn import Worn, run_worn
 from core import __version__
 from core.advice.assumed import assumed, assuming, origins
 from core.advice.told_figures import figures_of
@@ -55,12 +55,11 @@ class Figure:
 
 @dataclass(frozen=True)
 class Spreading:
-    """The ``spread`` of all ``figures``, whether the body came to rest, and what to look at."""
+    """The ``spread`` of all ``figures`` of a design that was solved."""
 
     spread: Spread
     figures: list[Figure]
-    settled: bool
-    warnings: list[str]
+    worn: Worn
 
 
 def run_spread(
@@ -76,7 +75,7 @@ def run_spread(
     figures = [*_of_measures(measure_rows(*before_after(stages, points)))]
     if stages.design.worn():
         figures += _of_lines(figures_of(stages, points))
-    return Spreading(spread_of(stages, wanted), figures, worn.settled, worn.warnings)
+    return Spreading(spread_of(stages, wanted), figures, worn)
 
 
 def spread_text(found: Spreading, kind: str, out: str | None) -> str:
@@ -104,7 +103,8 @@ def _of_lines(figures: Mapping[str, float]) -> Iterator[Figure]:
 
 def _plain(found: Spreading) -> str:
     tables = [_of_body(found)] if found.spread.bare else [_of_both(found), ["", *_of_worn(found)]]
-    return "\n".join([*(line for table in tables for line in table), "", *_meaning(found)])
+    rows = [line for table in tables for line in table]
+    return "\n".join([*found.worn.verdict, "", *rows, "", *_meaning(found)])
 
 
 def _of_body(found: Spreading) -> list[str]:
@@ -157,6 +157,7 @@ def _meaning(found: Spreading) -> Iterator[str]:
     yield from (f"  {words.en}" for name, words in origins().items() if name in _sources(spread))
     if not spread.bare:
         yield from _of_lines_worn(found)
+    yield from spread.cautions
     if spread.failed:
         yield f"Without an answer, and left out: {spread.failed} of what was tried."
     yield "Left out:"
@@ -172,7 +173,6 @@ def _of_lines_worn(found: Spreading) -> Iterator[str]:
     if any(found.spread.factor(figure.key) for figure in found.figures):
         yield "(a to b): where what is known to a factor makes most of it, as many times smaller as larger."
     yield "The skin contact is a choice of the model and no part of the ±: the truth lies between the two."
-    yield from found.spread.cautions
 
 
 def _as_json(found: Spreading) -> str:
@@ -194,7 +194,8 @@ def _as_json(found: Spreading) -> str:
         "sources": {name: words.en for name, words in origins().items()},
         "left_out": [*NOT_MODELLED, *LEFT_OUT],
         "cautions": list(spread.cautions),
-        "warnings": found.warnings,
+        "assessment": found.worn.assessment.as_data(),
+        "warnings": found.worn.warnings,
         "versions": {"busk": __version__},
     }
     return json.dumps(whole, indent=1, ensure_ascii=False)

@@ -17,7 +17,7 @@ import platformdirs
 
 from app.wording.display import has_display
 from core.errors import UserError
-from core.printable_name import shown
+from core.printable_name import shown, shown_line
 
 
 class PlainStream:
@@ -103,7 +103,7 @@ def path_of(text: str) -> str:
 
 def tell(error: UserError, of_window: bool) -> None:
     """Say what is wrong: in the terminal, and in a box where a window was wanted and no stream is there."""
-    print(f"busk: {error}", file=sys.stderr)
+    print(f"busk: {shown_line(str(error))}", file=sys.stderr)
     if not (of_window and sys.__stderr__ is None and has_display()):
         return
     from PySide6.QtCore import Qt  # noqa: PLC0415

@@ -195,7 +195,7 @@ class ReportDesk(QObject):
 
     def _show(self) -> None:
         """Show the sheet as far as it is known, and what is under way."""
-        window, design, frame = self._window, self._window.session.design, self._window.session.frame
+        design, frame = self._window.session.design, self._window.session.frame
         stale = frame is None or not self._is_of(frame)
         if self._laid != (self.handout, self._language):
             # Not with every frame of a run: it takes as long as some of them.

@@ -14,7 +14,6 @@ from app.panels.length_groove import GROOVE_HEIGHT, STALE, paint_zone
 from app.wording.words import tr
 from core.leeway import Leeway
 
-
 _ORDER = ("", "warn", "bad")
 
 

@@ -15,9 +15,9 @@ from app.wording.tokens import LIGHT
 from app.wording.words import tr
 
 _ROW, _REMARK = 5.6, 4.0
-_EDGES = (72.0, 86.0, 97.0, 112.0, 127.0, 142.5, 156.5, 165.5)  # right ends of the figures
+_EDGES = (71.0, 84.5, 95.0, 109.5, 124.0, 139.0, 153.0, 162.0)  # right ends of the figures
 _CUT, _STRETCH = 1, 3  # places of the length to cut, and of the last figure that goes with it
-_ELASTIC, _LIGHT, _WORD = 35.0, 169.0, 172.0
+_ELASTIC, _LIGHT, _WORD = 35.0, 165.0, 168.0
 
 
 def cut_blocks(handout: Handout) -> list[Block]:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import codecs
+import os
 import re
-import stat
 import zlib
 from collections.abc import Callable
 from pathlib import Path
@@ -23,6 +23,7 @@ from core.reading.ply_file import read_ply
 from core.reading.raw_scan import AGAIN, RawScan, check_packed, check_size
 from core.reading.stl_file import is_binary_stl, read_stl
 from core.reading.vtp_file import read_vtp
+from core.regular_file import open_regular
 
 Reader = Callable[[str, bytes, Progress], RawScan]
 
@@ -63,13 +64,11 @@ _STEP = 1 << 20
 def scan_bytes(path: Path, progress: Progress = quiet) -> bytes:
     """Return what a scan file holds and keeps in files beside it. Raises ScanError, Cancelled."""
     try:
-        kind = path.stat()
-        if not stat.S_ISREG(kind.st_mode):  # a pipe or a device may never end
-            raise ScanError(f"{path.name or path} cannot be read: it is no file.", "Choose another scan.")
-        if kind.st_size > LARGEST_FILE:
-            raise ScanError(f"{path.name} is too large.", _THINNER)
-        with path.open("rb") as file:
-            data = file.read(kind.st_size)
+        with open(open_regular(path), "rb") as file:
+            size = os.fstat(file.fileno()).st_size
+            if size > LARGEST_FILE:
+                raise ScanError(f"{path.name} is too large.", _THINNER)
+            data = file.read(size)
         if path.suffix.lower() == ".obj":
             return with_texture(path, data, LARGEST_FILE, progress)
         return with_buffers(path, data, LARGEST_FILE, progress)
@@ -77,7 +76,7 @@ def scan_bytes(path: Path, progress: Progress = quiet) -> bytes:
         raise ScanError(f"There is no file {path}.", "Check the name, or choose another scan.") from None
     except (OSError, ValueError) as problem:
         reason = getattr(problem, "strerror", None) or "its name is no name of a file"
-        raise ScanError(f"{path.name} cannot be read: {reason}.", "Choose another scan.") from problem
+        raise ScanError(f"{path.name or path} cannot be read: {reason}.", "Choose another scan.") from problem
 
 
 def read_triangles(name: str, data: bytes, progress: Progress = quiet) -> tuple[Points, Faces]:
