@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import stat
 import zipfile
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -22,7 +23,7 @@ from core.whole_file import whole_file
 SUFFIX = ".busk"
 _PICTURE = "preview.png"
 _UNSAFE = re.compile(r'[<>:"/\\|?*\x00-\x1f\ud800-\udfff]')
-
+_WRITABLE = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
 
 Stamp = tuple[int, int, int]
 """What tells one state of a file from another: when it was changed, its size and its number on the disk."""
@@ -100,10 +101,18 @@ def read_scan_file(source: ScanSource, progress: Progress = quiet) -> ScanFile:
 def stamp_of(path: Path | None) -> Stamp | None:
     """Return the stamp of a file, or None if there is none."""
     try:
-        stat = path.stat() if path is not None else None
+        kind = path.stat() if path is not None else None
     except OSError:
         return None
-    return (stat.st_mtime_ns, stat.st_size, stat.st_ino) if stat is not None else None
+    return (kind.st_mtime_ns, kind.st_size, kind.st_ino) if kind is not None else None
+
+
+def is_protected(path: Path) -> bool:
+    """Return whether a file is there that nobody may write to."""
+    try:
+        return not path.stat().st_mode & _WRITABLE
+    except OSError:
+        return False
 
 
 def safe_name(name: str) -> str:

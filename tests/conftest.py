@@ -30,7 +30,7 @@ from core.design_lines import WornLine
 from core.pipeline import Stages, build
 
 SAMPLES = Path(__file__).parent.parent / "resources" / "samples"
-PATIENCE_MS = 300_000
+PATIENCE_MS = 90_000
 SPARING_NOTHING = SimpleNamespace(**{**vars(gc), "freeze": lambda: None, "unfreeze": lambda: None})
 
 

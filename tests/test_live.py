@@ -18,7 +18,7 @@ from core.live import Failure, Frame, LiveSolver
 from core.pipeline import Stages
 
 Built = Callable[[str], Stages]
-PATIENCE = 300.0
+PATIENCE = 90.0
 HELD = 1.0
 """Seconds for which a frame is held: far more than an iteration takes, on a busy machine too."""
 

@@ -61,6 +61,10 @@ def test_the_pointer_takes_hold_of_the_nearest_pin_only_nearby(overlay: Overlay)
     x, y, _ = view.to_picture(crowd()[5].position, WIDTH, HEIGHT)[0]
     assert overlay.pin_at(QPointF(x, y - 1.0)) == "5"
     assert overlay.pin_at(QPointF(x, y - 40.0)) == ""
+    overlay.follow(view, ["3", "4", "5"])
+    assert overlay.pin_at(QPointF(x, y)) == "", "it is behind the body"
+    overlay.set_pins(crowd(), "5")
+    assert overlay.pin_at(QPointF(x, y)) == "5", "it was selected by name"
     overlay.set_pins([])
     assert overlay.pin_at(QPointF(x, y)) == ""
 

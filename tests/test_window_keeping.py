@@ -155,7 +155,10 @@ def test_two_windows_and_a_change_from_outside_are_told(
 ) -> None:
     path, asked = tmp_path / "lotte.busk", []
     monkeypatch.setattr(app.desks.desk, "ask_save", lambda *_: str(path))
-    monkeypatch.setattr(app.desks.desk, "ask_overwrite", lambda _, name: asked.append(name) or "overwrite")
+    answers = iter(("overwrite", "stay", "overwrite"))
+    monkeypatch.setattr(
+        app.desks.desk, "ask_overwrite", lambda *what: asked.append(what[1:]) or next(answers)
+    )
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
@@ -168,12 +171,20 @@ def test_two_windows_and_a_change_from_outside_are_told(
         window.session.commit_line("mid-bust", "Mid-bust line", 0.9)
         window.desk.save()
         assert window.session.finish_saving()
-        assert asked == ["lotte"]
+        assert asked == [("lotte", False)]
         (former,) = [each for each in backups() if each.project == path]
         assert former.path.read_bytes() == project.read_bytes(), "what was outside can be had back"
         window.desk.save()
         assert window.session.finish_saving()
-        assert asked == ["lotte"], "its own version is no surprise"
+        assert asked == [("lotte", False)], "its own version is no surprise"
+        path.chmod(0o400)
+        window.session.commit_line("mid-bust", "Mid-bust line", 0.91)
+        former = path.read_bytes()
+        for written in (False, True):
+            assert bool(window.desk.save()) == written
+            assert window.session.finish_saving() == written
+            assert asked.pop() == ("lotte", True), "who protected it is asked"
+            assert (path.read_bytes() != former) == written
         window.keeping_desk._lock.release()
         assert other.tryLock(0)
         window.desk.open_file(str(path))

@@ -16,7 +16,9 @@ from app.cli import main
 from app.main_window import MainWindow
 from app.showing.viewport import Viewport
 
-PATIENCE = 300.0
+PATIENCE = 90.0
+"""Seconds that a script waits for one thing: some ten times what the slowest takes on a loaded machine."""
+
 Script = Generator[Callable[[], bool], None, None]
 
 

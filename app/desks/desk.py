@@ -27,6 +27,7 @@ from app.wording.words import tr
 from core.design import Design
 from core.errors import UserError
 from core.live import Frame
+from core.project import is_protected
 from core.report import kept_volume, warnings
 
 if TYPE_CHECKING:
@@ -239,8 +240,9 @@ class Desk(QObject):
         path = self._session.path
         if path is None:
             return self.save_as()
-        if self._session.changed_elsewhere:
-            answer = ask_overwrite(self._window, self._session.name)
+        protected = is_protected(path)
+        if protected or self._session.changed_elsewhere:
+            answer = ask_overwrite(self._window, self._session.name, protected)
             if answer != "overwrite":
                 return answer == "elsewhere" and self.save_as()
         return self._session.save(str(path), self._preview())

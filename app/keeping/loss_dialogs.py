@@ -8,9 +8,14 @@ from app.dress.ask import ask
 from app.wording.words import tr
 
 
-def ask_overwrite(parent: QWidget, name: str) -> str:
-    """Return what to do with a project that was changed by others: "overwrite", "elsewhere" or "stay"."""
+def ask_overwrite(parent: QWidget, name: str, protected: bool = False) -> str:
+    """Return what to do with a project that was changed by others: "overwrite", "elsewhere" or "stay".
+
+    ``protected``: it was not, but its file is write-protected.
+    """
     question = tr("{name} was changed outside this window.").format(name=name)
+    if protected:
+        question = tr("{name} is write-protected.").format(name=name)
     said = tr("Saving replaces that version. Busk tries to keep it under File, Open a backup.")
     answers = [("elsewhere", tr("Save as…")), ("overwrite", tr("Replace"))]
     return ask(parent, question, said, answers) or "stay"

@@ -116,13 +116,17 @@ class Overlay(QWidget):
         self.update()
 
     def pin_at(self, place: QPointF) -> str:
-        """Return the name of the pin under the pointer, or an empty string."""
-        if not self._pins:
+        """Return the name of the pin under the pointer, or an empty string.
+
+        Of pins behind the body only the selected one is taken: no other was meant.
+        """
+        pins = [pin for pin in self._pins if pin.name == self._selected or pin.name not in self._hidden]
+        if not pins:
             return ""
-        spots = self._spots([pin.position for pin in self._pins])
+        spots = self._spots([pin.position for pin in pins])
         away = np.hypot(spots[:, 0] - place.x(), spots[:, 1] - place.y())
         nearest = int(np.argmin(away))
-        return self._pins[nearest].name if away[nearest] <= GRIP else ""
+        return pins[nearest].name if away[nearest] <= GRIP else ""
 
     def chosen_at(self, place: QPointF) -> str:
         """Return the name of the pin that is under the pointer, or whose label is, or an empty string."""
