@@ -24,13 +24,14 @@ from core.design_measures import own_measure
 from core.errors import UserError
 from core.project import is_project
 
-PIPE_CLOSED, BAD_INPUT = 1, 2
+PIPE_CLOSED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run ``busk`` and return its exit code.
 
-    It is 0 for settled or done, 3 for not settled or folded, 2 for bad input, with one sentence on stderr.
+    It is 0 for settled or done, 3 for not settled or folded, 2 for bad input, with one sentence on stderr,
+    and 130 where Ctrl+C stopped it.
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
     settle_in()
@@ -41,6 +42,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except UserError as error:
         tell(error, of_window=not (words and words[0] in COMMANDS))
         return BAD_INPUT
+    except KeyboardInterrupt:
+        return INTERRUPTED
     except BrokenPipeError:
         # Who reads the answer has enough of it (busk detect ... | head): no error of ours.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)

@@ -23,9 +23,13 @@ from core.finding.under_breast import ABOVE, folds_and_lowest
 from core.landmark import SIDES, Landmark, Landmarks
 from core.mesh import Mesh, Points
 from core.placing import held_against, laid_on
+from core.progress import Progress, quiet
 from core.trunk import survey
 
 NOTHING: Mapping[str, Points] = MappingProxyType({})
+
+FINDING = "find landmarks"
+"""The name of this work."""
 
 UNMEASURED = 0.55
 """Landmarks that were never held against a known answer claim this part of their confidence: below 0.5."""
@@ -37,11 +41,13 @@ ESTIMATED = 0.3
 FILLED = "Found on skin that fills a hole by estimate."
 
 
-def find_landmarks(body: Body, placed: Mapping[str, Points] = NOTHING) -> Landmarks:
+def find_landmarks(
+    body: Body, placed: Mapping[str, Points] = NOTHING, progress: Progress = quiet
+) -> Landmarks:
     """Return the bust landmarks of ``body``; ``placed`` points, by name, shape (3,) [mm], replace found ones.
 
     What depends on a placed point follows it. Raises LandmarkError if the body shows no bust, unless bust
-    points and folds are all placed, or if a place or its name makes no sense. Source: ours.
+    points and folds are all placed, or if a place or its name makes no sense; Cancelled. Source: ours.
     """
     calm = body.calm
     by_hand = laid_on(calm, placed)
@@ -51,22 +57,27 @@ def find_landmarks(body: Body, placed: Mapping[str, Points] = NOTHING) -> Landma
         found = _around(calm, by_hand)
     else:
         trunk = survey(calm)
+        progress(FINDING, 0.3)
         anchor = find_anchor(trunk)
         check_anchor(anchor)
         poles = find_poles(trunk, anchor)
+        progress(FINDING, 0.5)
         flat = missing_sides(poles, anchor.lone)
         missing = [side for side in flat if f"bust_point_{side}" not in by_hand]
         seen = bust_points(calm, poles, trunk.middle, flat)
         busts = [held_against(by_hand.get(mark.name), mark) for mark in seen]
+        progress(FINDING, 0.6)
         marks = busts + folds_and_lowest(calm, busts, anchor.z, by_hand)
         found = _levels(calm, marks, by_hand, missing)
         warnings = check(calm, trunk, anchor, poles, missing, found)
+    progress(FINDING, 0.7)
     further = {
         mark.name: mark if mark.name.startswith("front_centre") else _less(mark, UNMEASURED)
         for mark in (*trunk_marks(calm, found), *root_marks(calm, found))
     }
     further = {name: held_against(by_hand.get(name), mark) for name, mark in further.items()}
     told = replace(found, points=MappingProxyType({**by_hand, **further, **found.points}))
+    progress(FINDING, 0.9)
     build = build_of(calm, told)
     if not around:
         refuse_angular(build, found)

@@ -20,7 +20,7 @@ from core.elastic_model import elastic_model
 from core.errors import FitError, LandmarkError, LineError, UserError
 from core.fitting.back_length import Back, back_of
 from core.landmark import Landmark, Landmarks
-from core.landmarks import find_landmarks
+from core.landmarks import FINDING, find_landmarks
 from core.mechanics import Mechanics
 from core.mesh import Floats, Mesh, Points
 from core.model import ConstrainedModel, constrained_model
@@ -161,6 +161,11 @@ class _Stager:
         placed = in_mm(design.placed, body.pose.file_to_mm)
         return {name: Landmark(name, place, 1.0, PLACED, by_hand=True) for name, place in placed.items()}
 
+    def within(self, name: str) -> Progress:
+        """Return the progress of a slow stage that begins now, as a part of that of the build."""
+        begun = self._done
+        return lambda what, share: self._progress(name, begun + SHARES[name] * share)
+
     def inside(self, what: str, share: float) -> None:
         """Hear how far the reading of the scan is, which comes first."""
         start, end = READING.get(what, (0.0, 1.0))
@@ -195,7 +200,7 @@ def build(design: Design, previous: Stages | StuckError | None = None, progress:
 
 
 def _stages(stage: _Stager, design: Design, scan: ScanFile, body: Body) -> Stages:
-    landmarks = stage("find landmarks", find, body, design.placed)
+    landmarks = stage(FINDING, partial(find, progress=stage.within(FINDING)), body, design.placed)
     template = stage("read template", read_template, design.template)
     control = stage("fit control mesh", fit_control_mesh, template, body, landmarks, design.line_height)
     patch = stage("find patch", patch_fade, body.mesh, control)
@@ -241,10 +246,10 @@ def _read_upright(source: ScanSource, progress: Progress) -> tuple[ScanFile, Bod
     return scan, body_of(scan.name, scan.data, **told, progress=progress)
 
 
-def find(body: Body, placed: tuple[PlacedMark, ...]) -> Landmarks:
-    """Return the landmarks of a body, with those that were placed by hand. Raises LandmarkError."""
+def find(body: Body, placed: tuple[PlacedMark, ...], progress: Progress = quiet) -> Landmarks:
+    """Return the landmarks of a body, with those placed by hand. Raises LandmarkError, Cancelled."""
     try:
-        return find_landmarks(body, in_mm(placed, body.pose.file_to_mm))
+        return find_landmarks(body, in_mm(placed, body.pose.file_to_mm), progress)
     except LandmarkError as problem:
         if not body.cut or placed:
             raise

@@ -14,6 +14,7 @@ from core.design import Design, ScanSource
 from core.design_lines import WornLine
 from core.errors import LandmarkError, LineError, ScanError, UserError
 from core.pipeline import Stages, StuckError, build, targets_of
+from core.progress import Cancelled
 
 Built = Callable[[str], Stages]
 
@@ -53,6 +54,22 @@ def test_a_failing_stage_leaves_the_former_ones_usable(built: Built) -> None:
     with pytest.raises(LineError, match="no line 'wing'"):
         build(replace(stages.design, lines=(WornLine("wing", 0.9),)), stages)
     assert made_anew(stages.design, stages) == []
+
+
+def test_finding_landmarks_is_cancelled_between_its_steps(built: Built) -> None:
+    stages, heard = built("mannequin"), list[float]()
+
+    def hear(what: str, share: float) -> None:
+        if what == "find landmarks":
+            heard.append(share)
+            if len(heard) > 3:
+                raise Cancelled
+
+    known = {name: made for name, made in stages.memo.items() if name in ("read scan", "edit scan")}
+    with pytest.raises(Cancelled):
+        build(stages.design, replace(stages, memo=known), hear)
+    assert len(heard) == 4
+    assert heard == sorted(heard)
 
 
 def test_a_stuck_scan_keeps_what_was_read_and_nothing_of_the_failure(
