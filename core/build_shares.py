@@ -11,12 +11,16 @@ SHARES = {
 }
 """What part of the time of a build the slow stages take, roughly."""
 
-READING = {
-    "reading": (0.0, 0.3),
-    "rebuilding the surface": (0.3, 0.6),
-    "repairing": (0.6, 0.8),
-    "finding up and front": (0.8, 0.9),
-    "closing holes": (0.9, 0.92),
-    "calming the skin": (0.92, 1.0),
+PARTS = {
+    "reading": (0.0, 0.15),
+    "rebuilding the surface": (0.15, 0.3),
+    "repairing": (0.3, 0.4),
+    "finding up and front": (0.4, 0.45),
+    "closing holes": (0.45, 0.46),
+    "calming the skin": (0.46, 0.5),
+    "find landmarks": (0.5, 0.6),
 }
-"""Where each part of reading and editing a scan begins and ends, as shares of the time of both, roughly."""
+"""Where each part of the first stages begins and ends, as shares of the time of a build, roughly."""
+
+UNKNOWN = (0.0, 0.5)
+"""The same for any other part of reading and editing a scan."""

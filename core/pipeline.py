@@ -11,7 +11,7 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 
 from core.body import Body, RefusedError, body_of
-from core.build_shares import READING, SHARES
+from core.build_shares import PARTS, SHARES, UNKNOWN
 from core.cleaning.edits import UNEDITED
 from core.control_mesh import ControlMesh, fit_control_mesh
 from core.design import Design, ScanSource
@@ -161,15 +161,10 @@ class _Stager:
         placed = in_mm(design.placed, body.pose.file_to_mm)
         return {name: Landmark(name, place, 1.0, PLACED, by_hand=True) for name, place in placed.items()}
 
-    def within(self, name: str) -> Progress:
-        """Return the progress of a slow stage that begins now, as a part of that of the build."""
-        begun = self._done
-        return lambda what, share: self._progress(name, begun + SHARES[name] * share)
-
     def inside(self, what: str, share: float) -> None:
-        """Hear how far the reading of the scan is, which comes first."""
-        start, end = READING.get(what, (0.0, 1.0))
-        self._progress(what, (SHARES["read scan"] + SHARES["edit scan"]) * (start + share * (end - start)))
+        """Hear how far a part of one of the first stages is."""
+        start, end = PARTS.get(what, UNKNOWN)
+        self._progress(what, start + share * (end - start))
 
 
 def _same(old: tuple[Any, ...], new: tuple[Any, ...]) -> bool:
@@ -200,7 +195,7 @@ def build(design: Design, previous: Stages | StuckError | None = None, progress:
 
 
 def _stages(stage: _Stager, design: Design, scan: ScanFile, body: Body) -> Stages:
-    landmarks = stage(FINDING, partial(find, progress=stage.within(FINDING)), body, design.placed)
+    landmarks = stage(FINDING, partial(find, progress=stage.inside), body, design.placed)
     template = stage("read template", read_template, design.template)
     control = stage("fit control mesh", fit_control_mesh, template, body, landmarks, design.line_height)
     patch = stage("find patch", patch_fade, body.mesh, control)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.dress.parts import Segment, button, hairline, sentence
 from app.dress.theme import label
@@ -125,7 +125,7 @@ class ScanEditor(QWidget):
         row = QHBoxLayout(result)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(6)
-        dash = QLabel("\N{EN DASH}")
+        dash = label("\N{EN DASH}")
         for each in (self.low, dash, self.high, self._extent):
             row.addWidget(each)
         row.addStretch(1)
