@@ -64,6 +64,14 @@ class Run:
         return turns > 0 and (turns >= MOST_TURNS or self.verdict.motion in ("settled", "diverging"))
 
     @property
+    def ended(self) -> bool:
+        """Whether it came to an end that says something: one that did not converge is at a chance place.
+
+        Collapsed meshes come back from there hardly or never, whatever lengths are asked for then.
+        """
+        return not (self.resting and self.verdict.motion == "settling")
+
+    @property
     def sane(self) -> bool:
         """Whether the run can be gone on from: a diverging one starts again at rest."""
         return self.verdict.motion != "diverging"
@@ -94,12 +102,12 @@ class Comparison:
         self._set_runs(fresh=True)
 
     def retarget(self, model: ConstrainedModel, targets: Targets, fresh: bool = False) -> None:
-        """Take new targets, warm: every run goes on from where it is.
+        """Take new targets, warm: every run goes on from where it is, unless it diverged or never converged.
 
         ``model`` may differ in the lines that are worn, not in its control points. ``fresh`` begins new
         records at turn 0.
         """
-        near = None
+        near, same = None, model is self.model and targets == self.targets
         if model is self.model and self.exact.found:
             moved = np.abs(np.subtract(targets.ratios, self.targets.ratios)).max(initial=0.0)
             near = self.exact if moved <= NEAR else None
@@ -108,7 +116,7 @@ class Comparison:
                 run.state = carried(run.state, self.model, model)
         self.model, self.targets = model, targets
         self._solve(near)
-        self._set_runs(fresh)
+        self._set_runs(fresh, same)
 
     def _solve(self, near: Balance | None) -> None:
         """Find the exact answer; from one near by it is quicker, and the first Newton step is its tangent."""
@@ -156,17 +164,22 @@ class Comparison:
                 targets = replace(self.targets, control=run.control)
                 run.take(*turn(self.model, targets, run.state, self.watch))
 
-    def _set_runs(self, fresh: bool) -> None:
+    def _set_runs(self, fresh: bool, same: bool = False) -> None:
+        """Let runs go on from where they are, or from rest where that is no place to go on from.
+
+        With the ``same`` targets one that has not converged yet does.
+        """
         wanted = dict.fromkeys([*TURN_CONTROLS, self.targets.control])
         wanted.pop("exact", None)
         runs = {}
         for control in wanted:
             old = self.runs.get(control)
+            warm = old is not None and old.sane and (old.ended or same)
             if old is None or fresh:
-                state = replace(old.state, turn=0) if old and old.sane else at_rest(self.model)
+                state = replace(old.state, turn=0) if old and warm else at_rest(self.model)
                 runs[control] = Run(self.model, control, state, self.watch)
             else:
-                if not old.sane:
+                if not warm:
                     old.restart(self.model)
                 old.watch_anew()
                 runs[control] = old

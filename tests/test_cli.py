@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from app.cli import INTERRUPTED, main
+from app.cli import main
 from core import __version__
 from core.design import Design, ScanSource
 from core.design_lines import OwnLine, WornLine
@@ -202,17 +202,6 @@ def test_a_reader_who_leaves_early_meets_no_traceback(mannequin: Path) -> None:
         busk.stdout.close()
         assert busk.stderr.read() == b""
     assert busk.returncode == 1
-
-
-def test_an_interrupt_ends_a_command_without_a_traceback(
-    mannequin: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def interrupted(*_: object) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr("core.pipeline.find_landmarks", interrupted)
-    assert main(["detect", str(mannequin)]) == INTERRUPTED
-    assert capsys.readouterr() == ("", "")
 
 
 @pytest.mark.parametrize("name", ["gone.ply", "note.txt", "broken.ply", "broken.busk"])

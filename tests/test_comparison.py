@@ -12,6 +12,7 @@ from core.model import constrained_model
 from core.solver import Marks, Targets, iterate
 from core.solving.condition import rest_shape
 from core.solving.gain import gain_limit
+from core.verdict import Verdict
 
 MODEL = constrained_model(torso(), worn=["mid-bust"])
 CALM = 0.9 * gain_limit(MODEL)
@@ -274,5 +275,20 @@ def test_of_a_diverging_run_the_last_calm_state_is_shown():
     torn = MODEL.volume.volume(MODEL.tensegric.expand(comparison.main.state.moved))
     assert abs(torn / MODEL.volume.rest_volume - 1.0) > 0.5
     comparison.retarget(MODEL, targets(0.97, "conventional"))
+    finish(comparison)
+    assert comparison.verdict.motion == "settled"
+
+
+@pytest.mark.parametrize("fresh", [False, True])
+def test_what_follows_a_run_that_did_not_converge_begins_at_rest(fresh):
+    comparison = Comparison(MODEL, targets(0.9))
+    run = comparison.runs["adaptive"]
+    slow = Verdict("settling", MOST_TURNS, 0.1)
+    for changed, at_rest in ((targets(0.9), False), (targets(0.95), True)):
+        finish(comparison)
+        run.verdict, run.changed_at = slow, run.state.turn - MOST_TURNS
+        comparison.retarget(MODEL, changed, fresh)
+        run = comparison.runs["adaptive"]
+        assert (np.abs(run.state.moved).max() == 0.0) == at_rest, "with the same lengths it goes on"
     finish(comparison)
     assert comparison.verdict.motion == "settled"

@@ -141,6 +141,7 @@ def test_a_diagonal_stays_what_was_drawn_and_can_be_drawn_anew() -> None:
         away = np.linalg.norm(middle[:, None] - resample(drawn, 0.5), axis=2).min(axis=1)
         assert away.max() < 3.0, "its middle on the skin, a few mm under its cloth"
         assert found.off < 1.0
+        assert window.lines.rows["line 1 left"].view.over_shoulder is None, "it ends on the breast"
         window.session.commit_line("line 1 left", "Line 1", 0.95)
         yield settled(window)
         assert window.session.frame.lengths["line 1 left"] < 0.99 * found_length(window, "line 1 left")
@@ -214,7 +215,8 @@ def let_go_of(window: MainWindow) -> Script:
     ways, drawing._ways, jobs = drawing._ways[1], None, window.jobs
     for _ in range(3):
         window.actions_.draw_line.trigger()
-    assert len(jobs.at_work()) == 1, "the skin is made ready once"
+    preparing = [job for job in jobs.at_work() if job.words == "Preparing the skin for drawing"]
+    assert len(preparing) == 1, "the skin is made ready once"
     drawing._take_ways(replace(session.frame.stages.body), ways)
     assert drawing._ways is None, "that was another body"
     drawing._take_ways(session.frame.stages.body, ways)

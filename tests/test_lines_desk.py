@@ -38,6 +38,7 @@ def test_lines_are_linked_locked_named_coloured_softened_and_dressed_by_a_preset
         window.actions_.add_lines["straps"].trigger()
         yield lambda: "strap left" in window.lines.rows and window.is_settled()
         yield from linked(window)
+        yield from over_the_shoulder(window)
         yield from treated(window)
         yield from locked(window)
         yield from preset(window)
@@ -47,6 +48,27 @@ def test_lines_are_linked_locked_named_coloured_softened_and_dressed_by_a_preset
         assert list(window.lines.rows) == ["full-bust", "mid-bust", "under-bust"]
 
     run_main([], script)
+
+
+def over_the_shoulder(window: MainWindow) -> Script:
+    """Straps run over the shoulder or end on the chest, as one choice for both sides."""
+    session, row = window.session, window.lines.rows["strap left"]
+    window.lines.select("strap left")
+    box = row.details.over
+    assert box.isVisibleTo(window)
+    assert box.isChecked()
+    steps, whole = session.undo_stack.index(), row.view.whole_mm
+    for over, text in ((False, "ends on the upper chest"), (True, "runs over the shoulder")):
+        box.click()
+        yield settled(window)
+        assert [line.over_shoulder for line in session.design.own_lines] == [over, over]
+        assert text in last(window)
+        assert (row.view.whole_mm < 0.8 * whole) != over
+        assert box.isVisibleTo(window)
+    assert session.undo_stack.index() == steps + 2
+    window.lines.select("mid-bust")
+    assert window.lines.rows["mid-bust"].details.over.isHidden(), "it is no line that could"
+    window.lines.select("strap left")
 
 
 def linked(window: MainWindow) -> Script:

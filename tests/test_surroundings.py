@@ -17,7 +17,7 @@ from window_tools import Script, drag, run_main, settled, undrawn
 
 import app.desks.desk
 from app.application import Application, hand_files_to
-from app.cli import BAD_INPUT, main
+from app.cli import BAD_INPUT, INTERRUPTED, main
 from app.commands import surroundings
 from app.commands.surroundings import is_seen_in_window, path_of, settle_in
 from app.main_window import MainWindow
@@ -209,3 +209,14 @@ def test_letters_are_those_of_unicode_where_no_language_is_set(
     monkeypatch.setenv(set_to, "ja_JP.UTF-8")
     settle_in()
     assert os.environ[set_to] == "ja_JP.UTF-8"
+
+
+def test_an_interrupt_ends_a_command_without_a_traceback(
+    mannequin: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("core.pipeline.find_landmarks", interrupted)
+    assert main(["detect", str(mannequin)]) == INTERRUPTED
+    assert capsys.readouterr() == ("", "")

@@ -82,6 +82,9 @@ class LinesDesk(QObject):
         if trait == "linked" and not value and partner_of(name) not in sides:
             self._split(name, design)
             return
+        if trait == "over_shoulder":
+            self._lead_over_shoulder(name, design, bool(value))
+            return
         if trait == "linked":
             names: tuple[str, ...] = (name, partner_of(name))
             text = self._linked_text(design, name, bool(value))
@@ -113,6 +116,19 @@ class LinesDesk(QObject):
         left = self._session.design
         if left is not None and left is not design:
             self._window.desk.select_line("mid-bust")
+
+    def _lead_over_shoulder(self, name: str, design: Design, over: bool) -> None:
+        """Let a line and its linked partner run on over the shoulder, or end on the upper chest."""
+        text = tr("{line} runs over the shoulder") if over else tr("{line} ends on the upper chest")
+        text = text.format(line=row_title(name, design))
+        names = design.linked(name)
+
+        def led(before: Design) -> Design:
+            lines = (line for line in before.own_lines if line.name in names)
+            after = (replace(line, over_shoulder=over) for line in lines)
+            return reduce(Design.with_own_line, after, before)
+
+        self._session.edit(led, text)
 
     def _split(self, name: str, design: Design) -> None:
         """Split a line that goes across both sides, and select its left half."""

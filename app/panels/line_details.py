@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QCheckBox, QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from app.dress.parts import ToolButton, hairline, sentence
-from app.dress.theme import label, set_tag
+from app.dress.theme import font, label, set_tag
 from app.dress.tip import set_tip
 from app.panels.elastic_pull import ElasticPull
 from app.panels.leeway_key import LeewayKey
@@ -24,8 +24,8 @@ _OFF = 5e-6  # a set length nearer to the rest length than this means that the l
 class LineDetails(QWidget):
     """The lower part of an opened row; a linked pair has one line of figures for each side.
 
-    ``decided`` carries what was decided and its value: colour, linked, stiffness; ``asked`` one of: reset,
-    rename, path, remove. ``elastic_asked``: an elastic is to be chosen.
+    ``decided`` carries what was decided and its value: colour, linked, stiffness, over_shoulder; ``asked``
+    one of: reset, rename, path, remove. ``elastic_asked``: an elastic is to be chosen.
     """
 
     decided = Signal(str, object)
@@ -58,6 +58,11 @@ class LineDetails(QWidget):
         self._part, self._whole = sentence("", "caption"), sentence("", "caption")
         column.addWidget(self._part)
         column.addWidget(self._whole)
+        self.over = QCheckBox(tr("Runs over the shoulder"))
+        self.over.setFont(font("body"))
+        set_tip(self.over, tr("Continue the line over the shoulder and down the back to the under-bust band"))
+        self.over.clicked.connect(lambda over: self.decided.emit("over_shoulder", over))
+        column.addWidget(self.over)
         outside.addWidget(self._set)
         self._elastic = ElasticPull()
         self._elastic.clicked.connect(self.elastic_asked)
@@ -103,6 +108,9 @@ class LineDetails(QWidget):
         self._presses.setVisible(bool(view.elastic))
         self._pressed.setText(view.pressed or "\N{EN DASH}")
         set_tag(self._pressed, "tone", view.tone)
+        self.over.setVisible(view.over_shoulder is not None)
+        self.over.setChecked(bool(view.over_shoulder))
+        self.over.setEnabled(not view.locked)
         self._elastic.show_elastic(view.title, view.elastic)
         self._stiffness.show_stiffness(view.stiffness, view.usual_stiffness)
         self._show_link(view)

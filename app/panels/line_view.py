@@ -34,6 +34,7 @@ class LineView:
     while it is not known.
     ``leeway`` is how far it can go, None while that is not known; ``stale`` that of the design before.
     ``strap`` is where it goes on over the shoulder, as words; its lengths are then those of all of it.
+    ``over_shoulder``: whether it does, None for a line that cannot.
     ``width_mm`` is that of its band; ``stiffness`` [1] its own, or None for the ``usual_stiffness``.
     """
 
@@ -65,6 +66,7 @@ class LineView:
     tried: bool = False
     parted: bool = False
     strap: str = ""
+    over_shoulder: bool | None = None
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -14,6 +14,7 @@ from app.wording.tokens import LINE_COLORS
 from app.wording.words import listed, say, tr
 from core.design import Design
 from core.design_lines import partner_of
+from core.embedding import embed
 from core.leeway import Leeway
 from core.lines import Line
 from core.live import Frame
@@ -187,7 +188,29 @@ def _view(design: Design, frame: Frame, lines: list[Line], colour: str) -> LineV
         splits=not partner and can_split(design, _template(design.template), name),
         parted=is_split(design, name),
         strap="" if tail is None else _strap_words(tail),
+        over_shoulder=_over_shoulder(design, frame, name),
     )
+
+
+def _over_shoulder(design: Design, frame: Frame, name: str) -> bool | None:
+    """Return whether a line runs over the shoulder, None for one that cannot.
+
+    It can where its upper end is on the fixed body above the bust.
+    """
+    own = next((each for each in design.own_lines if each.name == name), None)
+    if own is None or own.closed:
+        return None
+    if own.over_shoulder:
+        return True
+    control, bust_level = frame.stages.control, frame.stages.landmarks.bust_level
+    if own.free:
+        ends = embed(control.grid, (own.places[0], own.places[-1])).weights[[0, -1]]
+        heights, held = ends @ control.mesh.vertices[:, 2], ends @ control.fixed > 1.0 - 1e-9
+    else:
+        points = [own.points[0], own.points[-1]]
+        heights, held = control.mesh.vertices[points, 2], control.fixed[points]
+    upper = int(heights.argmax())
+    return False if held[upper] and heights[upper] > bust_level else None
 
 
 def _strap_words(tail: Tail) -> str:

@@ -97,9 +97,10 @@ def standing(stages: Stages, progress: Progress = quiet, *, trial: bool = False)
 def gone_on(before: Standing, stages: Stages, progress: Progress = quiet) -> Ran | None:
     """Return how turns end that go on under a changed design from where a run stands, as in the window.
 
-    None where they do not: an exact answer starts from rest, and so does what follows a refusal or a run that
-    ran away. Another control goes on from where its own run stands, made beside the one that is shown. Back
-    from a fold turns come slowly: who has not come to rest is watched once more, as the window does.
+    None where they do not: an exact answer starts from rest, and so does what follows a refusal, or a run
+    that diverged or did not converge. Another control goes on from where its own run stands, made beside the
+    one that is shown. Back from a fold turns come slowly: who has not come to rest is watched once more, as
+    the window does.
     """
     control, old, design = stages.design.volume, before.stages.model, before.stages.design
     if before.complaint == "unreachable" or control not in {*TURN_CONTROLS, design.volume}:
@@ -107,7 +108,7 @@ def gone_on(before: Standing, stages: Stages, progress: Progress = quiet) -> Ran
     if control == "exact":
         return None
     stood = before.beside(control, progress)
-    if stood.verdict.motion == "diverging":
+    if stood.verdict.motion in ("diverging", "settling"):
         return None
     state = stood.state if stages.model is old else carried(stood.state, old, stages.model)
     return _turned(stages, control, progress, replace(state, turn=0), trial=True, patient=True)
