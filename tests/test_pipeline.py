@@ -74,7 +74,7 @@ def test_finding_landmarks_is_cancelled_between_its_steps(built: Built) -> None:
 def test_a_stuck_scan_keeps_what_was_read_and_nothing_of_the_failure(
     built: Built, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def nothing(*_: object) -> None:
+    def nothing(*_: object, **__: object) -> None:
         raise LandmarkError("No bust is here.", "Place its points.")
 
     monkeypatch.setattr(pipeline, "find", nothing)

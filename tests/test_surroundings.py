@@ -217,6 +217,6 @@ def test_an_interrupt_ends_a_command_without_a_traceback(
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("core.pipeline.find_landmarks", interrupted)
+    monkeypatch.setattr("core.pipeline.read_body", interrupted)
     assert main(["detect", str(mannequin)]) == INTERRUPTED
     assert capsys.readouterr() == ("", "")

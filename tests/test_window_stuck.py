@@ -34,7 +34,7 @@ from core.standing.upright import find_pose
 pytestmark = pytest.mark.usefixtures("empty_house")
 
 
-def nothing_unless_placed(body: Body, placed: Any, needed: int = 1) -> Any:
+def nothing_unless_placed(body: Body, placed: Any, needed: int = 1, **_: Any) -> Any:
     """A ``find`` that finds no bust before so many points are placed."""
     if len(placed) < needed:
         raise LandmarkError("No bust is here.", "Place its points.")
@@ -59,7 +59,7 @@ def leave(window: MainWindow) -> None:
     QTest.mouseClick(window.view.question.findChild(ToolButton), Qt.MouseButton.LeftButton)
 
 
-def no_waist(body: Body, placed: Any) -> Any:
+def no_waist(body: Body, placed: Any, **_: Any) -> Any:
     """A ``find`` that never finds the waist."""
     found = find_landmarks(body, in_mm(placed, body.pose.file_to_mm))
     kept = {name: mark for name, mark in found.points.items() if name != "waist_front" or mark.by_hand}
