@@ -240,8 +240,7 @@ class Desk(QObject):
         path = self._session.path
         if path is None:
             return self.save_as()
-        protected = is_protected(path)
-        if protected or self._session.changed_elsewhere:
+        if (protected := is_protected(path)) or self._session.changed_elsewhere:
             answer = ask_overwrite(self._window, self._session.name, protected)
             if answer != "overwrite":
                 return answer == "elsewhere" and self.save_as()
