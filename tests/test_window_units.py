@@ -12,12 +12,13 @@ from ask_tools import answered
 from garment_tools import open_menu
 from PySide6.QtCore import QObject, QSettings
 from PySide6.QtGui import QPainter
-from PySide6.QtWidgets import QComboBox, QTreeWidget
+from PySide6.QtWidgets import QComboBox, QStyle, QStyleOptionFrame, QTreeWidget
 from window_tools import Script, points, run_main, settled
 
 import app.keeping.spread_desk
 import core.spread
 from app.main_window import MainWindow
+from app.panels.typed_field import TypedField
 from app.wording.words import LANGUAGES
 from core.advice.assumed import assumed, origins
 from core.design_measures import OwnMeasure
@@ -86,6 +87,19 @@ def written(root: QObject) -> Iterator[str]:
             yield from (row.text(column) for row in rows if row for column in range(each.columnCount()))
 
 
+def too_narrow(root: QObject) -> Iterator[str]:
+    """Give what a field has no room for."""
+    for field in root.findChildren(TypedField):
+        option = QStyleOptionFrame()
+        field.initStyleOption(option)
+        inside = field.style().subElementRect(QStyle.SubElement.SE_LineEditContents, option, field)
+        room = (
+            inside.width() - field.textMargins().right() - field.textMargins().left() - 4
+        )  # Qt's own margin
+        if field.isVisible() and field.fontMetrics().horizontalAdvance(field.text()) > room:
+            yield field.text()
+
+
 @pytest.mark.parametrize(("unit", "language"), [("in", "en"), ("cm", "ja")])
 def test_no_length_is_left_in_millimetres(
     design: str, painted: set[str], unit: str, language: str, monkeypatch: pytest.MonkeyPatch
@@ -94,6 +108,7 @@ def test_no_length_is_left_in_millimetres(
     QSettings().setValue("unit", unit)
     QSettings().setValue("language", language)
     seen: dict[str, str] = {}
+    cut_off: set[str] = set()
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
@@ -106,10 +121,12 @@ def test_no_length_is_left_in_millimetres(
             for text in (*written(window), *painted):
                 seen.setdefault(text, where)
             painted.clear()
+            cut_off.update(f"{where}: {each}" for each in too_narrow(window))
 
     assert run_main([design], script) == 0
     left = [f"{where}: {text}" for text, where in seen.items() if IN_MM.search(without_meant(text))]
     assert left == []
+    assert sorted(cut_off) == []
     assert len([text for text in seen if re.search(rf"\d {unit}(?![A-Za-z])", text)]) > 60, "it was seen"
 
 

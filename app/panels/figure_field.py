@@ -8,7 +8,7 @@ from PySide6.QtCore import QSize, Qt, Signal
 from app.dress.theme import font
 from app.dress.tip import set_tip
 from app.panels.typed_field import TypedField, read_figure
-from app.wording.lengths import length_number, read_length, shown_unit
+from app.wording.lengths import length_number, read_length, shown_unit, widest_length
 from app.wording.words import number, tr
 
 
@@ -39,7 +39,8 @@ class FigureField(TypedField):
         self._make_room()
 
     def sizeHint(self) -> QSize:
-        return QSize(self.fontMetrics().horizontalAdvance(self._widest) + self._unit_width() + 16, 24)
+        widest = widest_length(self._widest, self._digits) if self._of == "mm" else self._widest
+        return QSize(self.fontMetrics().horizontalAdvance(widest) + self._unit_width() + 16, 24)
 
     def show_value(self, value: float) -> None:
         """Show a value, unless something is being typed."""

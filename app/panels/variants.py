@@ -14,7 +14,7 @@ from app.dress.parts import EmptyState, sentence
 from app.dress.press_row import press_row
 from app.dress.theme import font, tokens_of
 from app.showing.verdict_chip import TONES
-from app.wording.lengths import shown_digits, shown_unit, shown_value
+from app.wording.lengths import length_number, shown_unit
 from app.wording.words import number, tr
 
 
@@ -33,7 +33,8 @@ class Figure:
         return "–" if value is None else f"{self._number(value)} {shown_unit(self.unit)}"
 
     def _number(self, value: float) -> str:
-        return number(shown_value(value, self.unit), shown_digits(self.digits, self.unit), self.signed)
+        written = length_number if self.unit == "mm" else number
+        return written(value, self.digits, self.signed)
 
     def apart(self, place: int) -> float | None:
         """Return by how much a variant differs from the first, if both are known."""

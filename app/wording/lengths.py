@@ -72,6 +72,11 @@ def length(mm: float, digits: int = 1, signed: bool = False) -> str:
     return f"{length_number(mm, digits, signed)} {_unit}"
 
 
+def widest_length(widest: str, digits: int) -> str:
+    """Return the widest length that has to have room where ``widest`` is that of millimetres."""
+    return "88\N{NO-BREAK SPACE}15/16" if _unit == "in" and digits == 0 else widest
+
+
 def width_number(mm: float) -> str:
     """Return the width of a tape [mm] as it is ordered, without decimals that are not there or its unit."""
     return length_number(mm, 0 if float(mm).is_integer() else 1)
@@ -139,4 +144,4 @@ def _sixteenths(inches: float, signed: bool) -> str:
     figures = [number(whole, 0)] if whole or not part else []
     if part:
         figures.append(str(Fraction(part, _SIXTEENTHS)))
-    return sign + " ".join(figures)
+    return sign + "\N{NO-BREAK SPACE}".join(figures)
