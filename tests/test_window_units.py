@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from ask_tools import answered
-from garment_tools import open_menu
+from garment_tools import chooser_of
 from PySide6.QtCore import QObject, QSettings
 from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QComboBox, QStyle, QStyleOptionFrame, QTreeWidget
@@ -148,8 +148,9 @@ def every_part(window: MainWindow) -> Iterator[str | Callable[[], bool]]:
         window.inspector.open(name)
         yield name
     window.garment.rows["mid-bust"].elastic.click()
-    yield "elastic menu"
-    open_menu(window).close()
+    yield lambda: not window.jobs.at_work()
+    yield "chooser of elastics"
+    chooser_of(window).close()
     window.desk.show_model()
     yield "model"
     for name in window.lines.rows:
