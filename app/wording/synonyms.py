@@ -25,6 +25,7 @@ SYNONYMS = {
     "Fit the selection": "zoom close ズーム 拡大",
     "Bands": "tapes elastic garment belt ベルト テープ ゴム",
     "Section plane": "cut cross-section profile contour slice 断面 輪郭 カット",
+    "Scan colours": "texture photo skin color nipple bra edge テクスチャ 写真 カラー 乳頭",
     "Map on the body": "displacement strain pressure tension colour lift raised heat "
     "圧力 張力 ひずみ 変位 リフト",
     "Contact pressure": "kpa mmhg press comfort tight light 着圧 圧迫 圧力 きつさ 締めつけ",
