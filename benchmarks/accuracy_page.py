@@ -15,7 +15,8 @@ from pathlib import Path
 from pages import DOCS, put, table
 
 HONEST = {
-    "bust point [mm]": "bust point, distance [mm]",
+    "bust point [mm]": "bust point, distance from the nipple [mm]",
+    "bust point to nipple-apex [mm]": "bust point, from the segment of nipple and foremost point [mm]",
     "fold height [mm]": "height of the fold [mm]",
     "underbust level [mm]": "under-bust level [mm]",
     "bust girth [mm]": "bust girth [mm]",
