@@ -17,9 +17,12 @@ from app.presenting.asking import (
     off_words,
     step_words,
 )
+from app.presenting.conflicts import unlimited_words
+from app.presenting.target_values import pressure_words, result_words, value_words
 from app.wording.samples import sample_design
 from app.wording.words import speaking
 from core.aims.figure import Goal
+from core.aims.girth import GIRTH
 from core.aims.outline import profile_name
 from core.aims.readings import NAMES
 from core.design import Design
@@ -32,7 +35,7 @@ def design() -> Design:
 
 def reply(**changes: object) -> Reply:
     plain = Reply(
-        design(), {"lift": 2.04}, False, 1.0, (), (), False, True, {}, 4.0, (), 1.0, 3, longest=0.999
+        design(), {"lift": 2.04}, False, 1.0, (), (), (), False, True, {}, 4.0, (), 1.0, 3, longest=0.999
     )
     return replace(plain, **changes)
 
@@ -57,6 +60,13 @@ GOALS = (Goal("lift", 5.0),)
             "kPa, and the body would be strained more than looks natural.",
             "到達できません。最も近いのは BPの上昇 +2.0 mm。理由：バスト下部は 4.0 kPa を超えて押せません、"
             "肌の伸縮が自然な範囲を超えます。",
+        ),
+        (
+            {"slack": ("full-bust",)},
+            "Not reachable: nearest is Bust point up +2.0 mm, because Full bust would have to push, which no "
+            "band can.",
+            "到達できません。最も近いのは BPの上昇 +2.0 mm。理由：トップバストは押すことになります"
+            "（ベルトは押せません）。",
         ),
         (
             {"agreed": False},
@@ -94,7 +104,7 @@ def test_of_a_profile_it_is_told_how_far_it_is_off() -> None:
 def test_changes_are_told_line_by_line_and_what_presses() -> None:
     before = design().with_line("mid-bust", 0.95)
     assert change_words(before, reply(pressure={"mid-bust": 2.46})) == [
-        "Mid-bust 95.0 → 93.0 %",
+        "Mid-bust 95.0 → 93.0 % (\N{MINUS SIGN}2.0)",
         "presses with 2.5 kPa at most",
     ]
     assert change_words(design(), reply()) == ["No line changes"]
@@ -170,3 +180,25 @@ def test_of_a_drawn_profile_it_is_told_what_it_was_off_and_how_the_bust_point_mo
     assert beside_words([*goals, Goal("lift", 6.5)], now, then) == "", "it is asked for"
     assert beside_words([Goal("out", -4.0)], now, then) == "", "no profile is"
     assert beside_words(goals, {}, then) == "", "not known yet"
+
+
+def test_values_of_a_row_are_now_and_the_result_with_its_change() -> None:
+    now, then = {"lift": -0.21, GIRTH: 872.4}, {"lift": 0.42, GIRTH: 869.4}
+    assert value_words(now["lift"], signed=True) == "\N{MINUS SIGN}0.2"
+    assert value_words(None, signed=True) == ""
+    assert result_words(now, then, "lift") == "+0.4 (+0.6)"
+    assert result_words(now, then, GIRTH) == "869.4 (\N{MINUS SIGN}3.0)"
+    assert result_words({}, then, "lift") == result_words(now, {}, "lift") == ""
+    assert pressure_words({"a": 12.9, "b": 1.0}, {"a": 2.0, "b": 4.0}) == ("12.9", "4.0 (\N{MINUS SIGN}8.9)")
+    assert pressure_words({}, {}) == ("", "")
+
+
+def test_what_the_limit_of_pressure_costs_is_one_sentence() -> None:
+    free = reply(pressure={"mid-bust": 25.8})
+    assert unlimited_words(free, GOALS, {}) == (
+        "Nearest without the pressure limit: Bust point up +2.0 mm, with 25.8 kPa."
+    )
+    met = replace(free, reachable=True)
+    assert unlimited_words(met, GOALS, {}) == (
+        "All targets are met without the pressure limit, with 25.8 kPa."
+    )

@@ -44,7 +44,7 @@ class RecoveryDesk(QObject):
         """Look for what was left behind, at the start."""
         # Nobody has chosen what the window opens with.
         self._at_start = self._window.pages.currentWidget() is not self._window.start_desk.page
-        self._window.ask_desk.card.installEventFilter(self)
+        self._window.lines_page.currentChanged.connect(lambda _: self._give_way())
         self._offers, self._broken = left_behind()
         self._tell_broken()
         self._offer()
@@ -96,14 +96,15 @@ class RecoveryDesk(QObject):
         self.card.hide()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """Keep the card in its place at the head of the window, and off the body while that is asked for."""
+        """Keep the card in its place at the head of the window."""
         if watched is self._window and event.type() == QEvent.Type.Resize:
             self._place()
-        elif event.type() in (QEvent.Type.ShowToParent, QEvent.Type.HideToParent):
-            # Under it lie the handles that a hand drags then: the offer comes back with the end of that.
-            self.card.setVisible(bool(self._offers) and not self._window.ask_desk.is_open)
-            self.card.raise_()
         return False
+
+    def _give_way(self) -> None:
+        """Keep the card off handles that are dragged while targets are set; the offer comes back after it."""
+        self.card.setVisible(bool(self._offers) and not self._window.ask_desk.is_open)
+        self.card.raise_()
 
     def _tell_broken(self) -> None:
         for folder in self._broken:

@@ -28,6 +28,7 @@ from app.presenting.target_values import pressure_words, result_words, value_wor
 from app.wording.words import joined, listed, tr
 from core.aims.figure import Goal
 from core.design import Design
+from core.sewing.comfort import comfort
 
 if TYPE_CHECKING:
     from core.request import Reply
@@ -90,9 +91,11 @@ def wish_views(wishes: Wishes, answer: Answer | None) -> Iterator[WishView]:
 def _pressure(wishes: Wishes, answer: Answer | None) -> WishView:
     presses = answer.presses if answer is not None else {}
     reply = answer.reply if answer is not None else None
-    before, result = pressure_words(presses, reply.pressure if reply is not None else {})
+    then = reply.pressure if reply is not None else {}
+    before, result = pressure_words(presses, then)
+    tone = "bad" if result and max(then.values()) >= comfort().red_kpa else ""
     on = not math.isinf(wishes.most_kpa)
     shown, title = wishes.most_kpa if on else None, tr("Pressure at most")
     return WishView(
-        PRESSURE, title, shown, before, result, "kPa", signed=False, kept=True, priority="", on=on
+        PRESSURE, title, shown, before, result, "kPa", signed=False, kept=True, priority="", on=on, tone=tone
     )

@@ -15,6 +15,7 @@ from app.dress.theme import font, label, set_tag
 from app.dress.tip import set_tip
 from app.panels.figure_field import FigureField
 from app.panels.setting_field import PullDown
+from app.wording.lengths import shown_unit
 from app.wording.words import tr
 
 _NOW, _SPACING = 62, 8  # width of the values that are now, and between columns [px]
@@ -28,7 +29,8 @@ class WishView:
 
     ``now`` is what it is before, ``result`` what it comes to with its change. One that is not ``typed``, as a
     profile, shows ``now`` alone. ``priority`` is "high", "normal" or "low", empty where there is none. A
-    limit has ``on``: whether it is. One that is ``kept`` cannot be taken away.
+    limit has ``on``: whether it is. One that is ``kept`` cannot be taken away. The ``tone`` of a result is
+    "", "warn" or "bad".
     """
 
     key: str
@@ -42,6 +44,7 @@ class WishView:
     kept: bool = False
     priority: str = "normal"
     on: bool | None = None
+    tone: str = ""
 
 
 class _WishField(FigureField):
@@ -65,6 +68,7 @@ class _WishField(FigureField):
         self._empty = value is None
         self.setPlaceholderText(without)
         self.show_value(value or 0.0)
+        self._name_unit()
 
     def drop(self) -> None:
         """Leave what is typed as it was."""
@@ -80,7 +84,13 @@ class _WishField(FigureField):
 
     def _take(self, value: float) -> None:
         self._empty = False
+        self._name_unit()
         super()._take(value)
+
+    def _name_unit(self) -> None:
+        """Write the unit behind a value, and behind no word."""
+        self._unit = "" if self._empty else shown_unit(self._of)
+        self.update()
 
     def _show(self) -> None:
         whole = self.hasSelectedText() and self.selectedText() == self.text()
@@ -171,6 +181,7 @@ class WishRow(QWidget):
         self.remove.setVisible(not view.kept)
         self.now.setText(view.now)
         self.result.setText(view.result)
+        set_tag(self.result, "tone", view.tone)
         self.priority.setText(tr("Priority: {level}").format(level=self._titles.get(view.priority, "")))
         self.priority.setEnabled(view.value is not None or not view.typed)
         if view.on is not None:
