@@ -6,14 +6,16 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
+import pytest
 from scipy import sparse
-from shapes import torso
+from shapes import central_difference, torso
 
 from core.lines import Line
 from core.mechanics import Mechanics
 from core.model import ConstrainedModel, constrained_model
 from core.solver import State, Targets, iterate
 from core.solving.potential import Potential
+from core.solving.sliding import Skin
 
 LAWS = (
     Mechanics(),
@@ -101,3 +103,28 @@ def settled(model: ConstrainedModel, targets: Targets, turns: int = 4000, step: 
         if measured.step < step and abs(measured.error) < 1e-3:
             return state
     raise AssertionError(f"still moves by {measured.step:.1e} mm a turn")
+
+
+def check_sliding_derivative(
+    model: ConstrainedModel, ratios: tuple[float, ...], moved: np.ndarray
+) -> np.ndarray:
+    """Hold the derivative of the balance of sliding lines against central differences, and return it.
+
+    Its error falls with the square of the step.
+    """
+    potential, skin = Potential(model, ratios), Skin(model)
+    multipliers = np.array([*[3e4, 2e4][: len(potential.sides)], -40.0, -30.0])[: len(potential.wanted)]
+
+    def balance(at: np.ndarray) -> np.ndarray:
+        forces, push = skin.projected(potential.at(at))
+        return forces - push.T @ multipliers
+
+    solve = model.layout.band.lu(skin.derivative(potential, potential.at(moved), multipliers))
+    exact = np.linalg.inv(solve(np.eye(moved.size)))
+
+    def error(step: float) -> float:
+        return float(np.abs(central_difference(balance, moved, step).reshape(exact.shape) - exact).max())
+
+    assert error(0.4) / error(0.2) == pytest.approx(4.0, rel=0.15)
+    assert error(1e-4) < 1e-5
+    return np.asarray(exact)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Generator
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +11,9 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled, undrawn
 
+from app.lining.line_drawing import LineDrawing
 from app.main_window import MainWindow
+from app.panels.draw_card import DrawCard
 from core.free_curves import FreeCurve
 from core.own_lines import mirror_image, mirrored
 from core.sections import resample
@@ -89,15 +92,20 @@ def test_a_line_is_drawn_by_clicks_and_snaps_to_the_control_mesh_on_both_sides()
     run_main([], script)
 
 
+def drawing_begun(window: MainWindow) -> Generator[Callable[[], bool], None, tuple[LineDrawing, DrawCard]]:
+    """Begin to draw a line on the front, and return what draws it and its card once the skin is ready."""
+    undrawn(window)
+    yield settled(window)
+    window.view.viewport.set_view("front")
+    window.actions_.draw_line.trigger()
+    yield lambda: window.line_drawing._ways is not None
+    return window.line_drawing, window.line_drawing._sketching.card
+
+
 def test_a_line_on_the_rib_cage_is_said_to_measure_only_and_can_move_to_where_it_pulls() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
-        yield settled(window)
-        window.view.viewport.set_view("front")
-        drawing, card = window.line_drawing, window.line_drawing._sketching.card
-        window.actions_.draw_line.trigger()
+        drawing, card = yield from drawing_begun(window)
         card.snap.setChecked(False)
-        yield lambda: drawing._ways is not None
         fixed = window.session.frame.stages.control.fixed
         row = [point for point in window.session.frame.stages.control.paths["under-bust"] if fixed[point]]
         click(window, row[2], row[4])
@@ -120,12 +128,7 @@ def test_a_line_on_the_rib_cage_is_said_to_measure_only_and_can_move_to_where_it
 
 def test_a_diagonal_stays_what_was_drawn_and_can_be_drawn_anew() -> None:
     def script(window: MainWindow) -> Script:
-        undrawn(window)
-        yield settled(window)
-        window.view.viewport.set_view("front")
-        drawing, card = window.line_drawing, window.line_drawing._sketching.card
-        window.actions_.draw_line.trigger()
-        yield lambda: drawing._ways is not None
+        drawing, card = yield from drawing_begun(window)
         click(window, at(2, 1), at(5, 4))
         window.view.viewport.setFocus()
         press(window, Qt.Key.Key_Return)
