@@ -72,7 +72,7 @@ class ElasticChooser(Sheet):
     elastics_asked = Signal()
 
     def __init__(self, parent: QWidget, title: str, modes: Sequence[tuple[str, str]]) -> None:
-        super().__init__(parent, title, (920, 620))
+        super().__init__(parent, title, (980, 620))
         self.modes, self.meaning = Segment(modes), sentence("", "secondary")
         self.modes.setVisible(bool(modes))
         self.modes.chosen.connect(self.mode_asked)

@@ -75,7 +75,7 @@ def too_weak(elastic: Elastic, ratio: float, excess: float, line: str) -> Elasti
     """
     limit = f"at its limit, {100.0 * elastic.reach:g} % stretch"
     if ratio <= RATIO_LIMITS[0] + PRECISION:
-        limit = f"at the shortest cut, {100.0 * RATIO_LIMITS[0]:g} % of the line"
+        limit = f"at the shortest cut, {100.0 * RATIO_LIMITS[0]:g} %"
     return ElasticError(
         f"{elastic.name} is too weak for {line}: {excess:.1f} mm too long {limit}.",
         "Let the line be longer, or take a stronger or wider elastic.",
