@@ -86,7 +86,10 @@ def test_the_loss_of_lift_is_shown_before_it_is_chosen() -> None:
         rigid = float(chooser.views()[0].lift)
         kept = round(100.0 * float(view.lift) / rigid)
         assert kept < 30
-        assert abs(int(view.note.removeprefix("Lift kept: ").removesuffix(" %")) - kept) <= 2
+        longer, share = view.note.split(" · ")
+        assert abs(int(share.removeprefix("Lift kept: ").removesuffix(" %")) - kept) <= 2
+        off = float(view.reached) - float(chooser.views()[0].reached)
+        assert float(longer.removesuffix(" mm longer on the body")) == pytest.approx(off, abs=0.11)
         assert f"{view.lift} mm" in chooser.advice.text()
         chooser.use.click()
         yield made_of(window, "strap left", "strap right")

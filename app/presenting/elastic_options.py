@@ -22,6 +22,9 @@ from core.sewing.elastic_options import (
 LEAST_LIFT = 0.5
 """A lift below this is not compared in percent [mm]."""
 
+LEAST_LENGTH = 0.5
+"""A band that is longer by less than this counts as equally long [mm]."""
+
 Options = Mapping[int, ElasticOption]
 """What is known of the elastics of a list, by place."""
 
@@ -80,20 +83,33 @@ def choice_view(
         length_number(one.cut_mm, 0) if one is not None and one.cut_mm is not None else "",
         length_number(one.reached_front_mm) if one is not None else "",
         length_number(outcome.lift, signed=True),
-        _note(option, rigid, far) if usable else _said(option.reason, design),
+        _note(option, rigid, far, one.line if one is not None else "")
+        if usable
+        else _said(option.reason, design),
         usable,
         far and usable,
     )
 
 
-def _note(option: ElasticOption, rigid: Outcome | None, far: bool) -> str:
+def _longer(outcome: Outcome, rigid: Outcome, name: str) -> float:
+    """Return how much longer a line is on the body than a band that does not stretch [mm]."""
+    if not {name} <= outcome.rows.keys() & rigid.rows.keys():
+        return 0.0
+    return outcome.rows[name].reached_front_mm - rigid.rows[name].reached_front_mm
+
+
+def _note(option: ElasticOption, rigid: Outcome | None, far: bool, name: str) -> str:
+    """Return what is lost with an elastic; ``name`` is that of the line, empty for several."""
     if option.elastic is None:
         return tr("Does not stretch; without a cut length")
     notes = []
+    assert option.outcome is not None
+    longer = _longer(option.outcome, rigid, name) if rigid is not None and name else 0.0
+    if longer > LEAST_LENGTH:
+        notes.append(tr("{length} longer on the body").format(length=length(longer)))
     if far:
         end = f"{100 * option.elastic.reach:g}"
         notes.append(tr("Stretched far, its table ends at {end} %").format(end=end))
-    assert option.outcome is not None
     kept = kept_words(option.outcome, rigid) if rigid is not None else ""
     if kept:
         notes.append(tr("Lift kept: {kept}").format(kept=kept))
