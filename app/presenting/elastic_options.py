@@ -77,15 +77,14 @@ def choice_view(
     far, usable = any(row.far for row in rows), option.outcome is not None
     stretch = [row.elongation for row in rows if row.elongation is not None]
     one = rows[0] if rows and set(names) <= set(design.linked(names[0])) else None
+    name = one.line if one is not None else ""
     return ChoiceView(
         title,
         number(100.0 * max(stretch), 0) if stretch else "",
         length_number(one.cut_mm, 0) if one is not None and one.cut_mm is not None else "",
         length_number(one.reached_front_mm) if one is not None else "",
         length_number(outcome.lift, signed=True),
-        _note(option, rigid, far, one.line if one is not None else "")
-        if usable
-        else _said(option.reason, design),
+        _note(option, rigid, far, name) if usable else _said(option.reason, design),
         usable,
         far and usable,
     )
