@@ -47,7 +47,7 @@ def detection(body: Body, landmarks: Landmarks | None = None) -> dict[str, Any]:
         "up": body.pose.up,
         "front": body.pose.front,
         "file_to_mm": body.pose.file_to_mm.tolist(),
-        "sure": body.pose.sure and not any(hint.kind == "size" for hint in landmarks.hints),
+        "sure": body.pose.sure and not landmarks.size_doubted,
         "hints": [hint.kind for hint in landmarks.hints],
         "upright": landmarks.upright,
         "reason": body.pose.reason,

@@ -75,6 +75,11 @@ class Landmarks:
     hints: tuple[Hint, ...] = ()
 
     @property
+    def size_doubted(self) -> bool:
+        """Whether the body seems to have another size than the scan gives it."""
+        return any(hint.kind == "size" for hint in self.hints)
+
+    @property
     def upright(self) -> str:
         """The up direction "x,y,z" of the file that sets a leaning body upright; empty for any other."""
         return next((hint.up for hint in self.hints if hint.up), "")

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import trimesh
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from window_tools import Script, drag, run_main, run_undrawn, settled
@@ -109,6 +110,24 @@ def test_a_scan_that_shows_no_bust_is_turned_by_a_picture(
         assert frame.stages.body.pose.front == "-y"
 
     run_main([str(mannequin)], script)
+
+
+def test_a_body_of_a_doubtful_size_leads_to_its_unit(tmp_path: Path, mannequin: Path) -> None:
+    large = trimesh.load(mannequin, process=False)
+    large.apply_scale(1.5)
+    path = tmp_path / "large.ply"
+    large.export(path)
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        notice = window.notices.notice()
+        assert notice is not None
+        assert window.rail.items["scan"].state() == "look"
+        (check,) = (do for words, do in notice.actions if words == "Check unit")
+        check()
+        assert window.scan.isVisible()
+
+    run_undrawn([str(path)], script)
 
 
 def test_the_reading_of_a_scan_can_be_cancelled(person: Path, monkeypatch: pytest.MonkeyPatch) -> None:

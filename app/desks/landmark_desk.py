@@ -94,6 +94,8 @@ class LandmarkDesk(QObject):
             said, *more = landmark_doubts(stages.landmarks)
             spoken_of = first_doubt(stages.landmarks)
             actions = [(tr("Look at it"), lambda: self._look_at(spoken_of))]
+            if stages.landmarks.size_doubted:
+                actions.insert(0, (tr("Check unit"), lambda: self._window.desk.go_to("scan")))
             if up := stages.landmarks.upright:
                 actions.insert(0, (tr("Stand upright"), lambda: self._stand_upright(up)))
             self._window.notices.show_notice(

@@ -57,7 +57,8 @@ class ScanDesk(QObject):
         """Show what was understood of the scan, and found on it."""
         window = self._window
         window.scan.set_scan(scan_view(stages.design.scan, stages.body, landmarks=stages.landmarks))
-        window.rail.set_state("scan", "done" if stages.body.pose.sure else "look", 1)
+        sure = stages.body.pose.sure and not stages.landmarks.size_doubted
+        window.rail.set_state("scan", "done" if sure else "look", 1)
         window.landmark_desk.show_found(stages)
 
     def show_opened(self, stages: Stages) -> None:
