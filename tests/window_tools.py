@@ -17,7 +17,7 @@ from app.main_window import MainWindow
 from app.showing.viewport import Viewport
 
 PATIENCE = 90.0
-"""Seconds that a script waits for one thing: some ten times what the slowest takes on a loaded machine."""
+"""Seconds that a script waits for one thing: a limit for what hangs, not for a machine with other work."""
 
 Script = Generator[Callable[[], bool], None, None]
 
