@@ -105,7 +105,7 @@ def test_every_file_takes_a_text_that_was_made_printable(text: str) -> None:
 
 
 FORMULAS = ("=1+1", "@SUM(1)", "+1+cmd|x", "-1+cmd|x", "\t=1", "\r=1", "\n=1", " =1", "\u3000=1", "\xa0=1")
-FORMULAS += tuple(f"{sign}1+cmd" for sign in "\uff1d\uff0b\uff0d\uff20")  # as wide as they are high
+FORMULAS += tuple(f"{sign}1{more}" for sign in "\uff1d\uff0b\uff0d\uff20" for more in ("", "+cmd"))  # wide
 
 
 @pytest.mark.parametrize("text", FORMULAS)

@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import random
+import re
 import tempfile
 import xml.etree.ElementTree as Xml
 from collections.abc import Iterator
@@ -155,11 +156,7 @@ def _check_text(text: str, kind: str) -> None:
 
 
 def _is_number(cell: str) -> bool:
-    try:
-        float(cell)
-    except ValueError:
-        return cell.strip() == "-"
-    return True
+    return cell.strip() == "-" or re.fullmatch(r"\s*[+-][\d.,\s]*\d\s?%?", cell) is not None
 
 
 def simpler(recipe: Any) -> Iterator[Any]:

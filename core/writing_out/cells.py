@@ -12,7 +12,7 @@ from core.printable_name import printable
 ENCODING = "utf-8-sig"
 """With the mark that tells spreadsheets that letters beyond English follow."""
 
-_FORMULA = re.compile(r"[\t\r\n]|\s*[=@＝＠]|\s*[+\-＋－](?![\d.,\s]*\d\s?%?$)")
+_FORMULA = re.compile(r"[\t\r\n]|\s*[=@＝＠＋－]|\s*[+\-](?![\d.,\s]*\d\s?%?$)")
 
 
 def cell(value: object) -> object:
