@@ -107,6 +107,18 @@ def test_every_length_that_the_core_tells_is_in_the_unit_in_use(code: str) -> No
     assert [each for each in sentences if in_mm.search(say(each))] == []
 
 
+def test_words_of_the_window_name_millimetres_only_where_they_are_meant() -> None:
+    """Everywhere else the unit is filled in: it can be chosen."""
+    in_files = {"Allowance mm", "Cut mm", "Front on the body mm", "Whole on the body mm", "Width mm"}
+    in_files |= {"bust points up [mm]", "foremost place up [mm]", "largest move [mm]", "{line} [mm]"}
+    in_files |= {each for each in asked_words() if each.startswith(("A table of the control", "For CAD"))}
+    chosen = {"Millimetres", "{line}: length in millimetres"}
+    typed = {each for each in asked_words() if each.startswith("Type 94, −6%, −20mm")}
+    in_the_model = {each for each in asked_words() if "the same force for every millimetre" in each}
+    named = {each for each in asked_words() if re.search(r"(?<![A-Za-z{])mm(?![A-Za-z])|[Mm]illimetre", each)}
+    assert sorted(named - in_files - chosen - typed - in_the_model) == []
+
+
 def test_a_message_is_translated_with_what_is_filled_in() -> None:
     use_language("ja")
     assert say("scan.ply has no sound triangles.") == "scan.ply に正しい三角形がありません。"
