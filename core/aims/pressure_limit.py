@@ -20,6 +20,8 @@ _AIM, _KEPT = (
     1.015,
 )  # so far below the limit: one that is reached is the next light, and a run ends beside
 
+_SAME, _LEAST = 1e-3, 0.3  # a change of tension that tells nothing, and the least part that is kept at once
+
 
 class PressureLimit:
     """Bounds tensions, as a pressure follows from the shape that a band lies on.
@@ -35,11 +37,12 @@ class PressureLimit:
         self._elastics = () if design.line_hold == "held" else tuple(design.worn_elastics())
         self._every = most_kpa is not None
         self.hardest: dict[str, float] = {}
+        self._seen: dict[str, tuple[float, float]] = {}
         self.pressure: dict[str, float] = {}
 
     def forget(self) -> None:
         """Forget what was computed for another question."""
-        self.hardest, self.pressure = {}, {}
+        self.hardest, self._seen, self.pressure = {}, {}, {}
 
     @property
     def concerns(self) -> bool:
@@ -56,9 +59,23 @@ class PressureLimit:
         for name in self.pressure.keys() & set(free):
             kpa, before = self.pressure[name], self.hardest.get(name, np.inf)
             if pulls[name] > 0.0 and (kpa >= self.kpa / _KEPT or name in self.hardest):
-                most = pulls[name] * self.kpa / _AIM / kpa
+                most = self._tension(name, pulls[name], kpa)
                 self.hardest[name] = min(most, before) if firm else most
+            self._seen[name] = pulls[name], kpa
         return all(kpa < self.kpa / _KEPT for name, kpa in self.pressure.items() if name in free)
+
+    def _tension(self, name: str, pull: float, kpa: float) -> float:
+        """Return the tension at which a line presses as much as is aimed at, by its last two looks.
+
+        The largest pressure is that of one place, whose share of the tension may hardly fall with the rest.
+        """
+        aim = self.kpa / _AIM
+        even = pull * aim / kpa
+        before, pressed = self._seen.get(name, (pull, kpa))
+        slope = (kpa - pressed) / (pull - before) if abs(pull - before) > _SAME * pull else 0.0
+        if self._elastics or kpa <= aim or slope <= 0.0:  # with elastics the model was another one then
+            return even
+        return max(min(pull - (kpa - aim) / slope, even), _LEAST * pull)
 
     def pressing(self, pulled: Collection[str]) -> tuple[str, ...]:
         """Return the lines that press as hard as they may; ``pulled`` are those with the most tension."""
