@@ -14,7 +14,7 @@ from app.helping.termination import Termination
 from app.keeping.recent import file_at_start, is_first_start
 from app.showing.graphics import begin_graphics, graphics_work
 from app.wording.display import has_display
-from app.wording.samples import sample_design
+from app.wording.samples import lifted_sample
 from core.design import Design
 from core.errors import UserError
 
@@ -69,7 +69,7 @@ def _run(app: QApplication, window: MainWindow) -> int:
 
 def _at_start() -> str | Design | None:
     """Return what to open unasked: the sample at first, later the last file if that is wished, or nothing."""
-    return sample_design() if is_first_start() else file_at_start() or None
+    return lifted_sample() if is_first_start() else file_at_start() or None
 
 
 def _go_on(window: MainWindow, what: str | Design | None) -> None:

@@ -9,6 +9,7 @@ import advice_scenes
 import scenes
 from scenes import (
     Scene,
+    banded,
     bra,
     for_customer,
     for_somebody,
@@ -20,7 +21,7 @@ from scenes import (
     vibrating,
 )
 
-from app.wording.samples import sample_design
+from app.wording.samples import lifted_sample, sample_design
 from core.design import Design
 
 
@@ -59,15 +60,15 @@ def runs() -> Iterator[Design]:
 FIRST: tuple[tuple[str, Callable[[], Design], Scene], ...] = (
     ("first-scan", own_scan, step("scan")),
     ("first-landmarks", own_scan, scenes.pin_selected),
-    ("first-lines", bra, tab("lines", "strap left")),
-    ("first-garment", bra, scenes.cut),
-    ("first-pressure", bra, scenes.pressed_by_the_cut),
-    ("first-report", for_customer, scenes.eased_and_reported),
+    ("first-lines", banded, tab("lines", "mid-bust")),
+    ("first-garment", banded, tab("garment", "mid-bust")),
+    ("first-pressure", banded, scenes.pressed_most),
+    ("first-report", for_customer, scenes.reported),
 )
 
 # Of each screen, in both languages.
 SCREENS: tuple[tuple[str, Callable[[], Design], Scene], ...] = (
-    ("tour", _mannequin, scenes.touring),
+    ("tour", lifted_sample, scenes.touring),
     ("start", _mannequin, scenes.start_page),
     *((name, _person, step(name)) for name in ("landmarks", "lines", "result")),
     ("ask", _person, scenes.asking),
@@ -89,7 +90,7 @@ SCREENS: tuple[tuple[str, Callable[[], Design], Scene], ...] = (
 
 # Of README and of pages in one language.
 ONCE = (
-    Shot("window", _mannequin, scenes.nothing, {"size": LARGE}),
+    Shot("window", lifted_sample, scenes.nothing, {"size": LARGE}),
     Shot("map", _mannequin, scenes.mapped, {"size": LARGE}),
     Shot("vibrating", vibrating, scenes.with_control_mesh, {"dark": True, "size": SMALL}),
     Shot("spread", bra, advice_scenes.sure, {"size": LARGE}),

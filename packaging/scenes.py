@@ -19,7 +19,7 @@ from app.dress.wishes import wish_for
 from app.keeping.recent import forget_file, recent_files
 from app.main_window import MainWindow
 from app.panels.commands import CommandSheet
-from app.wording.samples import sample_design, sample_path
+from app.wording.samples import lifted_sample, sample_design, sample_path
 from app.wording.words import language
 from core.design import Design, ScanSource
 from core.elastics import find_elastic
@@ -62,9 +62,14 @@ def bra() -> Design:
     return design
 
 
+def banded() -> Design:
+    """Return the band of the samples on a customer's scan."""
+    return replace(lifted_sample("person"), scan=own_scan().scan)
+
+
 def for_customer() -> Design:
     """Return the same with the name of the customer."""
-    return replace(bra(), customer="Customer 0412")
+    return replace(banded(), customer="Customer 0412")
 
 
 def sliding() -> Design:
@@ -152,35 +157,10 @@ def pressed(window: MainWindow) -> None:
     window.desk.select_line("")
 
 
-def cut(window: MainWindow) -> None:
-    """Make all lines of one elastic as the window does it: what they reach stays."""
+def pressed_most(window: MainWindow) -> None:
+    """Go to the place that is pressed most."""
     tab("garment")(window)
-    lines = ("mid-bust", "under-bust", "strap left", "strap right")
-    window.elastic_choice.choose(lines, find_elastic("strap 15"))
-    wait_for(lambda: len(worn(window).worn_elastics()) == len(lines) and window.is_settled())
-    wait_for(lambda: window.pressure_desk.shown is not None)
-    window.desk.select_line("mid-bust")
-
-
-def worn(window: MainWindow) -> Design:
-    """Return the design that is shown."""
-    assert window.session.design is not None
-    return window.session.design
-
-
-def pressed_by_the_cut(window: MainWindow) -> None:
-    """Make all lines of one elastic, and go to the place that is pressed most."""
-    cut(window)
     window.pressure_desk.card.place.click()
-
-
-def eased_and_reported(window: MainWindow) -> None:
-    """Make the lines of the cut longer until they press less, and show the sheet."""
-    cut(window)
-    for line, ratio in (("strap left", 0.88), ("mid-bust", 0.85)):
-        window.lines_desk.commit_length(line, ratio)
-        wait_for(window.is_settled)
-    reported(window)
 
 
 def pin_selected(window: MainWindow) -> None:

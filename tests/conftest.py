@@ -24,6 +24,7 @@ from small_project import write_project
 from threadpoolctl import threadpool_limits
 
 import core.body
+from app.wording.samples import sample_design
 from core import pipeline
 from core.design import Design, ScanSource
 from core.design_lines import WornLine
@@ -156,6 +157,11 @@ def qapp_cls() -> type[QApplication]:
 
 
 @pytest.fixture
+def opened_as_in_the_program() -> None:
+    """A first start opens the sample whose bust is lifted."""
+
+
+@pytest.fixture
 def spared_as_in_the_program() -> Iterator[None]:
     """What a window spares the search for garbage it gives back when it is closed, with all libraries."""
     yield
@@ -169,6 +175,8 @@ def empty_house(
 ) -> Iterator[None]:
     """Nothing of a window lives on after a test: no thread of ours, no window; its settings are fresh.
 
+    A first start opens the mannequin with a short glued line, which most tests are about; with
+    ``opened_as_in_the_program`` it opens what the user sees.
     How sure figures are is not worked out where a test does not ask: it takes half a minute of a processor.
     Frames come seldom, as on a slow machine: most of a test's time would go into ones that nobody looks at.
     """
@@ -178,6 +186,8 @@ def empty_house(
     if "spared_as_in_the_program" not in request.fixturenames:
         # Else all libraries would be looked through three times after each window, and not only what it left.
         monkeypatch.setattr("app.asking.housekeeping.gc", SPARING_NOTHING)
+    if "opened_as_in_the_program" not in request.fixturenames:
+        monkeypatch.setattr("app.window.lifted_sample", sample_design)
     monkeypatch.setattr("app.keeping.spread_desk.PAUSE", 10**8)
     monkeypatch.setattr("core.live._SLICE", 0.1)
     QSettings().clear()

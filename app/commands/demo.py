@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from app.commands.picture import draw_picture, draw_window
-from app.wording.samples import sample_design
+from app.wording.samples import lifted_sample
 from core.pipeline import build
 from core.report import write_solution
 from core.solution import run
@@ -14,7 +14,7 @@ from core.solution import run
 
 def run_demo(out: Path) -> int:
     """Write pictures, deformed body and report of the sample to ``out``, and say so."""
-    design = sample_design()
+    design = lifted_sample()
     print("Busk has no display here: the sample session goes to files.")
     draw_window(design, out / "window.png")
     print(f"  {out / 'window.png'}: the window")

@@ -22,7 +22,7 @@ from app.presenting.faults import fault_words, solver_fault_words
 from app.presenting.frame import facts
 from app.presenting.lines import titled
 from app.presenting.run import PLOT_INTERVAL, exact_answer, tracks
-from app.wording.samples import sample_design
+from app.wording.samples import lifted_sample
 from app.wording.words import tr
 from core.design import Design
 from core.errors import UserError
@@ -232,7 +232,7 @@ class Desk(QObject):
     def open_sample(self, name: str) -> None:
         """Open one of the sample bodies."""
         if self.may_leave():
-            self._session.open_design(sample_design(name))
+            self._session.open_design(lifted_sample(name))
 
     def save(self) -> bool:
         """Save the project, asking for a place the first time; returns whether it is being saved."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QEvent, QObject
+from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QDragEnterEvent
 
 from app.helping.tour import Tour
@@ -13,7 +13,7 @@ from app.keeping.dialogs import ask_open
 from app.keeping.recent import forget_file, project_views, remember_file
 from app.panels.drop_zone import DropVeil
 from app.panels.start_page import StartPage
-from app.wording.samples import sample_path
+from app.wording.samples import FIRST_SAMPLE, LIFTING_LINE, SAMPLES, lifted_sample, sample_path
 from app.wording.words import tr
 from core.recovery import recovery_folder
 
@@ -36,7 +36,9 @@ class StartDesk(QObject):
         window.installEventFilter(self)
         said = tr("Begin with a scan, or go on with what was open before")
         window.actions_.add("file", tr("Start page"), "Ctrl+Shift+N", said, do=self.show_page)
-        window.actions_.add("help", tr("Tour"), tip=tr("The window in four steps"), do=self.take_tour)
+        window.actions_.add(
+            "help", tr("Tour"), tip=tr("Show the main parts of the window, step by step"), do=self.take_tour
+        )
 
     def show_page(self) -> None:
         """Show the start page; what is open stays as it is."""
@@ -83,17 +85,27 @@ class StartDesk(QObject):
         if session.path is not None:
             remember_file(str(session.path))
             return
+        if session.design in [lifted_sample(name) for name in SAMPLES]:
+            # As soon as the view has framed the body that is new to it.
+            session.frame_ready.connect(self._show_lift, Qt.ConnectionType.SingleShotConnection)
         scan = session.design.scan if session.design is not None else None
         # A scan that was kept aside goes with its folder.
         passing = (sample_path("").parent, recovery_folder())
         if scan is not None and not scan.member and not {*Path(scan.path).parents} & {*passing}:
             remember_file(scan.path)
 
+    def _show_lift(self) -> None:
+        """Show from near by what the band of a sample does, against the original body."""
+        view = self._window.view
+        self._window.desk.select_line(LIFTING_LINE)
+        view.set_layer("ghost", True)
+        view.viewport.frame_points(view.viewport.scene.bands.spine(LIFTING_LINE)[0], keep=True)
+
     def take_tour(self) -> None:
         """Lead through the window, on what is open or else on the sample."""
         window = self._window
         if window.session.frame is None:
-            window.desk.open_sample("mannequin")
+            window.desk.open_sample(FIRST_SAMPLE)
             self.tour.begin_when_settled()
         else:
             self.leave_page()

@@ -1,8 +1,9 @@
-"""The tour through the window: four places, what each is for, and a card beside it."""
+"""The tour through the window: from the lifted bust over steps, lines and verdict to the report."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import reduce
 from typing import TYPE_CHECKING
 
@@ -11,13 +12,24 @@ from PySide6.QtWidgets import QWidget
 
 from app.keeping.recent import end_first_start
 from app.panels.coach_mark import CoachMark
+from app.presenting.bust import bust_move, up_words
 from app.wording.words import tr
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
 
-Stop = tuple[str, str, Callable[[], Sequence[QWidget]]]
-"""Title, sentence, and the parts of the window that they speak of."""
+_SETTLED = 250
+"""Stillness of view and notices after which the card takes its place again [ms]."""
+
+
+@dataclass(frozen=True)
+class Stop:
+    """A stop of the tour: ``place`` is what its sentence is about, ``report`` whether it opens the report."""
+
+    title: str
+    words: str
+    place: Callable[[], QRect]
+    report: bool = False
 
 
 class Tour(QObject):
@@ -30,6 +42,9 @@ class Tour(QObject):
         self.mark = CoachMark(window)
         self.mark.went.connect(self._go)
         self.mark.skipped.connect(self.end)
+        self._points = QTimer(self, interval=_SETTLED, singleShot=True)
+        self._points.timeout.connect(self._point)
+        window.view.viewport.view_changed.connect(self._points.start)
 
     @property
     def place(self) -> int:
@@ -39,7 +54,8 @@ class Tour(QObject):
     def begin(self) -> None:
         """Begin with the first stop."""
         self._place = 0
-        self._window.installEventFilter(self)
+        for part in (self._window, self._window.notices):
+            part.installEventFilter(self)
         self._show()
 
     def begin_when_settled(self) -> None:
@@ -49,14 +65,15 @@ class Tour(QObject):
     def end(self) -> None:
         """Go, and do not come again by itself."""
         self._place = -1
-        self._window.removeEventFilter(self)
+        for part in (self._window, self._window.notices):
+            part.removeEventFilter(self)
         self.mark.leave()
         self._window.layout_.enter()
         end_first_start()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
-        """Stay beside what is spoken of when the window changes its size."""
-        if event.type() == QEvent.Type.Resize:
+        """Stay beside what is spoken of when the window changes its size, and off the notices."""
+        if event.type() in (QEvent.Type.Resize, QEvent.Type.Move, QEvent.Type.Show, QEvent.Type.Hide):
             QTimer.singleShot(0, self, self._point)
         return False
 
@@ -74,10 +91,12 @@ class Tour(QObject):
 
     def _show(self) -> None:
         stops = self._stops()
-        title, words, _ = stops[self._place]
+        stop = stops[self._place]
         self._window.desk.go_to("lines")
         self._window.strip.set_folded(False)
-        self.mark.show_step(self._place, len(stops), title, words)
+        if stop.report:
+            self._window.report_desk.open()
+        self.mark.show_step(self._place, len(stops), stop.title, stop.words)
         self._point()
         self.mark.setFocus(Qt.FocusReason.OtherFocusReason)
         # What was folded away a moment ago has its place only then.
@@ -85,42 +104,87 @@ class Tour(QObject):
 
     def _point(self) -> None:
         if self._place >= 0:
-            parts = self._stops()[self._place][2]()
-            places = [QRect(part.mapTo(self._window, QPoint(0, 0)), part.size()) for part in parts]
             # Not over the menus: they can be opened meanwhile, as all else can.
             room = self._window.rect().adjusted(0, self._window.top.geometry().bottom() + 1, 0, 0)
-            self.mark.point_at(reduce(QRect.united, places), room)
+            self.mark.point_at(self._stops()[self._place].place(), room, self._clear())
 
     def _stops(self) -> tuple[Stop, ...]:
         window = self._window
+        frame = window.session.frame
+        assert frame is not None, "a tour is of a body"
         return (
-            (
+            Stop(
+                tr("Before and after"),
+                tr(
+                    "Compared with the original body, the bust points are {move}. "
+                    "Press Space, or click Before and After, to switch between both."
+                ).format(move=up_words(bust_move(frame).mean.up)),
+                lambda: self._place_of(window.view.compare),
+            ),
+            Stop(
                 tr("Four steps"),
                 tr(
-                    "From the scan to the result. Nothing is locked: go to any of them at any time. "
+                    "From the scan to the result: open any step at any time. "
                     "For a scan of your own, drop its file on the window or press Ctrl+O."
                 ),
-                lambda: list(window.rail.items.values()),
+                lambda: self._place_of(*window.rail.items.values()),
             ),
-            (
+            Stop(
                 tr("Drag a line"),
                 tr(
-                    "Pull the handle of a line to the left: it gets shorter, and the body follows at once. "
-                    "You can type a number as well."
+                    "Drag the round handle a little to the left: the line gets shorter and presses more. "
+                    "Below the body you see how far the bust moves. Ctrl+Z undoes it."
                 ),
-                lambda: [window.lines.rows.get(window.view.selected_line, window.lines)],
+                lambda: self._place_of(window.lines.rows.get(window.view.selected_line, window.lines)),
             ),
-            (
-                tr("Before and after"),
-                tr("Press Space, or click here, to see the body as it was scanned, and reshaped again."),
-                lambda: [window.view.compare],
-            ),
-            (
-                tr("Does it come to rest?"),
+            Stop(
+                tr("Overall verdict"),
                 tr(
-                    "Each turn brings every point nearer to its balance. The word says how the body stands, "
-                    "the plots how far the volume is kept and the bust is lifted."
+                    "The worst result of all checks: convergence, skin strain, contact pressure and fit. "
+                    "Click it for reasons and fixes. Pressures are estimates, rather too high: "
+                    "check them on a sample garment."
                 ),
-                lambda: [window.strip],
+                self._verdict_place,
+            ),
+            Stop(
+                tr("Fitting sheet"),
+                tr(
+                    "The verdict, the lift and what to cut, with pictures: print it or save it as a PDF. "
+                    "Esc returns to the body."
+                ),
+                lambda: self._place_of(window.report_desk.page.does["pdf"]),
+                report=True,
             ),
         )
+
+    # -- places on the window
+
+    def _clear(self) -> Sequence[QRect]:
+        """Return what the card must not cover."""
+        window = self._window
+        notices = [self._place_of(window.notices)] if window.notices.isVisible() else []
+        if window.report_desk.is_open:
+            page = window.report_desk.page
+            return [*notices, self._place_of(page.paper), *map(self._place_of, page.does.values())]
+        return [*notices, self._place_of(window.rail), self._bust_place()]
+
+    def _place_of(self, *parts: QWidget) -> QRect:
+        places = [QRect(part.mapTo(self._window, QPoint(0, 0)), part.size()) for part in parts]
+        return reduce(QRect.united, places)
+
+    def _bust_place(self) -> QRect:
+        """Return where the part of the body that lines shape is seen."""
+        frame, viewport = self._window.session.frame, self._window.view.viewport
+        assert frame is not None, "a tour is of a body"
+        spots = viewport.scene.view.to_picture(frame.control_points, viewport.width(), viewport.height())
+        low, high = (QPoint(*map(int, each)) for each in (spots[:, :2].min(axis=0), spots[:, :2].max(axis=0)))
+        return (
+            QRect(low, high)
+            .translated(viewport.mapTo(self._window, QPoint(0, 0)))
+            .intersected(self._place_of(viewport))
+        )
+
+    def _verdict_place(self) -> QRect:
+        """Return where the verdict stands with its values and its first reason, beside the plots."""
+        strip = self._place_of(self._window.strip)
+        return strip.adjusted(0, 0, self._place_of(self._window.strip.plots[0]).left() - strip.right() - 1, 0)

@@ -3,7 +3,9 @@
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
 
-from PySide6.QtCore import QPoint, QRect, QRectF, Qt, Signal
+from collections.abc import Sequence
+
+from PySide6.QtCore import QMargins, QPoint, QRect, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPaintEvent, QPen, QRegion
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
@@ -59,6 +61,7 @@ class CoachMark(OverCard):
         self._count.setText(tr("{place} of {count}").format(place=place + 1, count=count))
         self._title.setText(title)
         self._words.setText(words)
+        self._words.setMinimumHeight(0)  # else the height of the step before would be the least
         self._words.setFixedHeight(self._words.heightForWidth(_WIDTH) + 3)
         self.back.setVisible(place > 0)
         self.skip.setVisible(place < count - 1)
@@ -66,10 +69,16 @@ class CoachMark(OverCard):
         self.setAccessibleName(f"{title}. {words}")
         self.adjustSize()
 
-    def point_at(self, target: QRect, room: QRect) -> None:
-        """Stand beside ``target``, a part of the parent, within ``room``, and put the ring round it."""
+    def point_at(self, target: QRect, room: QRect, clear: Sequence[QRect] = ()) -> None:
+        """Put the ring round ``target``, a part of the parent, and the card next to it within ``room``.
+
+        What must be seen besides is in ``clear``.
+        """
         self.adjustSize()
-        self.move(_beside(target, self.rect(), room))
+        left, top, right, bottom = self.MARGINS
+        shadow = QMargins(left, top, right, bottom)  # may lie over what must be seen
+        card = self.size().shrunkBy(shadow)
+        self.move(_beside(target, card, room.marginsRemoved(shadow), clear) - QPoint(left, top))
         self.ring.surround(target)
         for each in (self.ring, self):
             each.show()
@@ -122,23 +131,32 @@ class Ring(QWidget):
         painter.drawRoundedRect(QRectF(self.rect()).adjusted(1.5, 1.5, -1.5, -1.5), 8, 8)
 
 
-def _beside(target: QRect, card: QRect, room: QRect) -> QPoint:
-    """Return where a card has room beside ``target``, or the most: below, right, left or above it.
+def _beside(target: QRect, card: QSize, room: QRect, clear: Sequence[QRect]) -> QPoint:
+    """Return where a card lies within ``room``, next to ``target`` but neither over it nor over ``clear``.
 
-    Below comes first: what stands at an edge has room there, and the body in the middle is seen. Beside a
-    column, such as the rail of steps, right comes first: below, it would cover the other buttons.
+    Where there is no such place, it covers as little of them as can be.
     """
-    across, down = target.center().x() - card.width() // 2, target.center().y() - card.height() // 2
+    keep = (target, *clear)
+    across = [room.left(), room.right(), target.center().x() - card.width() // 2]
+    down = [room.top(), room.bottom(), target.center().y() - card.height() // 2]
+    for each in keep:
+        across += each.right() + _AWAY, each.left() - _AWAY - card.width()
+        down += each.bottom() + _AWAY, each.top() - _AWAY - card.height()
+    low = QPoint(room.right() + 1 - card.width(), room.bottom() + 1 - card.height())
     places = (
-        (room.bottom() - target.bottom() - card.height(), QPoint(across, target.bottom() + _AWAY)),
-        (room.right() - target.right() - card.width(), QPoint(target.right() + _AWAY, down)),
-        (target.left() - room.left() - card.width(), QPoint(target.left() - card.width() - _AWAY, down)),
-        (target.top() - room.top() - card.height(), QPoint(across, target.top() - card.height() - _AWAY)),
+        QRect(QPoint(max(room.left(), min(x, low.x())), max(room.top(), min(y, low.y()))), card)
+        for x in across
+        for y in down
     )
-    if target.height() > target.width():
-        places = (*places[1:3], places[0], places[3])
-    _, place = max(places, key=lambda each: min(each[0], _AWAY + 1))
-    return QPoint(
-        max(room.left(), min(place.x(), room.right() + 1 - card.width())),
-        max(room.top(), min(place.y(), room.bottom() + 1 - card.height())),
+    return min(places, key=lambda place: _unfit(place, target, keep)).topLeft()
+
+
+def _unfit(place: QRect, target: QRect, keep: Sequence[QRect]) -> tuple[int, int, int]:
+    """Return how much of ``keep`` a place covers [px²], then how far it is from ``target``, two ways [px]."""
+    shared = [each.intersected(place) for each in keep]
+    covered = sum(each.width() * each.height() for each in shared if not each.isEmpty())
+    apart = (
+        max(target.left() - place.right(), place.left() - target.right(), 0),
+        max(target.top() - place.bottom(), place.top() - target.bottom(), 0),
     )
+    return covered, sum(apart), (place.center() - target.center()).manhattanLength()

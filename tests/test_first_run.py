@@ -1,0 +1,208 @@
+"""The first run: the sample opens with a lifted bust, and the tour ends with that and the sheet."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPoint, QRect, Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QWidget
+from window_tools import Script, drag, run_main, settled
+
+from app.desks.report_desk import ReportDesk
+from app.main_window import MainWindow
+from app.panels.coach_mark import CoachMark
+from app.presenting.bust import bust_move, move_between, up_words
+from app.wording.samples import FIRST_SAMPLE, LIFTING_LINE, SAMPLES, lifted_sample
+from core.assessment import BAD, assessed
+from core.pipeline import build
+from core.solution import run
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+SEEN = 2.5
+"""A lift of the bust points that is seen in the view from near by, beside the original [mm]."""
+
+
+@pytest.mark.parametrize("name", SAMPLES)
+def test_the_band_of_a_sample_lifts_the_bust_and_can_be_worn(name: str) -> None:
+    solution = run(build(lifted_sample(name)))
+    stages = solution.stages
+    assert move_between(stages.rest_marks, stages.watch(solution.control_points)).mean.up > SEEN
+    assert assessed(solution).level != BAD
+
+
+@pytest.mark.usefixtures("opened_as_in_the_program")
+def test_the_tour_leads_from_the_lifted_bust_to_the_sheet() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        tour = window.start_desk.tour
+        yield lambda: tour.place == 0
+        assert window.session.design == lifted_sample(FIRST_SAMPLE)
+        yield lambda: window.strip.chip.state() != "pending"
+        assert window.strip.chip.state() != BAD
+        assert window.view.compare.actions_by_name["ghost"].isChecked()
+        steps = (before_and_after, four_steps, a_line, the_verdict, the_sheet)
+        for place, step in enumerate(steps):
+            assert tour.place == place
+            yield from covers_nothing_that_must_be_seen(window)
+            yield from step(window)
+            QTest.keyClick(tour.mark, Qt.Key.Key_Return)
+        assert tour.place == -1
+        assert not tour.mark.isVisible()
+        assert lift(window) > SEEN
+        assert window.report_desk.is_open, "the sheet is there when the tour is over"
+        the_samples_open_as_at_first(window)
+        yield settled(window)
+
+    run_main([], script)
+
+
+def before_and_after(window: MainWindow) -> Script:
+    """The number that is told is that of the body; Space shows the original one, and the reshaped again."""
+    mark = window.start_desk.tour.mark
+    assert lift(window) > SEEN
+    assert up_words(lift(window)) in mark.accessibleName()
+    window.activateWindow()
+    yield window.isActiveWindow
+    for after in (False, True):
+        QTest.keyClick(mark, Qt.Key.Key_Space)
+        assert window.view.after is after
+    yield settled(window)
+
+
+def four_steps(window: MainWindow) -> Script:
+    mark = window.start_desk.tour.mark
+    assert "Ctrl+O" in mark.accessibleName(), "the way to a scan of one's own"
+    assert all(mark.ring.geometry().contains(place_of(window, each)) for each in window.rail.items.values())
+    window.rail.items["landmarks"].click()
+    assert window.rail.current() == "landmarks"
+    window.rail.items["lines"].click()
+    yield settled(window)
+
+
+def a_line(window: MainWindow) -> Script:
+    """A shorter line lifts and presses more, what is below the body tells so, and Ctrl+Z takes it back."""
+    design, before, pressed = window.session.design, lift(window), pressure(window)
+    for turn in range(2):
+        drag(window, LIFTING_LINE, -12)
+        yield settled(window)
+        assert window.session.design.ratio(LIFTING_LINE) < design.ratio(LIFTING_LINE)
+        assert lift(window) > before + 0.2
+        yield lambda: pressure(window) > pressed + 0.02
+        if turn == 0:
+            QTest.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+            yield settled(window)
+            assert window.session.design == design
+            yield lambda: 0.0 < pressure(window) < pressed + 0.01
+
+
+def the_verdict(window: MainWindow) -> Script:
+    """A click on the verdict opens what it is made of."""
+    ring = window.start_desk.tour.mark.ring.geometry()
+    assert ring.contains(place_of(window, window.strip.chip))
+    yield settled(window)
+
+
+def the_sheet(window: MainWindow) -> Script:
+    desk: ReportDesk = window.report_desk
+    assert desk.is_open
+    yield desk.page.does["pdf"].isEnabled
+    assert desk.handout is not None
+    (row,) = desk.handout.sheet.cuts.rows
+    assert row.cut_mm, "what to cut is on it"
+
+
+def covers_nothing_that_must_be_seen(window: MainWindow) -> Script:
+    """The card is off the bust, the rail, the menus and its own subject; it makes way for a notice."""
+    mark = window.start_desk.tour.mark
+    yield lambda: not seen_of(mark).intersects(mark.ring.geometry())
+    window.notices.show_notice("warn", "The scan has holes.", "Fill them.", lasting=True, about="test")
+    yield lambda: window.notices.isVisible() and not seen_of(mark).intersects(notice_of(window))
+    assert window.rect().contains(mark.geometry())
+    for part in (window.top, window.rail):
+        assert not seen_of(mark).intersects(place_of(window, part))
+    if not window.report_desk.is_open:
+        assert not seen_of(mark).intersects(bust_of(window))
+    window.notices.withdraw("test")
+    yield settled(window)
+
+
+def test_a_card_makes_way_for_what_must_be_seen(qtbot: object) -> None:
+    mark = CoachMark(None)
+    mark.show_step(0, 2, "Title", "Words.")
+    room, target = QRect(0, 0, 1000, 800), QRect(400, 100, 100, 40)
+    mark.point_at(target, room)
+    below = seen_of(mark)
+    mark.point_at(target, room, [below])
+    assert not seen_of(mark).intersects(below)
+    assert not seen_of(mark).intersects(target)
+    assert room.contains(mark.geometry())
+
+
+def test_a_later_step_of_fewer_words_is_lower(qtbot: object) -> None:
+    mark, heights = CoachMark(None), []
+    for words in ("Word.", "Many words. " * 20, "Word."):
+        mark.show_step(0, 2, "Title", words)
+        heights.append(mark.height())
+    assert heights[0] == heights[2] < heights[1]
+
+
+def test_the_tour_of_a_scan_without_lines_tells_that_nothing_moved(person: Path) -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        window.start_desk.take_tour()
+        assert "0.0 mm" in window.start_desk.tour.mark.accessibleName()
+        assert not window.view.compare.actions_by_name["ghost"].isChecked(), "that is for the samples"
+        window.start_desk.tour.end()
+
+    run_main([str(person)], script)
+
+
+def the_samples_open_as_at_first(window: MainWindow) -> None:
+    opened = []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(window.session, "open_design", opened.append)
+        patch.setattr(window.desk, "may_leave", lambda: True)
+        for action in window.actions_.samples.values():
+            action.trigger()
+    assert opened == [lifted_sample(name) for name in SAMPLES]
+
+
+def lift(window: MainWindow) -> float:
+    assert window.session.frame is not None
+    return bust_move(window.session.frame).mean.up
+
+
+def pressure(window: MainWindow) -> float:
+    """The largest contact pressure [kPa], 0 until it is known."""
+    assert window.session.frame is not None
+    listed = window.pressure_desk.of(window.session.frame)
+    return max(row.max_kpa or 0.0 for row in listed.rows) if listed is not None else 0.0
+
+
+def seen_of(mark: CoachMark) -> QRect:
+    """Where a card is without its shadow."""
+    left, top, right, bottom = mark.MARGINS
+    return mark.geometry().adjusted(left, top, -right, -bottom)
+
+
+def notice_of(window: MainWindow) -> QRect:
+    return place_of(window, window.notices)
+
+
+def place_of(window: MainWindow, part: QWidget) -> QRect:
+    return QRect(part.mapTo(window, QPoint(0, 0)), part.size())
+
+
+def bust_of(window: MainWindow) -> QRect:
+    """Where the bust is seen: both bust points and the skin that lies up to 50 mm from them."""
+    frame, viewport = window.session.frame, window.view.viewport
+    assert frame is not None
+    middles = [frame.stages.landmarks.position(f"bust_point_{side}") for side in ("left", "right")]
+    points = np.concatenate([middles + np.array([0.0, 0.0, up]) for up in (-50.0, 50.0)])
+    spots = viewport.scene.view.to_picture(points, viewport.width(), viewport.height())
+    low, high = (QPoint(*map(int, each)) for each in (spots[:, :2].min(axis=0), spots[:, :2].max(axis=0)))
+    return QRect(low, high).translated(viewport.mapTo(window, QPoint(0, 0)))
