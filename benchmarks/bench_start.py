@@ -1,11 +1,12 @@
 """The start of the window: how long until it is painted, and until the body is seen in it.
 
 Run: QT_QPA_PLATFORM=xcb xvfb-run -a -s "-screen 0 2600x1500x24" python benchmarks/bench_start.py [ROUNDS]
-         [--program COMMAND ...]
+         [--first] [--program COMMAND ...]
 on a display of your own without xvfb-run, with nothing else on it. The program is only looked at from
 outside, so that an installed one can be timed as well: --program /usr/bin/busk. Each start is a process
-of its own with fresh settings; the first one fills the caches and is not counted. Three times are told
-of each moment: seconds on the clock, seconds of the processor in the window's thread, and in all threads.
+of its own with fresh settings, on the mannequin or, with --first, on what a new user sees; the first one
+fills the caches and is not counted. Three times are told of each moment: seconds on the clock, seconds of
+the processor in the window's thread, and in all threads.
 """
 
 from __future__ import annotations
@@ -38,9 +39,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("rounds", nargs="?", type=int, default=5)
     parser.add_argument("--program", nargs="+", default=[sys.executable, "-m", "app"], metavar="COMMAND")
+    parser.add_argument("--first", action="store_true", help="name no file: what a new user sees")
     asked = parser.parse_args()
     app = QGuiApplication(sys.argv[:1])
-    starts = [_start(asked.program) for _ in range(asked.rounds + 1)][1:]
+    files = [] if asked.first else [str(BODY)]
+    starts = [_start([*asked.program, *files]) for _ in range(asked.rounds + 1)][1:]
     print(f"{'':24}{'clock':>18}{'window thread':>18}{'all threads':>18}")
     for moment in MOMENTS:
         cells = []
@@ -57,9 +60,7 @@ def _start(program: list[str]) -> dict[str, tuple[float, float, float]]:
         # A start that is ended from outside leaves traces, which the next one would speak of.
         own = {f"XDG_{kind}_HOME": f"{house}/{kind.lower()}" for kind in ("CONFIG", "DATA", "STATE")}
         begun = time.monotonic()
-        process = subprocess.Popen(
-            [*program, str(BODY)], cwd=ROOT, env={**os.environ, **own}, stderr=subprocess.DEVNULL
-        )
+        process = subprocess.Popen(program, cwd=ROOT, env={**os.environ, **own}, stderr=subprocess.DEVNULL)
         try:
             while len(told) < len(MOMENTS):
                 if process.poll() is not None or time.monotonic() > begun + PATIENCE:

@@ -9,6 +9,7 @@ import pytest
 from PySide6.QtCore import QPoint, QRect, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
+from pytestqt.qtbot import QtBot
 from window_tools import Script, drag, run_main, settled
 
 from app.desks.report_desk import ReportDesk
@@ -130,8 +131,16 @@ def covers_nothing_that_must_be_seen(window: MainWindow) -> Script:
     yield settled(window)
 
 
-def test_a_card_makes_way_for_what_must_be_seen(qtbot: object) -> None:
-    mark = CoachMark(None)
+@pytest.fixture
+def mark(qtbot: QtBot) -> CoachMark:
+    """The card of a tour on a plain window."""
+    window = QWidget()
+    qtbot.addWidget(window)
+    window.resize(1000, 800)
+    return CoachMark(window)
+
+
+def test_a_card_makes_way_for_what_must_be_seen(mark: CoachMark) -> None:
     mark.show_step(0, 2, "Title", "Words.")
     room, target = QRect(0, 0, 1000, 800), QRect(400, 100, 100, 40)
     mark.point_at(target, room)
@@ -142,8 +151,8 @@ def test_a_card_makes_way_for_what_must_be_seen(qtbot: object) -> None:
     assert room.contains(mark.geometry())
 
 
-def test_a_later_step_of_fewer_words_is_lower(qtbot: object) -> None:
-    mark, heights = CoachMark(None), []
+def test_a_later_step_of_fewer_words_is_lower(mark: CoachMark) -> None:
+    heights = []
     for words in ("Word.", "Many words. " * 20, "Word."):
         mark.show_step(0, 2, "Title", words)
         heights.append(mark.height())

@@ -99,7 +99,7 @@ class StartDesk(QObject):
         view = self._window.view
         self._window.desk.select_line(LIFTING_LINE)
         view.set_layer("ghost", True)
-        view.viewport.frame_points(view.viewport.scene.bands.spine(LIFTING_LINE)[0], keep=True)
+        view.viewport.frame_points(view.viewport.scene.bands.spine(LIFTING_LINE)[0])
 
     def take_tour(self) -> None:
         """Lead through the window, on what is open or else on the sample."""

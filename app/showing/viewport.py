@@ -239,14 +239,10 @@ class Viewport(QWidget):
         self._fit = self.scene.framing_all
         self._go(self._fit(self._aspect()))
 
-    def frame_points(self, points: Points, *, keep: bool = False) -> None:
-        """Glide to places on the body, shape (k, 3) [mm]; ``keep`` them framed when the size changes."""
-
-        def fit(aspect: float) -> View:
-            return framing_points(self.scene.view, points, aspect)
-
-        self._fit = fit if keep else None
-        self._go(fit(self._aspect()))
+    def frame_points(self, points: Points) -> None:
+        """Glide to places on the body, shape (k, 3) [mm], and keep them framed when the size changes."""
+        self._fit = lambda aspect: framing_points(self.scene.view, points, aspect)
+        self._go(self._fit(self._aspect()))
 
     def glide_to(self, view: View) -> None:
         """Glide to another view."""
