@@ -166,7 +166,8 @@ class Tour(QObject):
         if window.report_desk.is_open:
             page = window.report_desk.page
             return [*notices, self._place_of(page.paper), *map(self._place_of, page.does.values())]
-        return [*notices, self._place_of(window.rail), self._bust_place()]
+        beside = [self._place_of(each) for each in (window.rail, window.inspector) if each.isVisible()]
+        return [*notices, *beside, self._bust_place(), self._verdict_place()]
 
     def _place_of(self, *parts: QWidget) -> QRect:
         places = [QRect(part.mapTo(self._window, QPoint(0, 0)), part.size()) for part in parts]
