@@ -37,6 +37,10 @@ def names_the_conflict_and_follows_priorities(window: MainWindow) -> Script:
         QTest.keyClick(window.view.viewport, key)
     assert window.view.viewport.heading == heading
     desk.leave()
+    desk.begin([Goal("out", -6.0, "high"), Goal("girth", 874.0)])
+    assert [goal.priority for goal in desk.goals()] == ["high", "normal"]
+    yield answered(window)
+    desk.leave()
     # A line that is off is switched on where it helps, and only if it may be.
     window.session.edit(lambda d: d.with_line("full-bust", None), "Off")
     yield settled(window)

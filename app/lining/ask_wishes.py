@@ -47,6 +47,8 @@ class Wishes:
                 wishes.curves[section] = (*wishes.curves.get(section, ()), goal)
             else:
                 wishes.figures[goal.name] = goal.value
+            if goal.priority != "normal":
+                wishes.priorities[section or goal.name] = goal.priority
         if not wishes.curves:
             for name in SEEN:
                 wishes.figures.setdefault(name, None)
