@@ -29,7 +29,6 @@ from core.pipeline import Stages, build
 from core.progress import Progress, quiet
 from core.solving.newtons import newtons_per_unit
 
-_ROUNDS = 6
 _LIMIT_ROUNDS, _FIRM_FROM = (
     9,
     3,
@@ -180,7 +179,7 @@ class Asking:
         if not self._made:
             return self._within_limit(search, found)
         best, rounds = self._reply(found, agreed=False), [(search.start, found.lengths)]
-        for _ in range(_ROUNDS):
+        for _ in range(_LIMIT_ROUNDS):
             try:
                 stages = build(search.design(_agreed(rounds)), search.stages)
             except LineError:  # beyond the curve of an elastic, or no balance with it
@@ -191,6 +190,8 @@ class Asking:
             seen = search.found(search.start)  # within the limits that were found just now
             if well and (not best.agreed or self._miss(seen) < best.miss):
                 best = self._kept(search, seen, agreed=True)
+            elif not best.agreed:  # nearer to the limits than what was found without them
+                best = self._kept(search, seen, agreed=False)
             if well and seen.reached:  # a first look is from rest, so this is what the design is solved to
                 return best
             found = search.found(search.from_here(search.start))

@@ -73,7 +73,7 @@ class PressureLimit:
         even = pull * aim / kpa
         before, pressed = self._seen.get(name, (pull, kpa))
         slope = (kpa - pressed) / (pull - before) if abs(pull - before) > _SAME * pull else 0.0
-        if self._elastics or kpa <= aim or slope <= 0.0:  # with elastics the model was another one then
+        if kpa <= aim or slope <= 0.0:
             return even
         return max(min(pull - (kpa - aim) / slope, even), _LEAST * pull)
 
