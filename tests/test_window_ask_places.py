@@ -6,7 +6,7 @@ import math
 
 import pytest
 from ask_tools import answered, type_wish, wear
-from PySide6.QtCore import QPoint
+from PySide6.QtCore import QCoreApplication, QEvent, QPoint
 from window_tools import Script, run_main, settled, undrawn
 
 from app.main_window import MainWindow
@@ -16,7 +16,9 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 
 
 def places(window: MainWindow) -> dict[str, tuple[int, int, int]]:
-    """Return where each row is in the window and how high, with the heading of the columns."""
+    """Return where each row is in the window and how high, and the heading of the columns, once laid out."""
+    for _ in range(3):  # a scroll bar that goes asks for another pass
+        QCoreApplication.sendPostedEvents(None, QEvent.Type.LayoutRequest)
     card = window.ask_desk.card
     parts = {**card.wishes, "heading": card._heading, "add": card.add, "apply": card.apply}
     return {name: (*part.mapTo(window, QPoint()).toTuple(), part.height()) for name, part in parts.items()}
