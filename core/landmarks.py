@@ -11,10 +11,11 @@ import numpy as np
 from core.body import Body
 from core.cleaning.inner import BURIED
 from core.edited_body import is_estimated
+from core.finding.anchor import find_anchor
 from core.finding.build import build_of
 from core.finding.bust_check import check, check_anchor, check_placed, placed_warnings
 from core.finding.bust_point import bust_points, missing_sides
-from core.finding.chest import find_anchor, find_poles
+from core.finding.chest import find_poles
 from core.finding.likeness import doubted, hints, refuse_angular
 from core.finding.roots import root_marks
 from core.finding.sampling import coarse_warning, spacing, trust

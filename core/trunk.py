@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
-from scipy.ndimage import median_filter
+from scipy.ndimage import label, median_filter
 
 from core.errors import LandmarkError
 from core.mesh import SIGNS, Flags, Floats, Indices, Mesh, Points
@@ -16,6 +16,9 @@ from core.slicing.gaps import bearing_bin, bridge, eroded, gaps
 from core.slicing.outline import BINS, MOST_SEGMENTS, Outlines, outlines, places, reach, through_the_body
 from core.slicing.trunk_guide import STEP, Guide, cut_off, guide_of
 from core.slicing.trunk_pieces import beside, kept_pieces, main_pieces, split_pieces
+
+NECK = 0.5
+"""A level narrower than this part of the trunk is a neck: what is above it is none of the trunk [1]."""
 
 STABLE_STEP = 5.0
 """Step of the search for the stable under-bust level [mm]."""
@@ -196,6 +199,9 @@ class Survey:
         width, girth = np.percentile(w[alone], 70), np.percentile(self.tape[alone], 70)
         usable = full & (w > 0.7 * width) & (w < 1.3 * width) & (self.tape > 0.7 * girth)
         usable &= (self.z < self.z[full].max() - 60.0) & (self.z > self.z[full].min() + 30.0)
+        runs, _ = label(~(full & (w < NECK * width)))
+        if usable.any():  # a head with its hair is as wide as a trunk
+            usable &= runs == np.bincount(runs[usable]).argmax()
         if not 400.0 < girth < 2000.0:
             raise LandmarkError(
                 f"The trunk measures {girth:.0f} mm round, which no adult does.",

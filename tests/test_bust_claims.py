@@ -12,8 +12,8 @@ from test_landmarks import SIDES, found, landmarks_of, part, sample
 
 from core.doubts import landmark_doubts
 from core.errors import LandmarkError
+from core.finding.anchor import find_anchor
 from core.finding.breast_profile import OFFSETS, OWN, Profile
-from core.finding.chest import find_anchor
 from core.finding.fold import trace
 from core.finding.under_breast import CREASE
 from core.landmark import CERTAIN

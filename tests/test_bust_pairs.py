@@ -10,9 +10,10 @@ import pytest
 from test_landmarks import SIDES, found, landmarks_of, sample, truth
 
 from core.errors import LandmarkError
+from core.finding.anchor import Anchor, find_anchor
 from core.finding.bust_check import check_anchor
 from core.finding.bust_point import NIPPLE, SMOOTH
-from core.finding.chest import Anchor, find_anchor, forward_places
+from core.finding.chest import forward_places
 from core.finding.relief import in_front
 from core.landmark import CERTAIN
 from core.mesh import MIRROR, Mesh
@@ -96,11 +97,13 @@ def test_a_bridge_between_the_breasts_is_a_bust_all_the_same():
     assert max(off(landmarks, "mannequin", side) for side in SIDES) < 6.0
 
 
-def test_the_middle_may_come_forward_half_as_far_as_the_breasts_and_no_further():
-    bust = Anchor(0.0, 40.0, 20.0, 150.0)
-    check_anchor(bust)
-    with pytest.raises(LandmarkError):
-        check_anchor(replace(bust, middle_kink=26.0))
+def test_the_middle_may_come_forward_as_far_as_the_breasts_where_cloth_spans_from_one_to_the_other():
+    check_anchor(Anchor(0.0, 40.0, 20.0, 150.0, ridge=-30.0))
+    clad = Anchor(0.0, 40.0, 36.0, 150.0, ridge=2.0)
+    check_anchor(clad)
+    for ridge in (20.0, -20.0):  # one bump, or two with a cleft that no cloth spans
+        with pytest.raises(LandmarkError):
+            check_anchor(replace(clad, ridge=ridge))
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])

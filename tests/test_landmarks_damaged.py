@@ -12,9 +12,10 @@ from worn_scans import decimated
 
 from core.body import Body
 from core.errors import LandmarkError
+from core.finding.anchor import find_anchor
 from core.finding.breast_profile import OFFSETS, OWN, Profile, profiles
 from core.finding.bust_check import check
-from core.finding.chest import find_anchor, find_poles
+from core.finding.chest import find_poles
 from core.finding.fold import Trace, _rival
 from core.finding.under_breast import CREASE, MIRRORED, _apart, _confidence, _less_sure
 from core.landmark import Landmark, Landmarks

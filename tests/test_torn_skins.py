@@ -10,8 +10,9 @@ import pytest
 from core.body import body_of, read_scan
 from core.cleaning.holes import MOST, find_holes, frame_of
 from core.errors import LandmarkError, ScanError
+from core.finding.anchor import ABOVE, find_anchor
 from core.finding.breast_profile import LONGEST, profiles
-from core.finding.chest import ABOVE, Pole, find_anchor, find_poles
+from core.finding.chest import Pole, find_poles
 from core.finding.relief import breast_patch
 from core.measuring.rings import skin_ring, tape_ring
 from core.mesh import Mesh

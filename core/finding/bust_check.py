@@ -7,8 +7,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from core.errors import LandmarkError
+from core.finding.anchor import KINK, Anchor
 from core.finding.bust_point import FLAT, NIPPLE
-from core.finding.chest import KINK, Anchor, Pole
+from core.finding.chest import Pole
 from core.finding.under_breast import HIDDEN, NO_CREASE, UNSEEN
 from core.landmark import SIDES, Landmarks
 from core.mesh import Mesh
@@ -27,7 +28,7 @@ though a belly under them be as wide and they hide their creases."""
 ROUNDEST, FLATTEST = 1.0, 2.3
 """A trunk is so many times as wide as deep; chairs, bottles and things on a table are not."""
 
-APART = 70.0, 400.0
+APART = 55.0, 400.0
 """Bust points lie so far apart [mm]: less is one bump, more the knees or the arms of something."""
 
 UNEVEN = 60.0
@@ -39,9 +40,12 @@ ASIDE = 40.0
 DEEPEST = 220.0
 """The under-bust level lies by less than this below that of the bust [mm]."""
 
-ONE_BUMP = 0.58
-"""What comes forward in the middle by more than this part of the sides is one bump; bras bridge the middle
-up to half as far."""
+ONE_BUMP, RIDGE = 0.6, 9.0
+"""What comes forward in the middle by more than this part of the sides, and lies by more than this before or
+behind them there [mm], is one bump or has a cleft: a bra spans from breast to breast."""
+
+SPANNED = 50.0
+"""Under the cloth that spans from breast to breast the middle comes forward by less than this [mm]."""
 
 OPEN = 0.25
 """One straight line is no longer than this part of an outline: else a side of the trunk is missing."""
@@ -64,7 +68,9 @@ def refusal(why: str, placed: bool = False) -> LandmarkError:
 def check_anchor(anchor: Anchor) -> None:
     """Raise LandmarkError where the body does not come forward as over a bust."""
     least = 2.0 * KINK if anchor.lone else KINK
-    if anchor.kink < least or anchor.middle_kink > ONE_BUMP * anchor.kink:
+    spanned = abs(anchor.ridge) <= RIDGE and anchor.middle_kink < SPANNED
+    one_bump = anchor.middle_kink > ONE_BUMP * anchor.kink and not spanned
+    if anchor.kink < least or one_bump:
         raise refusal("no fold lies under a left and a right breast")
 
 

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from core.finding.chest import Pole, smoothed
+from core.finding.anchor import smoothed
+from core.finding.chest import Pole
 from core.finding.nipple import ALONE, BORNE, Nipple, find_nipples
 from core.finding.relief import GRID, Patch, breast_patch
 from core.landmark import SIDES, Landmark

@@ -1,28 +1,20 @@
-"""Where the breasts stand out of the trunk: the crease under both, coarsely, and their poles."""
+"""Where the breasts stand out of the trunk: the poles of both."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import gaussian_filter, maximum_filter, maximum_filter1d, uniform_filter1d
+from scipy.ndimage import maximum_filter
 from scipy.spatial import ConvexHull, QhullError
 
 from core.errors import LandmarkError
+from core.finding.anchor import ABOVE, LOWEST, Anchor, reach_map, smoothed
 from core.mesh import SIGNS, Floats, Indices, Points
 from core.trunk import Survey
 
-CELL = 5.0
-"""Cell of the reach map across the body [mm]."""
-
-KINK = 8.0
-"""Over a fold the body comes forward by this at least [mm]."""
-
-LONE = 0.35
-"""A side that comes forward by less than this part of the other has no breast: its ribs do so too [1]."""
-
-BELOW, ABOVE = 25.0, 130.0
-"""A pole is looked for so far below and above the anchor [mm]: the longest breast and the highest one."""
+BELOW = 25.0
+"""A pole is looked for so far below the anchor [mm], and up to the highest breast."""
 
 BESIDE = 0.17
 """And further from the middle than this part of the half width of the trunk: the breastbone is no breast."""
@@ -30,9 +22,6 @@ BESIDE = 0.17
 OUTWARD, PAIRED = 8.0, 40.0
 """A breast is where the body reaches furthest in a direction so far outward of the front [degrees]: the place
 lies between the foremost one and the nipple. That of each side lies so near to that of both together [mm]."""
-
-LOWEST = 10.0
-"""Breasts lie further above the anchor than this [mm]."""
 
 USUAL, STRAYING = (18.0, 52.0), 0.6
 """A pole usually lies so far round the trunk from the front [degrees]; a degree more must be paid by so much
@@ -52,74 +41,6 @@ SUMMIT = 40.0
 
 TOP = 25.0
 """The pole is the middle of what stands out most so near to the summit [mm]."""
-
-
-@dataclass(frozen=True, eq=False)
-class Anchor:
-    """The crease under both breasts, coarsely: ``z`` lies some 10-20 mm under the fold [mm].
-
-    ``kink`` is how far the body comes forward above it on the weaker side, and ``middle_kink`` on the centre
-    line [mm]; ``half_width`` is that of the trunk [mm]; ``lone`` tells that only one side comes forward.
-    """
-
-    z: float
-    kink: float
-    middle_kink: float
-    half_width: float
-    lone: bool = False
-
-
-def reach_map(survey: Survey, half_width: float) -> tuple[Floats, Floats]:
-    """Return how far the trunk reaches forward, shape (levels, columns) [mm], and x of the columns.
-
-    NaN where there is no front. Smoothed by 8 mm.
-    """
-    columns = np.arange(-np.ceil(half_width / CELL), np.ceil(half_width / CELL) + 1) * CELL
-    row, p = survey.row, survey.samples
-    middle, depth = 0.5 * (survey.front + survey.back), survey.back - survey.front
-    column = np.rint((p[:, 0] - survey.middle - columns[0]) / CELL).astype(np.int64)
-    front = (p[:, 1] < (middle - 0.05 * depth)[row]) & (column >= 0) & (column < len(columns))
-    reach = np.full((len(survey.z), len(columns)), -np.inf)
-    np.maximum.at(reach, (row[front], column[front]), -p[front, 1])
-    return smoothed(reach, (8.0 / survey.step, 8.0 / CELL)), columns
-
-
-def smoothed(grid: Floats, sigma: tuple[float, float]) -> Floats:
-    """Return ``grid`` smoothed by a Gaussian over what is finite in it; NaN where nearly nothing is."""
-    known = np.isfinite(grid)
-    weight = gaussian_filter(known.astype(float), sigma, mode="nearest")
-    value = gaussian_filter(np.where(known, grid, 0.0), sigma, mode="nearest")
-    return np.asarray(np.where(weight > 0.2, value / np.maximum(weight, 0.2), np.nan))
-
-
-def find_anchor(survey: Survey) -> Anchor:
-    """Return the level where the body kinks forward on both sides and not in the middle.
-
-    Raises LandmarkError if there is no trunk or no such level. Source: ours.
-    """
-    half_width, usable = survey.trunk()
-    reach, x = reach_map(survey, half_width)
-    up = round(30.0 / survey.step)
-    kink = np.full_like(reach, np.nan)
-    kink[up:-up] = reach[2 * up :] - reach[up:-up] - np.maximum(0.0, reach[: -2 * up] - reach[up:-up])
-    calm = uniform_filter1d(
-        np.where(np.isnan(kink), -100.0, kink), round(20.0 / CELL), axis=1, mode="nearest"
-    )
-    lateral = (np.abs(x) > 0.28 * half_width) & (np.abs(x) < 0.85 * half_width)
-    wide = round(24.0 / survey.step) | 1
-    sides = [maximum_filter1d(calm[:, lateral & (s * x > 0)].max(axis=1), wide) for s in SIGNS]
-    both = np.minimum(*sides)
-    middle = np.where(np.isnan(kink), -100.0, kink)[:, np.abs(x) < 0.12 * half_width].max(axis=1)
-
-    def best_over(sides: Floats) -> int:
-        return int(np.argmax(np.where(usable, sides - 0.8 * np.maximum(middle, 0.0), -np.inf)))
-
-    either = np.maximum(*sides)
-    best, only = best_over(both), best_over(either)
-    lone = bool(both[best] < max(KINK, LONE * either[only]))
-    if lone:
-        both, best = either, only
-    return Anchor(float(survey.z[best]), float(both[best]), float(middle[best]), half_width, lone)
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,8 @@ from scipy.sparse.linalg import spsolve
 from scipy.spatial import Delaunay, QhullError
 
 from core.errors import LandmarkError
-from core.finding.chest import Pole, smoothed
+from core.finding.anchor import smoothed
+from core.finding.chest import Pole
 from core.mesh import Flags, Floats, Mesh, Points, quadric_terms, unit
 
 GRID = 2.0
