@@ -180,11 +180,16 @@ def _sign_changes(bend: Floats) -> Indices:
 
 
 def _size(bend: Floats, period: float) -> float:
-    """Return half the swing over whole periods: a flip-flop is always at its crest, a wave is a sine."""
-    swing = bend - bend.sum() / len(bend)
+    """Return half the swing about its mean: a flip-flop is always at its crest, else that of the best sine.
+
+    A window that cuts a period would make the root mean square larger or smaller, and be seen as growth.
+    """
     if period < 2.05:
-        return float(np.abs(swing).sum()) / len(bend)
-    return math.sqrt(2.0 * float(swing @ swing) / len(bend))
+        return float(np.abs(bend - bend.sum() / len(bend)).sum()) / len(bend)
+    angle = 2.0 * math.pi / period * np.arange(len(bend))
+    waves = np.column_stack((np.cos(angle), np.sin(angle), np.ones(len(bend))))
+    fit = np.linalg.lstsq(waves, bend)[0]
+    return math.hypot(fit[0], fit[1])
 
 
 def _shape_swing(records: Sequence[Record]) -> _Swing | None:
