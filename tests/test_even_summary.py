@@ -117,7 +117,7 @@ def evened(**changes: object) -> Reply:
     for name, ratio in (("strap right", 0.999), ("mid-bust left", 0.999), ("mid-bust right", 0.95)):
         design = design.with_line(name, ratio)
     at_end = ("strap right", "mid-bust left")
-    plain = Reply(design, reached, False, 2.7, at_end, (), True, True, {}, 4.0, (), 1.0, 3, longest=0.999)
+    plain = Reply(design, reached, False, 2.7, at_end, (), (), True, True, {}, 4.0, (), 1.0, 3, longest=0.999)
     return replace(plain, **changes)
 
 
