@@ -14,7 +14,7 @@ from app.dress.parts import FloatingPanel
 from app.dress.shadow import floating_ground
 from app.dress.theme import Sentence, apply_theme
 from app.panels.draw_card import DrawCard
-from app.showing.floating import GAP, Floating
+from app.showing.floating import APART, GAP, Floating
 from app.wording.tokens import DARK, LIGHT
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -73,6 +73,29 @@ def test_panels_keep_their_corners_and_clear_each_other() -> None:
     view.resize(1000, 700)
     QApplication.processEvents()
     assert inset.geometry() == before
+    view.close()
+    view.deleteLater()
+
+
+def test_headroom_leaves_room_for_what_is_piled_on_a_panel() -> None:
+    view = QWidget()
+    view.resize(760, 440)
+    floating = Floating(view)
+    bar, low, high = Panel(200, 40), Panel(220, 250), Panel(240, 120)
+    for panel, corner in ((bar, "top-left"), (low, "bottom-left"), (high, "bottom-left")):
+        floating.place(panel, corner)
+    high.hide()
+    view.show()
+    floating.settle()
+    alone = floating.headroom(low)
+    assert alone == 439 - GAP - (GAP + 40 + APART - 1)
+    high.show()
+    floating.settle()
+    assert floating.headroom(low) == alone - 120 - APART
+    low.wanted = QSize(220, floating.headroom(low))
+    low.updateGeometry()
+    floating.settle()
+    assert high.seen().top() >= bar.seen().bottom() + APART
     view.close()
     view.deleteLater()
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QFontInfo
-from PySide6.QtWidgets import QApplication, QWidget
+from PySide6.QtWidgets import QApplication, QCheckBox, QWidget
 
 from app.dress.icons import SCALES, icon, pixmap
 from app.dress.parts import ToolButton, sentence
@@ -123,6 +123,15 @@ def test_every_widget_knows_its_theme(themed: QApplication, dark: bool, tokens: 
     for widget in (QWidget(), label("x", "caption"), ToolButton("eye", "Eye")):
         widget.ensurePolished()
         assert tokens_of(widget) is tokens
+
+
+@pytest.mark.parametrize(("dark", "tokens"), [(False, LIGHT), (True, DARK)])
+def test_an_empty_check_box_can_be_seen(themed: QApplication, dark: bool, tokens: Tokens) -> None:
+    apply_theme(themed, dark)
+    image = QCheckBox("Word").grab().toImage()
+    middle = image.height() // 2
+    edge = [image.pixelColor(x, middle).name() for x in range(8)]
+    assert max(contrast(color, tokens.panel) for color in edge) >= 3.0
 
 
 def test_icons_follow_a_change_of_theme(themed: QApplication) -> None:

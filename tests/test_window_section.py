@@ -226,6 +226,12 @@ def test_the_section_panel_leaves_the_bust_free_in_the_smallest_window() -> None
         yield lambda: panel.height() < 0.5 * height
         panel.fold.click()
         yield lambda: panel.height() == height
+        drawing = window.line_drawing
+        drawing.begin()
+        card, floating = drawing._sketching.card, window.view.floating
+        yield lambda: panel.is_folded and not floating.clashes(card)
+        drawing.leave()
+        yield lambda: panel.height() == height
         wide = panel.plot.width()
         window.resize(1600, 1000)
         yield lambda: panel.plot.width() > wide

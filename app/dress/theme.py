@@ -113,6 +113,7 @@ def apply_theme(app: QApplication, dark: bool) -> None:
     app.setStyle("Fusion")
     app.setFont(font("body"))
     app.setPalette(palette(tokens))
+    app.setPalette(_box_palette(tokens), "QCheckBox")
     app.setStyleSheet(style_sheet(tokens))
 
 
@@ -144,6 +145,14 @@ def palette(t: Tokens) -> QPalette:
         result.setColor(each, QColor(color))
     for each in (role.WindowText, role.Text, role.ButtonText):
         result.setColor(QPalette.ColorGroup.Disabled, each, faded(t.text_caption, t.panel, 0.55))
+    return result
+
+
+def _box_palette(t: Tokens) -> QPalette:
+    """Return the palette of check boxes, whose outline must be seen on a dark panel too."""
+    result = palette(t)
+    # Fusion draws that outline in the colour of the window, made darker by 1.4 and lighter by 1.1.
+    result.setColor(QPalette.ColorRole.Window, QColor(t.control).lighter(127))
     return result
 
 

@@ -107,15 +107,19 @@ class Floating(QObject):
         return over + (not self._view.rect().contains(room))
 
     def headroom(self, panel: QWidget) -> int:
-        """Return how high the visible part of a panel of the lower edge may be where it stands [px]."""
-        room = self.seen(panel)
+        """Return how high the visible part of a panel of the lower edge may be where it stands [px].
+
+        What is piled on it stays within the view.
+        """
+        room, pile = self.seen(panel), self._piles[self.corner_of(panel)]
+        on_it = [self.seen(each) for each in pile[pile.index(panel) + 1 :] if not each.isHidden()]
         above = [self.seen(each) for corner, each in self._shown(yields=False) if corner.startswith("top")]
         low = [
             each.bottom() + APART
             for each in above
             if room.left() <= each.right() and each.left() <= room.right()
         ]
-        return room.bottom() - max([GAP - 1, *low])
+        return room.bottom() - max([GAP - 1, *low]) - sum(each.height() + APART for each in on_it)
 
     def _shown(self, yields: bool) -> list[tuple[str, QWidget]]:
         """Return the panels that are not hidden with their corners, in the order they get their places."""
