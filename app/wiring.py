@@ -63,6 +63,8 @@ def _connect_session(window: MainWindow) -> None:
         changed.connect(lambda *_: window.worn_desk.follow())
     for changed in (session.frame_ready, session.design_changed):
         changed.connect(lambda *_: window.spread_desk.follow())
+    session.failed.connect(lambda *_: window.pressure_desk.found.emit())
+    session.failed.connect(lambda *_: window.spread_desk.follow())
     window.spread_desk.found.connect(window.measures_desk.show_spread)
     window.spread_desk.found.connect(window.section_desk.show_spread)
     window.spread_desk.found.connect(window.report_desk.follow)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from PySide6.QtCore import QSettings
+from PySide6.QtWidgets import QLabel
 from test_solver_faults import Faults, edit
 from window_tools import Script, drag, run_undrawn, settled
 
@@ -67,6 +68,12 @@ def test_a_solver_that_fails_for_long_loses_nothing(
         assert session.finish_saving()
         assert open_project(path).design.lines == document.design.lines
         assert not session.unsaved
+        window.desk.go_to("result")
+        window.map_desk.choose("pressure")
+        words = [
+            each.text() for each in (window.result.sure, *window.findChildren(QLabel)) if each.isVisible()
+        ]
+        assert not [each for each in words if "rests" in each], "nothing comes by waiting"
         faults.end()
         bar.notice().actions[0][1]()
         yield settled(window)

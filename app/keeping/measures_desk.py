@@ -12,6 +12,7 @@ from app.dress.wishes import wish, wish_for
 from app.keeping.tables import copy_table, save_table
 from app.panels.measure_view import MeasureView
 from app.panels.result import ResultPanel
+from app.presenting.faults import not_computed
 from app.presenting.measures import as_table, measure_views, measured_views
 from app.presenting.sizes import size_views
 from app.presenting.spread import spread_views
@@ -92,7 +93,7 @@ class MeasuresDesk(QObject):
             self._body = frame.stages.body
             self._rest = self._worn = None
             self._show_sizes()
-            self._panel.set_measured([], tr("The body is measured as soon as the run rests."))
+            self._panel.set_measured([], self._waiting())
         self._panel.set_stale(True)
         self._show_mark()
         if window.is_at_rest():
@@ -104,6 +105,14 @@ class MeasuresDesk(QObject):
                 self._fail,
                 left=self._leave_off,
             )
+
+    def _waiting(self) -> str:
+        """Return why nothing is measured yet."""
+        if self._window.session.failure is not None:
+            return not_computed()
+        if self._window.is_at_rest():
+            return tr("Measuring the body")
+        return tr("The body is measured as soon as the run rests.")
 
     def _show_measured(self, found: object) -> None:
         self._rest, self._worn = cast(tuple[Measures, Measures], found)

@@ -9,6 +9,7 @@ from PySide6.QtCore import QObject, Signal
 
 from app.panels.garment import GarmentPanel
 from app.panels.pressure_card import PressureCard
+from app.presenting.faults import not_computed
 from app.presenting.pressure import light_limits, pressure_summary, pressure_views, unknown_pressure
 from app.presenting.verdict import doubt_of
 from app.wording.words import tr
@@ -68,6 +69,14 @@ class PressureDesk(QObject):
         """Return whether the pressures of a frame were not computed, and are not on their way."""
         return frame in self._failed or frame in self._left
 
+    def missing(self, frame: Frame) -> str:
+        """Return why there are no pressures of a frame, nothing where they are known or will be."""
+        if self.has_failed(frame):
+            return unknown_pressure()
+        session = self._window.session
+        failed = session.failure is not None and frame is session.frame
+        return not_computed() if failed and frame not in self._known else ""
+
     def of_listed(self, frame: Frame) -> PressList | None:
         """Return the same for the list of lines: only where it is seen, and a line is worn."""
         seen = self._window.lines.isVisible() and frame.stages.design.worn()
@@ -87,7 +96,7 @@ class PressureDesk(QObject):
         if frame.stages.body is not self._body:
             self._body, self._shown, self._stale = frame.stages.body, None, None
         stale = known is None
-        doubt = doubt_of(frame) or (unknown_pressure() if self.has_failed(frame) else "")
+        doubt = doubt_of(frame) or self.missing(frame)
         if (known or self._shown) is self._shown and (stale, doubt) == (self._stale, self._doubt):
             return
         self._shown, self._stale = known or self._shown, stale

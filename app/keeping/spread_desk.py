@@ -10,6 +10,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from app.asking.jobs import Job
 from app.panels.result import ResultPanel
 from app.panels.spread_card import SpreadCard
+from app.presenting.faults import not_computed
 from app.presenting.spread import left_out_sentences, source_sentences, spread_view
 from app.presenting.verdict import doubt_of
 from app.wording.words import joined, say, tr
@@ -154,6 +155,8 @@ class SpreadDesk(QObject):
         design, waiting = self._window.session.design, ""
         if design is not None and (why := self._why_not(design)) is not None:
             waiting = joined((tr("How far they may be off was not worked out."), why))
+        if self._window.session.failure is not None:
+            waiting = not_computed()
         waiting = waiting or tr("How far they may be off is worked out once the run rests.")
         view = spread_view(spread, "" if doubt_of(frame) else waiting, faint)
         self.card.show_view(view)

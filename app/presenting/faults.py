@@ -29,8 +29,12 @@ def fault_words(error: Exception) -> tuple[str, str]:
     return tr("Something went wrong inside Busk."), tr("Your design is kept. The log tells more.")
 
 
+def not_computed() -> str:
+    """Return that there are no results of the present design, because its shape was not computed."""
+    return tr("Not computed: the view shows the last computed shape.")
+
+
 def out_of_date(verdict: StripVerdict) -> StripVerdict:
     """Return the verdict on a frame that is not that of the present design, marked as such."""
-    hint = tr("Not computed: the view shows the last computed shape.")
     title = state_title("stale")
-    return replace(verdict, level="stale", headline=title, state="stale", hint=hint, settling=False)
+    return replace(verdict, level="stale", headline=title, state="stale", hint=not_computed(), settling=False)

@@ -69,5 +69,6 @@ class MapValues:
         """Return what is to be said first of a map on the session's own bands, or nothing."""
         if name == "pressure":
             listed = None if self.now is None else self._pressed.get(self.now)
-            return pressure_note(listed, shown.stale)
+            missing = "" if self.now is None else self._pressure.missing(self.now.frame)
+            return missing or pressure_note(listed, shown.stale)
         return "" if shown.values else tr("No worn line pulls like a spring.")
