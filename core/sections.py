@@ -35,8 +35,8 @@ def cut(mesh: Mesh, origin: npt.ArrayLike, normal: npt.ArrayLike) -> Section:
     """Cut ``mesh`` with the plane through ``origin`` [mm] with ``normal`` [1]."""
     side = (mesh.vertices - np.asarray(origin, dtype=np.float64)) @ np.asarray(normal, dtype=np.float64)
     above = side >= 0.0
-    count = above[mesh.faces].sum(axis=1)
-    faces = mesh.faces[(count == 1) | (count == 2)]
+    one, two, three = (above[corner] for corner in mesh.faces.T)
+    faces = mesh.faces[(one != two) | (two != three)]
     if len(faces) == 0:
         return Section(np.empty((0, 2, 3)), np.empty((0, 2), dtype=np.int64))
     up = above[faces]
