@@ -2,6 +2,7 @@
 
 import io
 import json
+import struct
 from dataclasses import replace
 from pathlib import Path
 
@@ -27,6 +28,7 @@ from core.cleaning.edits import ScanEdits
 from core.design import Design, ScanSource
 from core.document import Document
 from core.edited_body import edited
+from core.errors import ScanError
 from core.pipeline import read_body
 from core.project import ScanFile, open_project, save_project
 from core.reading.colours import UNREADABLE, texture
@@ -110,6 +112,42 @@ def test_an_image_of_far_more_pixels_than_bytes_is_no_texture() -> None:
     packed = io.BytesIO()
     Image.new("1", (6000, 6000)).save(packed, "PNG")  # 5 kB
     assert read_raw("a.gltf", textured_gltf(packed.getvalue())).notes == (UNREADABLE,)
+
+
+def test_a_progressive_image_is_held_whole_and_so_has_a_limit() -> None:
+    packed = io.BytesIO()
+    Image.new("RGB", (64, 64), RED).save(packed, "JPEG", progressive=True)
+    data = bytearray(packed.getvalue())
+    sides = data.index(b"\xff\xc2") + 5
+    data[sides : sides + 4] = struct.pack(">HH", 13_000, 13_000)  # more than what Pillow warns of
+    with pytest.raises(ValueError, match="cannot be read") as caught:
+        texture(bytes(data), 1 << 40)
+    assert "memory" in str(caught.value.__cause__)
+
+
+def test_an_odd_comment_is_no_reason_to_refuse_an_obj_file() -> None:
+    scan = read_raw("house.obj", b"#MRGB abc\n" + textured_obj())
+    assert (len(scan.vertices), scan.notes) == (10, (UNREADABLE,))
+
+
+def test_a_scan_that_is_too_fine_is_refused_before_its_texture_is_sampled(tmp_path, monkeypatch) -> None:
+    (tmp_path / "house.mtl").write_bytes(MTL)
+    (tmp_path / "skin.png").write_bytes(picture())
+    (tmp_path / "house.obj").write_bytes(textured_obj())
+    monkeypatch.setattr("core.reading.raw_scan.MOST_TRIANGLES", 12)
+    monkeypatch.setattr("core.reading.obj_texture.blocks", pytest.fail)
+    with pytest.raises(ScanError, match="too fine"):
+        read_raw("house.obj", scan_bytes(tmp_path / "house.obj"))
+
+
+def test_a_file_that_a_gltf_file_names_often_is_joined_once(tmp_path) -> None:
+    document = json.loads(textured_gltf(uri="skin.png"))
+    document["images"] *= 50
+    (tmp_path / "house.gltf").write_text(json.dumps(document))
+    (tmp_path / "skin.png").write_bytes(picture() + bytes(100_000))
+    data = scan_bytes(tmp_path / "house.gltf")
+    assert len(data) < 200_000
+    check(read_raw("elsewhere.gltf", data))
 
 
 @pytest.fixture(scope="module")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import warnings
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -17,6 +18,9 @@ FINEST = 2048
 
 NEAR = 10.0
 """A vertex has the colour of the nearest scanned one within this distance [mm]."""
+
+_LARGEST_PROGRESSIVE = 8192**2
+"""A progressive JPEG is held whole while it is decoded, 6 or 8 bytes a pixel, however small it is to be."""
 
 _FORMATS = ("JPEG", "PNG", "BMP", "TGA")
 
@@ -53,7 +57,10 @@ def texture(data: bytes, room: int) -> Colours:
     from PIL import Image
 
     try:
+        warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # what it may take is looked at here
         image = Image.open(io.BytesIO(data), formats=_FORMATS)
+        if image.info.get("progressive") and image.width * image.height > _LARGEST_PROGRESSIVE:
+            raise ValueError("an image that takes far more memory than its pixels")
         if image.format == "JPEG":
             image.draft("RGB", (FINEST, FINEST))  # decoded at a half, a quarter or an eighth
         if 4 * image.width * image.height > room:

@@ -35,19 +35,18 @@ def with_buffers(path: Path, data: bytes, most: int, progress: Progress = quiet)
     if marks(data) > MOST_MARKS:
         return data
     try:
-        document, most = json.loads(data), most - len(data)
-        kept, joins, where, total = [{"byteLength": 0}], list[tuple[Path, int]](), dict[int, Any](), 0
+        document = json.loads(data)
+        kept, joins, where = [{"byteLength": 0}], _Joins(most - len(data)), dict[int, tuple[int, int]]()
         for k, buffer in enumerate(document["buffers"][:MOST_NODES]):
             file, size = _file_of(path, buffer.get("uri")), int(buffer["byteLength"])
-            if file is None or not 0 <= size <= most - total:
+            start = joins.place(file, size) if file is not None else None
+            if start is None:
                 where[k] = len(kept), 0
                 kept.append(buffer)
-                continue
-            where[k] = 0, total
-            joins.append((file, size))
-            total += size + -size % 4
-        images, total = _joined_images(path, document, most, joins, total)
-        kept[0]["byteLength"] = total
+            else:
+                where[k] = 0, start
+        images = _joined_images(path, document, joins)
+        kept[0]["byteLength"] = joins.total
         for view in document["bufferViews"]:
             view["buffer"], start = where[view["buffer"]]
             view["byteOffset"] = view.get("byteOffset", 0) + start
@@ -56,16 +55,34 @@ def with_buffers(path: Path, data: bytes, most: int, progress: Progress = quiet)
         text = json.dumps({**document, "buffers": kept}).encode()
     except (OSError, ValueError, KeyError, TypeError, AttributeError, ArithmeticError, RecursionError):
         return data  # the reader tells what is wrong with it
-    return _joined_glb(text, joins, total, progress) if joins else data
+    return _joined_glb(text, joins, progress) if joins.starts else data
 
 
-def _joined_glb(text: bytes, files: list[tuple[Path, int]], total: int, progress: Progress) -> bytes:
-    """Return a GLB file of a description and the first bytes of ``files``, which it holds only once."""
+class _Joins:
+    """The first bytes of files that are joined, each only once, and where they start, in ``most`` bytes."""
+
+    def __init__(self, most: int) -> None:
+        self.most, self.total = most, 0
+        self.starts: dict[tuple[Path, int], int] = {}
+
+    def place(self, file: Path, size: int) -> int | None:
+        """Return where the first ``size`` bytes of a file start, None if there is no room for them."""
+        if (file, size) not in self.starts:
+            if not 0 <= size <= self.most - self.total:
+                return None
+            self.starts[file, size] = self.total
+            self.total += size + -size % 4
+        return self.starts[file, size]
+
+
+def _joined_glb(text: bytes, files: _Joins, progress: Progress) -> bytes:
+    """Return a GLB file of a description and of ``files``."""
+    total = files.total
     text += b" " * (-len(text) % 4)
     out = io.BytesIO()
     out.write(struct.pack("<4sII", b"glTF", 2, 28 + len(text) + total))
     out.write(struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", total, b"BIN\0"))
-    for file, size in files:
+    for file, size in files.starts:
         left = size
         with file.open("rb") as content:
             while left and (piece := content.read(min(left, _STEP))):
@@ -77,21 +94,18 @@ def _joined_glb(text: bytes, files: list[tuple[Path, int]], total: int, progress
     return out.getvalue()
 
 
-def _joined_images(
-    path: Path, document: Any, most: int, joins: list[tuple[Path, int]], total: int
-) -> tuple[list[Any], int]:
-    """Append the images beside a file to ``joins``; return their views and how many bytes there are then."""
+def _joined_images(path: Path, document: Any, joins: _Joins) -> list[Any]:
+    """Join the images beside a file; return the views of them that the file then needs."""
     views = list[Any]()
     for image in document.get("images", [])[:_MOST_IMAGES]:
         file = _file_of(path, image.get("uri"))
-        size = file.stat().st_size if file is not None else -1
-        if file is not None and 0 < size <= most - total:
+        size = file.stat().st_size if file is not None else 0
+        start = joins.place(file, size) if file is not None and size else None
+        if start is not None:
             del image["uri"]
             image["bufferView"] = len(document["bufferViews"]) + len(views)
-            views.append({"buffer": 0, "byteOffset": total, "byteLength": size})
-            joins.append((file, size))
-            total += size + -size % 4
-    return views, total
+            views.append({"buffer": 0, "byteOffset": start, "byteLength": size})
+    return views
 
 
 def _file_of(path: Path, uri: Any) -> Path | None:

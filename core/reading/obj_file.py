@@ -15,7 +15,7 @@ from core.reading.text_table import Growing, Lines, Table, blocks, lines_of, tab
 MRGB = b"#MRGB"
 """A comment with the colours of vertices in order, of each eight hexadecimal digits: mask and RGB."""
 
-_PAINT = re.compile(rb"(?<!\S)" + MRGB + rb"\b[ \t]*([\da-fA-F]*)")
+_PAINT = re.compile(rb"(?<!\S)" + MRGB + rb"\b[ \t]*((?:[\da-fA-F]{2})*)")
 
 
 def read_obj(name: str, data: bytes, progress: Progress) -> RawScan:

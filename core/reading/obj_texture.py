@@ -13,7 +13,7 @@ from core.progress import Progress
 from core.reading.beside import beside
 from core.reading.colours import colourless, sampled, texture
 from core.reading.obj_file import MRGB
-from core.reading.raw_scan import FREE, TIMES, Colours
+from core.reading.raw_scan import FREE, TIMES, Colours, check_size
 from core.reading.text_table import Growing, Lines, blocks, lines_of, table, whole
 
 _LIBRARY = re.compile(rb"(?:^|[\n\r])[ \t]*mtllib[ \t]+([^\n\r]+)", re.IGNORECASE)
@@ -78,6 +78,7 @@ def _pixels(path: Path, images: dict[bytes, bytes], most: int) -> dict[bytes, Co
 
 def _painted(name: str, data: bytes, pixels: dict[bytes, Colours], progress: Progress) -> Colours:
     """Return the colours of the vertices, shape (n, 4): of the texture at one of the corners of each."""
+    check_size(name, data.count(b"\nv "), data.count(b"\nf "))  # at once
     if b"\\\n" in data or b"\\\r\n" in data:
         data = re.sub(rb"\\\r?\n", b" ", data)
     points, uvs, corners = 0, Growing("d"), Growing("q")
@@ -98,9 +99,9 @@ def _painted(name: str, data: bytes, pixels: dict[bytes, Colours], progress: Pro
 
 
 def _corners(lines: Lines, known: tuple[Indices, Indices], material: Indices) -> Indices:
-    """Return vertex, place in the texture and material of each corner of polygons, shape (k, 3), from 0 on.
+    """Return vertex, place in the texture and material of a corner at each vertex, shape (k, 3), from 0 on.
 
-    A corner without a place is left out.
+    Of all corners of polygons only those with a place and a material count.
     """
     chosen = lines.marked(b"f")
     text = lines.picked(chosen, 1)
@@ -109,7 +110,9 @@ def _corners(lines: Lines, known: tuple[Indices, Indices], material: Indices) ->
     row = np.repeat(np.flatnonzero(chosen), vertex.counts)
     first = _from_zero(whole(vertex.numbers), known[0][row])
     corners = np.stack([first, _from_zero(place, known[1][row]), material[row]], axis=1)
-    return np.asarray(corners[place != 0])
+    corners = corners[(place != 0) & (material[row] >= 0)]
+    _, one = np.unique(corners[:, 0], return_index=True)  # a mesh has six times as many corners as vertices
+    return np.asarray(corners[one])
 
 
 def _from_zero(numbers: Indices, known: Indices) -> Indices:
