@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import json
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -54,6 +55,19 @@ def asked_words() -> set[str]:
     }
 
 
+def written_words() -> set[str]:
+    """Return every literal of the program and of its resources, as it stands in a sentence and alone."""
+    trees = [
+        ast.parse(path.read_text("utf-8")) for part in ("app", "core") for path in (ROOT / part).rglob("*.py")
+    ]
+    texts = {each.value for tree in trees for each in ast.walk(tree) if isinstance(each, ast.Constant)}
+    files = [path for path in (ROOT / "resources").rglob("*.json") if path.parent.name != "words"]
+    for path in files:
+        texts |= set(map(json.loads, re.findall(r'"(?:[^"\\]|\\.)*"', path.read_text("utf-8"))))
+    words = {each for each in texts if isinstance(each, str)}
+    return words | {each[:1].upper() + each[1:] for each in words}
+
+
 def places(text: str) -> list[str]:
     return sorted(re.findall(r"\{(\w*)", text))
 
@@ -63,6 +77,11 @@ def test_every_word_is_translated(code: str) -> None:
     asked = asked_words()
     assert len(asked) > 50
     assert sorted(asked - read_words(code).keys()) == []
+
+
+@pytest.mark.parametrize("code", TRANSLATIONS)
+def test_no_word_is_translated_that_nobody_reads(code: str) -> None:
+    assert sorted(read_words(code).keys() - written_words()) == []
 
 
 @pytest.mark.parametrize("code", TRANSLATIONS)
