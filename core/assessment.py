@@ -39,7 +39,8 @@ class Finding:
 
     ``topic`` is one of TOPICS, ``level`` CAUTION or BAD. ``message`` states in a sentence what is wrong,
     ``action`` what to do, empty where the message includes it. ``lines`` are the lines concerned,
-    ``value`` the pressure [kPa] of one on that, 0 if it is not known.
+    ``value`` the pressure [kPa] of one on that, the elongation [1] of an elastic that is stretched far, 0
+    where neither is known.
     """
 
     topic: str
@@ -152,7 +153,8 @@ def _bands(cuts: CutList | None) -> Iterator[Finding]:
             yield _slack(row)
         elif row.far and row.elongation is not None:
             message = f"The elastic of {row.title} is stretched far, by {100.0 * row.elongation:.0f} %."
-            yield Finding("band", CAUTION, message, "Cut it longer, or choose another elastic.", (row.line,))
+            action = "Cut it longer, or choose another elastic."
+            yield Finding("band", CAUTION, message, action, (row.line,), row.elongation)
 
 
 def _slack(row: CutRow) -> Finding:

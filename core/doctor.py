@@ -139,8 +139,7 @@ def _treated(found: Diagnosis, search: Search) -> Diagnosis:
         return replace(found, fixes=ranked(fixes))
     stages = found.stages
     if not search.tried:
-        for change in settings(stages.design, found.complaint):
-            search.tried_out(change)  # to know the nearest
+        list(search.tried_all(settings(stages.design, found.complaint)))  # to know the nearest
     worn = (line.name for line in stages.model.lines if line.constrains)
     free = set(chain.from_iterable(free_lines(stages)))
     locked = tuple(name for name in worn if name in stages.design.worn() and name not in free)
@@ -159,7 +158,7 @@ def _ending(found: Diagnosis, search: Search) -> list[Cure]:
     calmed = search.first_of(iter(adaptive))
     cure, others = search.smallest(single_ways(stages, found.complaint))
     fixes = [each for each in (calmed, cure) if each is not None]
-    fixes += [each for each in map(search.tried_out, others[:_OTHERS]) if each.ends]
+    fixes += [each for each in search.tried_all(others[:_OTHERS]) if each.ends]
     if fixes:
         return fixes
     cure = search.smallest(_chosen(stages, gains, line_ways))[0]

@@ -7,11 +7,17 @@ from dataclasses import replace
 
 import pytest
 
+from app.wording.samples import lifted_sample
 from core.advice.easing import WIDEST
+from core.advice.remedy import Search
+from core.advice.standing import standing
+from core.advice.ways import Change
 from core.assessment import BAD, assessed
 from core.design import Design
+from core.design_elastics import OverstretchedError
 from core.doctor import Diagnosis, diagnose
 from core.pipeline import Stages, build
+from core.progress import quiet
 from core.solution import run
 
 Built = Callable[[str], Stages]
@@ -62,6 +68,32 @@ def test_a_calm_design_that_presses_too_much_is_widened_or_lengthened(built: Bui
     wide = found.fixes[1].change.design
     assert wide.ratio("mid-bust") == 0.95
     assert 12.0 < (wide.traits_of("mid-bust").width or 0.0) <= WIDEST
+
+
+def test_a_tight_elastic_is_made_longer_though_shorter_is_beyond_its_table() -> None:
+    design = lifted_sample()
+    stages = build(design)
+    tight = build(design.with_line("mid-bust", 0.53), stages)
+    with pytest.raises(OverstretchedError):
+        build(design.with_line("mid-bust", 0.51), stages)
+    found = diagnose(tight)
+    assert found.complaint == ""
+    assert {each.topic for each in found.findings} == {"band", "pressure"}
+    assert found.fixes
+    assert [cure.change.kind for cure in found.fixes] == ["length"], "a band that lifts is not taken off"
+    assert found.fixes[0].level == "good"
+    assert found.fixes[0].change.design.ratio("mid-bust") > 0.6
+
+
+def test_a_fix_that_is_refused_is_left_out() -> None:
+    design = lifted_sample()
+    stages = build(design)
+    tight = build(design.with_line("mid-bust", 0.53), stages)
+    search = Search(standing(tight, quiet), quiet)
+    shorter = Change("length", design.with_line("mid-bust", 0.51), 2.0, ("mid-bust",))
+    longer = Change("length", design.with_line("mid-bust", 0.7), 17.0, ("mid-bust",))
+    assert [cure.change for cure in search.tried_all([shorter, longer])] == [longer]
+    assert search.first_of(iter([shorter, longer])).change is longer
 
 
 def test_a_slack_line_is_taken_off(built: Built) -> None:

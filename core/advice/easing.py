@@ -49,9 +49,7 @@ def eased(search: Search, findings: tuple[Finding, ...]) -> tuple[Cure, ...]:
     stages, worst = search.stages, findings[0].level
     known = chain(_offs(stages, findings), _widths(stages, findings))
     fixes = [
-        cure
-        for cure in map(search.tried_out, known)
-        if cure.level != worst or len(cure.remains) < len(findings)
+        cure for cure in search.tried_all(known) if cure.level != worst or len(cure.remains) < len(findings)
     ]
     for way in _ways(stages, findings):
         cure = search.clean(way, _FIRST[way.at(1).kind])
@@ -74,12 +72,12 @@ def cleaner(search: Search, fix: Cure) -> list[Cure]:
 
 
 def _ways(stages: Stages, findings: tuple[Finding, ...]) -> Iterator[Way]:
-    """Yield ways that may end findings: a pressing line longer, a slack one shorter, all nearer to rest."""
-    pressing = {name for each in findings if each.topic == "pressure" for name in each.lines}
-    slack = {name for each in findings if each.topic == "band" for name in each.lines}
+    """Yield ways that may end findings: a tight line longer, a slack one shorter, all nearer to rest."""
+    tight = {name for each in findings if each.topic == "pressure" or _is_far(each) for name in each.lines}
+    slack = _slack(findings)
     for way in line_ways(stages):
         (name, *_), longer = way.at(1).lines, _is_longer(stages, way.at(1))
-        if (longer and name in pressing) or (not longer and name in slack):
+        if (longer and name in tight) or (not longer and name in slack):
             yield way
     if any(each.topic in ("shape", "pressure") for each in findings):
         yield from together_ways(stages)
@@ -104,5 +102,15 @@ def _is_longer(stages: Stages, change: Change) -> bool:
 
 def _offs(stages: Stages, findings: tuple[Finding, ...]) -> Iterator[Change]:
     """Yield the changes that take slack lines off."""
-    slack = {name for each in findings if each.topic == "band" for name in each.lines}
+    slack = _slack(findings)
     return (change for change in off_changes(stages) if slack & set(change.lines))
+
+
+def _slack(findings: tuple[Finding, ...]) -> set[str]:
+    """Return the lines that would have to push."""
+    return {name for each in findings if each.topic == "band" and not _is_far(each) for name in each.lines}
+
+
+def _is_far(finding: Finding) -> bool:
+    """Return whether an elastic is stretched far."""
+    return finding.topic == "band" and finding.value > 0.0

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import heapq
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, TypeGuard
 
 from core.advice.cure import Cure, findings
 from core.advice.outlook import Outlook, apart, outlook, outlook_about
@@ -153,6 +153,15 @@ class Search:
             self._learn(stages, ran)
         return cure
 
+    def tried_all(self, changes: Iterable[Change]) -> Iterator[Cure]:
+        """Run changes; those that are refused, such as an elastic beyond its curve, are left out."""
+        for change in changes:
+            try:
+                cure = self.tried_out(change)
+            except UserError:
+                continue
+            yield cure
+
     def _well(self, complaint: str) -> bool:
         return not complaint or (complaint == "strained" and self._sick.complaint != "strained")
 
@@ -209,7 +218,8 @@ class Search:
         """
         for change in changes:
             loose = change.design.line_contact == "sliding" and change.design.line_hold == "spring"
-            if (self._hopeful(change) or loose) and (cure := self.tried_out(change)).ends:
+            tried = self.tried_all([change]) if self._hopeful(change) or loose else iter(())
+            if (cure := next(tried, None)) is not None and cure.ends:
                 return cure
         return None
 
@@ -236,12 +246,12 @@ class Search:
         Steps are doubled from the ``first`` on, then closed in on: a few runs.
         """
 
-        def does(cure: Cure) -> bool:
-            return cure.ends and LEVELS.index(cure.level) <= LEVELS.index(level)
+        def does(cure: Cure | None) -> TypeGuard[Cure]:
+            return cure is not None and cure.ends and LEVELS.index(cure.level) <= LEVELS.index(level)
 
         short, steps, found = 0, min(first, way.most), None
         for _ in range(_DOUBLED):
-            tried = self._once(way.at(steps))
+            tried = self._allowed(way.at(steps))
             if does(tried):
                 found = tried
                 break
@@ -252,9 +262,16 @@ class Search:
             middle = (short + steps) // 2
             if middle - short < _FURTHER * steps:
                 break
-            closer = self._once(way.at(middle))
+            closer = self._allowed(way.at(middle))
             short, steps, found = (short, middle, closer) if does(closer) else (middle, steps, found)
         return found
+
+    def _allowed(self, change: Change) -> Cure | None:
+        """Run a change unless its design was run already; None if it is refused."""
+        try:
+            return self._once(change)
+        except UserError:
+            return None  # an elastic beyond its curve, for example
 
     def _once(self, change: Change) -> Cure:
         """Run a change unless its design was run already."""
