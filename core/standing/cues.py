@@ -17,6 +17,12 @@ USUAL_LEAN = 0.02
 SHORTEST = 250.0
 """A scan of the upper body is taller than this [mm of a typical trunk]; one that lies on its back is not."""
 
+CROTCH = 75.0
+"""So near over the legs [mm of a typical trunk] the front sinks in between them as the back does."""
+
+MOST = 100.0
+"""Breasts stand out over their folds by less than this [mm]; a chin over a tilted chest does by more."""
+
 
 @dataclass(frozen=True)
 class Fold:
@@ -31,7 +37,8 @@ class Fold:
 class Side:
     """What stands out of one side of a trunk, front or back, from hips to neck; each shape (k,) [mm].
 
-    ``middle`` is the profile along the middle line, ``lobes`` how far both halves stand out over it.
+    ``middle`` is the profile along the middle line, ``lobes`` how far both halves stand out over it, NaN near
+    the legs and where it is unknown.
     """
 
     middle: Floats
@@ -99,7 +106,10 @@ def _side(trunk: Silhouette, reach: Floats, rows: slice) -> Side:
     left = np.arange(len(across)) < len(across) // 2
     lobe = (across > 0.25) & (across < 0.8)
     half = [_largest(reach[:, lobe & side]) for side in (left, ~left)]
-    return Side(_filled(_mean(reach[:, across < 0.25])), np.minimum(*half) - _mean(reach[:, across < 0.12]))
+    lobes = np.minimum(*half) - _mean(reach[:, across < 0.12])
+    if rows.start and trunk.legs[rows.start - 1]:
+        lobes[: round(CROTCH / (trunk.cell * trunk.mm))] = np.nan
+    return Side(_filled(_mean(reach[:, across < 0.25])), lobes)
 
 
 def _largest(values: Floats) -> Floats:
@@ -168,6 +178,7 @@ def _bust(seen: Look) -> float:
         fold.strength / 10.0 if fold.strength < 20.0 else 2.0 + (min(fold.strength, 60.0) - 20.0) / 40.0
     )
     strength -= 0.8 * float(np.clip(fold.middle / max(fold.strength, 5.0), 0.0, 1.0))
+    strength -= min(max(fold.strength - MOST, 0.0) / 10.0, 2.0)
     return strength - 4.0 * max(0.0, 0.25 - fold.height) - 1.5 * (fold.middle < -90.0)
 
 
@@ -178,9 +189,17 @@ def _breasts(seen: Look) -> float:
 
 
 def _buttocks(seen: Look) -> float:
-    low = slice(0, max(2, int(0.15 * len(seen.front.lobes))))
-    front, back = (np.nan_to_num(side.lobes[low]).mean() for side in (seen.front, seen.back))
-    return float(back - front) / 10.0
+    front, back = _low_lobes(seen.front), _low_lobes(seen.back)
+    return 0.0 if front is None or back is None else (back - front) / 10.0
+
+
+def _low_lobes(side: Side) -> float | None:
+    """Return how far both halves stand out at the hips [mm]; None if what hangs there begins higher."""
+    known = np.flatnonzero(np.isfinite(side.lobes))
+    lobes = np.nan_to_num(side.lobes[known[0] :]) if len(known) else np.zeros(2)
+    low, waist = max(2, int(0.15 * len(lobes))), int(0.45 * len(lobes))
+    here, over = float(lobes[:low].mean()), lobes[low:waist]
+    return None if len(over) and np.median(over) > max(here, 0.0) else here
 
 
 def _spine(seen: Look) -> float:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from core.errors import ScanError
@@ -33,11 +35,14 @@ FACING = 0.6
 WHOLE = "Open a scan of a whole upper body, or say which way is up and which way is front."
 
 
-def refuse_unlike(cloud: Cloud, best: Stance) -> None:
-    """Raise ScanError, with the likeliest reason, if this is no upper body. Source: ours."""
+def refuse_unlike(cloud: Cloud, readings: Sequence[Stance]) -> None:
+    """Raise ScanError, with the likeliest reason, if the best of ``readings``, the first, is no upper body.
+
+    A half of a body fits none of them: its opening stands upright in one of them at least. Source: ours.
+    """
+    best = readings[0]
     trunk = best.seen.trunk
-    skin = len(cloud.points) * cloud.grain**2
-    if _halved(cloud, best, HALF * skin):
+    if _halved(cloud, readings):
         raise ScanError("Only a half of an upper body is here: its other half is missing.", WHOLE)
     if best.residual > UNLIKE:
         raise ScanError(
@@ -58,12 +63,13 @@ def refuse_unlike(cloud: Cloud, best: Stance) -> None:
         )
 
 
-def _halved(cloud: Cloud, best: Stance, area: float) -> bool:
+def _halved(cloud: Cloud, readings: Sequence[Stance]) -> bool:
     """Tell whether the skin is open along an upright plane, and not like a tube, at both ends."""
     ends = [end for end in flat_ends(cloud.points, cloud.grain) if not end.filled]
+    area = HALF * len(cloud.points) * cloud.grain**2
     return any(
         end.area > area
-        and abs(end.normal @ best.up) < np.cos(np.radians(45.0))
+        and any(abs(end.normal @ reading.up) < np.cos(np.radians(45.0)) for reading in readings)
         and _is_rim(cloud, end)
         and not any(other.normal @ end.normal < -0.7 and other.area > 0.4 * end.area for other in ends)
         for end in ends

@@ -98,7 +98,7 @@ def find_pose(
     if told_up and told_front and readings[0].evidence < LEAST:  # against the shape: then to the letter
         readings = _readings(cloud, Told(told_up.direction, exact=True), told_front)
     if not told:
-        refuse_unlike(cloud, readings[0])
+        refuse_unlike(cloud, readings)
     return _pose(cloud, readings, unit, told)
 
 
