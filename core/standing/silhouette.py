@@ -31,6 +31,9 @@ NECK, BASE = 0.35, 0.8
 POLE = 40.0
 """A pole shows at least this much of its length [mm of a typical trunk]; torn rings of skin are lower."""
 
+MERGED = 1.3
+"""Arms that lie beside a level of the trunk and are one with it at the next make that wider by this [1]."""
+
 SECTORS = 6
 """A level with skin in all of so many directions from its middle goes round, as that of a pole does."""
 
@@ -130,12 +133,24 @@ class Silhouette:
         return float(self.z[np.flatnonzero(runs == poles[-1] + 1)[-1]] + 0.5 * self.cell)
 
     def _reference(self, value: Floats) -> float:
-        width = self.width[~self.slim]
+        own = ~self.slim & ~self._merged()
+        width = self.width[own]
         if len(width) == 0:
             return float("nan")
         upper = np.median(width[width >= np.median(width)])
         with np.errstate(invalid="ignore"):
-            return float(np.percentile(value[~self.slim & (self.width <= 1.25 * upper)], 70))
+            return float(np.percentile(value[own & (self.width <= 1.25 * upper)], 70))
+
+    def _merged(self) -> Flags:
+        """Tell at which levels the arms are one with the trunk: next to some where they lie beside it."""
+        merged = np.zeros(len(self.z), dtype=bool)
+        for way in (slice(None), slice(None, None, -1)):
+            width, arms, here = self.width[way], self.arms[way], merged[way]
+            wider = (width[1:] > MERGED * width[:-1]) & arms[:-1] & ~arms[1:]
+            for at in np.flatnonzero(wider):
+                slimmer = np.flatnonzero(~(width[at + 1 :] > MERGED * width[at]))
+                here[at + 1 : at + 1 + int(slimmer[0]) if len(slimmer) else None] = True
+        return merged
 
     def turned(self, up: int, back: int) -> Silhouette:
         """Return the same trunk with z and depth taken along these signs (+1 or -1)."""

@@ -51,10 +51,14 @@ class Stance:
     cut: bool = False
 
     @property
+    def upright(self) -> bool:
+        """Tell whether it stands along an axis of the file, but for a slight lean."""
+        return bool(np.abs(self.up).max() > np.cos(np.radians(LEAN)))
+
+    @property
     def score(self) -> float:
         """How likely this is how the body stands [1]."""
-        upright = np.abs(self.up).max() > np.cos(np.radians(LEAN))
-        return self.evidence + FILE_AXIS * float(upright) + CUT * float(self.cut) - 6.0 * self.residual
+        return self.evidence + FILE_AXIS * float(self.upright) + CUT * float(self.cut) - 6.0 * self.residual
 
     def differs(self, other: Stance, degrees: float = 40.0) -> bool:
         """Tell whether up or front point elsewhere."""

@@ -141,10 +141,20 @@ def _readings(cloud: Cloud, up: Told | None, front: Told | None) -> list[Stance]
             chosen.append(stance)
     if exact is None:
         near = chosen[0].score - RIVAL
-        found = [settled(cloud, stance) if stance.score > near else stance for stance in chosen]
-        chosen = [stance for stance in found if _allowed(stance, up, front)] or chosen
+        ends = [_settled(cloud, stance, found) if stance.score > near else stance for stance in chosen]
+        chosen = [stance for stance in ends if _allowed(stance, up, front)] or chosen
     chosen.sort(key=lambda stance: -stance.score)
     return [s for k, s in enumerate(chosen) if all(s.differs(other, DIFFERENT) for other in chosen[:k])]
+
+
+def _settled(cloud: Cloud, stance: Stance, found: list[Stance]) -> Stance:
+    """Return ``stance`` settled, or what is ``found`` upright near to it if that settles better.
+
+    A chin over a chest that leans far forward looks like a bust until the trunk is set upright.
+    """
+    rivals = [other for other in found if other.upright and other.score > stance.score - RIVAL]
+    near = [other for other in rivals if not (stance.upright or stance.differs(other, DIFFERENT))]
+    return max((settled(cloud, one) for one in [stance, *near]), key=lambda one: one.score)
 
 
 def _allowed(stance: Stance, up: Told | None, front: Told | None) -> bool:
