@@ -3,6 +3,7 @@
 import numpy as np
 
 from core.standing.cues import CUES, Fold, Look, Side
+from core.standing.silhouette import Silhouette
 
 FLAT = [0.0] * 20
 
@@ -37,3 +38,18 @@ def test_what_stands_out_further_than_any_breast_is_no_better_bust():
         for strength in (70.0, 120.0)
     )
     assert chin < bust - 1.0
+
+
+def test_arms_that_are_one_with_the_trunk_at_most_levels_are_none_of_its_width():
+    count, free = 40, 12
+    z, beside = np.arange(count) * 10.0, np.arange(count) < free
+    merged = np.where(beside, 125.0, 210.0)
+    nothing, yes = np.empty((count, 0)), np.ones(count, dtype=bool)
+    for way in (1, -1):
+        depth = np.full(count, 95.0)
+        trunk = Silhouette(
+            *(10.0, z, merged[::way], -depth, depth, beside[::way], ~yes),
+            *(nothing, nothing, yes, yes),
+        )
+        assert trunk.half_width == 125.0
+        assert (trunk.proper == beside[::way]).all()

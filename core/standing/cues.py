@@ -24,6 +24,10 @@ MOST = 100.0
 """Breasts stand out over their folds by less than this [mm]; a chin over a tilted chest does by more."""
 
 
+HANGING = 10.0
+"""Breasts that hang to the hips stand out by more than this further over them [mm]; buttocks do not."""
+
+
 @dataclass(frozen=True)
 class Fold:
     """The hollow under a bust at both sides, the one in between, and its place in the height [mm, mm, 1]."""
@@ -189,17 +193,17 @@ def _breasts(seen: Look) -> float:
 
 
 def _buttocks(seen: Look) -> float:
-    front, back = _low_lobes(seen.front), _low_lobes(seen.back)
-    return 0.0 if front is None or back is None else (back - front) / 10.0
+    return (_low_lobes(seen.back) - _low_lobes(seen.front)) / 10.0
 
 
-def _low_lobes(side: Side) -> float | None:
-    """Return how far both halves stand out at the hips [mm]; None if what hangs there begins higher."""
+def _low_lobes(side: Side) -> float:
+    """Return how far both halves stand out at the hips [mm]; 0 if what hangs there begins higher."""
     known = np.flatnonzero(np.isfinite(side.lobes))
     lobes = np.nan_to_num(side.lobes[known[0] :]) if len(known) else np.zeros(2)
     low, waist = max(2, int(0.15 * len(lobes))), int(0.45 * len(lobes))
     here, over = float(lobes[:low].mean()), lobes[low:waist]
-    return None if len(over) and np.median(over) > max(here, 0.0) else here
+    hangs = len(over) and np.median(over) > max(here, 0.0) + HANGING
+    return 0.0 if hangs else here
 
 
 def _spine(seen: Look) -> float:

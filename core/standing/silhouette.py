@@ -34,6 +34,9 @@ POLE = 40.0
 MERGED = 1.3
 """Arms that lie beside a level of the trunk and are one with it at the next make that wider by this [1]."""
 
+BESIDE = 5
+"""Arms lie beside the trunk at so many levels in a row at least; at an edge of the scan only at some."""
+
 SECTORS = 6
 """A level with skin in all of so many directions from its middle goes round, as that of a pole does."""
 
@@ -146,10 +149,11 @@ class Silhouette:
         merged = np.zeros(len(self.z), dtype=bool)
         for way in (slice(None), slice(None, None, -1)):
             width, arms, here = self.width[way], self.arms[way], merged[way]
-            wider = (width[1:] > MERGED * width[:-1]) & arms[:-1] & ~arms[1:]
-            for at in np.flatnonzero(wider):
-                slimmer = np.flatnonzero(~(width[at + 1 :] > MERGED * width[at]))
-                here[at + 1 : at + 1 + int(slimmer[0]) if len(slimmer) else None] = True
+            for at in np.flatnonzero((width[1:] > MERGED * width[:-1]) & arms[:-1] & ~arms[1:]):
+                beside = slice(at + 1 - BESIDE, at + 1)
+                if at + 1 >= BESIDE and arms[beside].all():
+                    slimmer = ~(width[at + 1 :] > MERGED * np.median(width[beside]))
+                    here[at + 1 :] |= np.cumsum(slimmer) == 0
         return merged
 
     def turned(self, up: int, back: int) -> Silhouette:
