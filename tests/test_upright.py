@@ -1,5 +1,6 @@
 """A body in any unit, on any axes, turned any way, stands up in mm, facing -y; what is no body is refused."""
 
+from dataclasses import replace
 from itertools import permutations, product
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from core.errors import ScanError
 from core.reading.scan_file import read_triangles
+from core.standing import upright
 from core.standing.symmetry import even_cloud, mirror_planes
 from core.standing.upright import AXES, MILLIMETRES, find_pose
 
@@ -213,3 +215,15 @@ def test_even_points_do_not_follow_the_order_of_the_triangles(mannequin):
     assert len(fine.points) == pytest.approx(len(coarse.points), rel=0.02)
     gaps = np.linalg.norm(fine.points[fine.partner(coarse.points)] - coarse.points, axis=1)
     assert gaps.max() < 2.0 * fine.grain
+
+
+def test_a_way_to_stand_that_seems_better_until_it_is_set_upright_gives_way(monkeypatch):
+    real = upright.stances
+
+    def raised(stance, more):
+        tilted = 0.8 < stance.up[2] < 0.99 and stance.back[1] > 0.8
+        return replace(stance, evidence=stance.evidence + more) if tilted else stance
+
+    monkeypatch.setattr(upright, "stances", lambda *told: [raised(stance, 1.5) for stance in real(*told)])
+    monkeypatch.setattr(upright, "settled", lambda cloud, stance: raised(stance, -3.0))
+    assert angle_between(find_pose(*torso()), CANONICAL[:3, :3]) < 3.0
