@@ -122,10 +122,11 @@ def cut(options: argparse.Namespace) -> int:
 
     design = design_of(options.input, options)
     if options.elastics is not None:
-        from app.commands.elastics import run_elastics
+        from app.commands.elastics import elastics_text, run_elastics
 
         lines, made = options.line or [], options.elastic or []
-        return told(run_elastics(design, lines, made, options.elastics, options.as_worn), True, [])
+        listed = partial(run_elastics, design, lines, made, options.elastics, options.as_worn)
+        return told(elastics_text(listed, _form(options), options.out), True, [])
     found = run_cut(design, options.line or [], options.elastic or [], options.as_worn)
     return told(cut_text(found, _form(options), options.out), found.worn.settled, found.worn.warnings)
 

@@ -179,3 +179,16 @@ def test_the_command_line_lists_effects_and_names_the_nearest(
     assert json.loads(capsys.readouterr().out)["rows"][0]["elastic"] == "Strap 20 mm"
     assert main([*words, "--elastics", "no line"]) == 2
     assert "There is no line 'no line'" in capsys.readouterr().err
+    for form in ("--json", "--csv", "--out=list.json"):
+        assert main([*words, "--elastics", "mid-bust", form]) == 2
+        assert "a table to read" in capsys.readouterr().err
+
+
+def test_the_list_of_elastics_is_written_where_it_is_asked_for(
+    mannequin: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.commands.elastics.library", lambda: {"strap": find_elastic("strap 15")})
+    out = tmp_path / "list.txt"
+    assert main(["cut", str(mannequin), "--elastics", "mid-bust", "--out", str(out)]) == 0
+    assert capsys.readouterr().out == f"written to {out}\n"
+    assert "Strap 15 mm" in out.read_text()

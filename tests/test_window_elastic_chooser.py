@@ -126,3 +126,20 @@ def test_effects_that_come_late_are_dropped_with_the_chooser(monkeypatch: pytest
         chooser_of(window).reject()
 
     run_undrawn([], script)
+
+
+def test_what_was_edited_while_the_chooser_was_open_is_kept() -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        window.inspector.open("garment")
+        yield at_rest(window)
+        window.garment.rows["mid-bust"].elastic.click()
+        yield from mark(window, "Power-net band 80 mm")
+        chooser = chooser_of(window)
+        window.lines_desk.commit_length("under-bust", 0.97)  # as what is found late in a job may do
+        chooser.use.click()
+        yield made_of(window, "mid-bust")
+        assert window.session.design is not None
+        assert window.session.design.ratio("under-bust") == pytest.approx(0.97)
+
+    run_undrawn([], script)

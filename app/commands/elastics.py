@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from app.commands.settings import dressed, made_of
+from app.commands.told import told
 from app.presenting.elastic_options import choice_view, effect_words, mode_words, next_step, title_of
 from app.wording.words import joined
 from core.design import Design
 from core.design_elastics import ElasticError
 from core.elastics import library
-from core.errors import LineError
+from core.errors import LineError, UserError
 from core.pipeline import Stages, build
 from core.sewing.elastic_options import KEEP_CUT, KEEP_FIT, elastic_option, outcome_of
 
@@ -37,6 +38,17 @@ def run_elastics(
         )
         rows.append(f"{view.title[:27]:28}{figures}  {view.note}".rstrip())
     return "\n".join([mode_words(mode, design), "", *rows])
+
+
+def elastics_text(listed: Callable[[], str], kind: str, out: str | None) -> str:
+    """Return the table to print, or write it to a file ``out``; see ``told``. Raises UserError."""
+    return told({"": lambda make: make(), "csv": _refused, "json": _refused}, listed, kind, out)
+
+
+def _refused(_: object) -> str:
+    raise UserError(
+        "The list of elastics is a table to read only.", "Leave out --json, --csv and their endings."
+    )
 
 
 def effect_of(stages: Stages, plain: Stages) -> tuple[str, ...]:

@@ -105,21 +105,25 @@ class ElasticChoice(QObject):
             self._window.jobs.cancel(self._job)
 
     def _take(self, asked: Asked, elastic: Elastic | None, option: ElasticOption) -> None:
-        """Take what was computed, or compute it again if something was edited meanwhile."""
-        now = self._session.design
-        assert now is not None
-        if now is not asked.design:
-            gone = {each.name for each in asked.design.own_lines} - {each.name for each in now.own_lines}
-            names = tuple(name for name in asked.names if name not in gone)
-            if names:
-                self.choose(names, elastic)
-        elif option.outcome is not None:
+        if option.outcome is not None or self._session.design is not asked.design:
             self._use(asked, option.outcome, elastic)
         elif option.problem is not None:
             self._window.desk.show_failure(option.problem)
 
-    def _use(self, asked: Asked, outcome: Outcome, elastic: Elastic | None) -> None:
-        """Make the lines of an elastic, and show what became of the lift where the fit is kept."""
+    def _use(self, asked: Asked, outcome: Outcome | None, elastic: Elastic | None) -> None:
+        """Make the lines of an elastic, and show what became of the lift where the fit is kept.
+
+        What was computed of a design that was edited meanwhile is computed again.
+        """
+        now = self._session.design
+        if now is None:
+            return
+        if now is not asked.design or outcome is None:
+            gone = {each.name for each in asked.design.own_lines} - {each.name for each in now.own_lines}
+            names = tuple(name for name in asked.names if name not in gone)
+            if names:
+                self.choose(names, elastic)
+            return
         if _is_made(asked, outcome, elastic):
             return
         words = tr("{line} made of {elastic}") if elastic else tr("{line} without an elastic")
