@@ -50,6 +50,10 @@ def test_colours_are_read_at_the_vertices(name: str) -> None:
     check(read_raw(name, COLOURED[name]))
 
 
+def test_colours_in_whole_numbers_of_four_bytes_are_bytes() -> None:
+    check(read_raw("wide.ply", coloured_ply().replace(b"property uchar", b"property int")))
+
+
 def test_vertices_without_a_colour_beside_others_with_one_have_none() -> None:
     assert read_raw("groups.obj", HOUSES["groups.obj"]).colours[:, 3].tolist() == [255] * 5 + [0] * 5
     assert read_raw("odd.ply", coloured_ply().replace(b"green", b"grain")).colours is None

@@ -31,8 +31,11 @@ def colourless(count: int) -> Colours:
 
 
 def full_of(kind: np.dtype[np.generic]) -> float | None:
-    """Return the brightest value of a kind of whole numbers, None of others."""
-    return float(2 ** (8 * kind.itemsize) - 1) if kind.kind in "iu" else None
+    """Return the brightest value of a kind of whole numbers, None of others.
+
+    None also of those of four bytes: who writes them means bytes.
+    """
+    return float(2 ** (8 * kind.itemsize) - 1) if kind.kind in "iu" and kind.itemsize <= 2 else None
 
 
 def coloured(values: Floats, full: float | None = None) -> Colours:
