@@ -227,3 +227,16 @@ def test_a_way_to_stand_that_seems_better_until_it_is_set_upright_gives_way(monk
     monkeypatch.setattr(upright, "stances", lambda *told: [raised(stance, 1.5) for stance in real(*told)])
     monkeypatch.setattr(upright, "settled", lambda cloud, stance: raised(stance, -3.0))
     assert angle_between(find_pose(*torso()), CANONICAL[:3, :3]) < 3.0
+
+
+def test_the_next_way_to_stand_is_set_upright_too_where_the_best_one_then_looks_worse(monkeypatch):
+    asked = []
+
+    def settled(cloud, stance):
+        asked.append(stance)
+        return replace(stance, evidence=stance.evidence - 6.0)
+
+    monkeypatch.setattr(upright, "settled", settled)
+    with pytest.raises(ScanError):
+        find_pose(*torso(), front="-y")
+    assert len({stance.up[2] > 0.0 for stance in asked}) == 2

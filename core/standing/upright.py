@@ -140,8 +140,10 @@ def _readings(cloud: Cloud, up: Told | None, front: Told | None) -> list[Stance]
         if len(chosen) < READINGS and all(stance.differs(other, DIFFERENT) for other in chosen):
             chosen.append(stance)
     if exact is None:
-        near = chosen[0].score - RIVAL
-        ends = [_settled(cloud, stance, found) if stance.score > near else stance for stance in chosen]
+        ends, best = [], chosen[0].score
+        for stance in chosen:
+            ends.append(_settled(cloud, stance, found) if stance.score > best - RIVAL else stance)
+            best = min(best, max(end.score for end in ends))  # the best may look worse once it is settled
         chosen = [stance for stance in ends if _allowed(stance, up, front)] or chosen
     chosen.sort(key=lambda stance: -stance.score)
     return [s for k, s in enumerate(chosen) if all(s.differs(other, DIFFERENT) for other in chosen[:k])]
