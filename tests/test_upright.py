@@ -230,12 +230,16 @@ def test_a_way_to_stand_that_seems_better_until_it_is_set_upright_gives_way(monk
 
 
 def test_the_next_way_to_stand_is_set_upright_too_where_the_best_one_then_looks_worse(monkeypatch):
-    asked = []
+    real, asked = upright.stances, []
 
     def settled(cloud, stance):
         asked.append(stance)
         return replace(stance, evidence=stance.evidence - 6.0)
 
+    def leading(*told):
+        return [replace(s, evidence=s.evidence + 3.0 * (s.up[2] > 0.0)) for s in real(*told)]
+
+    monkeypatch.setattr(upright, "stances", leading)
     monkeypatch.setattr(upright, "settled", settled)
     with pytest.raises(ScanError):
         find_pose(*torso(), front="-y")
