@@ -217,6 +217,17 @@ def test_a_gap_has_the_tone_of_the_groove_at_its_length(lines: LinesPanel, ratio
     assert any("does not pull" in each.text() for each in shown) == (ratio == 1.0)
 
 
+def test_the_key_of_an_elastic_line_has_the_tone_of_its_pressure(lines: LinesPanel) -> None:
+    pressing = Zone("amber", 0.5, 0.97, (Reason("pressing", 0.5, 0.97),))
+    leeway = Leeway("waist", (pressing, Zone("green", 0.97, 1.3)), pressure_known=True)
+    elastic = replace(WAIST, ratio=0.9, elastic="Power-net", leeway=leeway, pressed="4.2 kPa", tone="bad")
+    lines.set_lines([elastic, RIBS])
+    lines.select("waist")
+    key = lines.rows["waist"].details._key
+    assert key.rows["amber"][1].property("tone") == "bad", "as the verdict, which is red"
+    assert key.pressure.isHidden(), "its pressure has a place of its own"
+
+
 def test_arrows_go_from_line_to_line_and_enter_into_the_number(lines: LinesPanel, qtbot: QtBot) -> None:
     waist = lines.rows["waist"]
     lines.activateWindow()

@@ -102,8 +102,8 @@ class LineDetails(QWidget):
             each.setVisible(view.constrained)
         self._key.setVisible(view.leeway is not None)
         if view.leeway is not None:
-            pressed = ("", "") if view.elastic else (view.pressed, view.tone)  # has a place of its own
-            self._key.show_leeway(view.leeway, view.ratio, view.stale, *pressed)
+            pressed = "" if view.elastic else view.pressed  # that has a place of its own
+            self._key.show_leeway(view.leeway, view.ratio, view.stale, pressed, view.tone)
         self._pull.setVisible(view.constrained and not view.elastic)  # an elastic has its own
         self._presses.setVisible(bool(view.elastic))
         self._pressed.setText(view.pressed or "\N{EN DASH}")
