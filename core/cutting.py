@@ -234,7 +234,7 @@ def _notes(rows: tuple[CutRow, ...], tissue: float) -> tuple[str, ...]:
     allowances = {row.allowance_mm for row in rows if row.cut_mm}
     if len(allowances) == 1:
         notes.append(
-            f"Lengths to cut hold the allowance for seams, {allowances.pop():g} mm each; hooks and eyes, "
+            f"Each length to cut includes {allowances.pop():g} mm for seams; hooks and eyes, "
             "rings and slides are not taken off."
         )
     elif allowances:

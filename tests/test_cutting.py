@@ -235,7 +235,7 @@ def test_the_list_says_what_it_rests_on(built):
     assert "300 N per m" in told
     assert "edge is an estimate" in told
     assert "back of a band" in told
-    assert f"seams, {EDGE.allowance_mm:g} mm each" in told
+    assert f"includes {EDGE.allowance_mm:g} mm for seams" in told
     assert json.loads(json.dumps(cuts.as_data()))["rows"][0]["elastic"] == "edge"
 
 

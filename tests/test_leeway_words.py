@@ -20,6 +20,8 @@ from app.panels.length_groove import _zones, wall_of
 from app.panels.length_slider import LengthSlider
 from core.leeway import Leeway, Reason, Zone
 
+pytestmark = pytest.mark.usefixtures("empty_house")
+
 STRAINED = Reason("strained", 0.5, 0.939)
 FOLDED = Reason("folded", 0.5, 0.86)
 SLACK = Reason("slack", 0.981, 1.3, others=True)
