@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import QRect, QSettings
+from PySide6.QtCore import QRect, QSettings, QSize
 from PySide6.QtWidgets import QPushButton
 from window_tools import Script, run_undrawn, settled
 
@@ -55,5 +55,6 @@ def test_names_that_the_program_gives_are_in_the_language_of_the_window() -> Non
 
 
 def test_a_card_beside_a_column_covers_none_of_it() -> None:
-    room, card, rail = QRect(0, 44, 1180, 656), QRect(0, 0, 320, 180), QRect(0, 44, 77, 280)
-    assert not QRect(_beside(rail, card, room), card.size()).intersects(QRect(0, 44, 77, 656))
+    room, card, rail = QRect(0, 44, 1180, 656), QSize(320, 180), QRect(0, 44, 77, 280)
+    column = QRect(0, 44, 77, 656)
+    assert not QRect(_beside(rail, card, room, [column]), card).intersects(column)
