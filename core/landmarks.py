@@ -52,25 +52,8 @@ def find_landmarks(
     """
     calm = body.calm
     by_hand = laid_on(calm, placed)
-    warnings: tuple[str, ...] = ()
     around = all(f"{name}_{side}" in by_hand for name in ("bust_point", "fold") for side in SIDES)
-    if around:
-        found = _around(calm, by_hand)
-    else:
-        trunk = survey(calm)
-        progress(FINDING, 0.3)
-        anchor = find_anchor(trunk)
-        check_anchor(anchor)
-        poles = find_poles(trunk, anchor)
-        progress(FINDING, 0.5)
-        flat = missing_sides(poles, anchor.lone)
-        missing = [side for side in flat if f"bust_point_{side}" not in by_hand]
-        seen = bust_points(calm, poles, trunk.middle, flat)
-        busts = [held_against(by_hand.get(mark.name), mark) for mark in seen]
-        progress(FINDING, 0.6)
-        marks = busts + folds_and_lowest(calm, busts, anchor.z, by_hand)
-        found = _levels(calm, marks, by_hand, missing)
-        warnings = check(calm, trunk, anchor, poles, missing, found)
+    found, warnings = (_around(calm, by_hand), ()) if around else _detected(calm, by_hand, progress)
     progress(FINDING, 0.7)
     further = {
         mark.name: mark if mark.name.startswith("front_centre") else _less(mark, UNMEASURED)
@@ -89,6 +72,26 @@ def find_landmarks(
     warnings = (*[BURIED] * (BURIED in body.repairs), *(hint.sentence for hint in strange), *warnings)
     warnings = (*warnings, *placed_warnings(found), *coarse_warning(_spacing(calm, found.points)))
     return Landmarks(points, found.bust_level, found.underbust_level, warnings, strange)
+
+
+def _detected(
+    mesh: Mesh, by_hand: Mapping[str, Landmark], progress: Progress
+) -> tuple[Landmarks, tuple[str, ...]]:
+    """Return the landmarks of the bust, with warnings, where not all of them are placed."""
+    trunk = survey(mesh)
+    progress(FINDING, 0.3)
+    anchor = find_anchor(trunk)
+    check_anchor(anchor)
+    poles = find_poles(trunk, anchor)
+    progress(FINDING, 0.5)
+    flat = missing_sides(poles, anchor.lone)
+    missing = [side for side in flat if f"bust_point_{side}" not in by_hand]
+    seen = bust_points(mesh, poles, trunk.middle, flat)
+    busts = [held_against(by_hand.get(mark.name), mark) for mark in seen]
+    progress(FINDING, 0.6)
+    marks = busts + folds_and_lowest(mesh, busts, anchor.z, by_hand)
+    found = _levels(mesh, marks, by_hand, missing)
+    return found, check(mesh, trunk, anchor, poles, missing, found)
 
 
 def _around(mesh: Mesh, by_hand: Mapping[str, Landmark]) -> Landmarks:

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from app.cli import main
+from app.commands import elastics
 from core.design_elastics import Elastic
 from core.design_lines import WornLine
 from core.elastics import built_in, find_elastic
@@ -187,7 +188,7 @@ def test_the_command_line_lists_effects_and_names_the_nearest(
 def test_the_list_of_elastics_is_written_where_it_is_asked_for(
     mannequin: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.commands.elastics.library", lambda: {"strap": find_elastic("strap 15")})
+    monkeypatch.setattr(elastics, "library", lambda: {"strap": find_elastic("strap 15")})
     out = tmp_path / "list.txt"
     assert main(["cut", str(mannequin), "--elastics", "mid-bust", "--out", str(out)]) == 0
     assert capsys.readouterr().out == f"written to {out}\n"

@@ -109,6 +109,9 @@ class Tour(QObject):
             self.mark.point_at(self._stops()[self._place].place(), room, self._clear())
 
     def _stops(self) -> tuple[Stop, ...]:
+        return (*self._stops_beside_the_body(), *self._stops_of_the_result())
+
+    def _stops_beside_the_body(self) -> tuple[Stop, ...]:
         window = self._window
         frame = window.session.frame
         assert frame is not None, "a tour is of a body"
@@ -137,6 +140,10 @@ class Tour(QObject):
                 ),
                 lambda: self._place_of(window.lines.rows.get(window.view.selected_line, window.lines)),
             ),
+        )
+
+    def _stops_of_the_result(self) -> tuple[Stop, ...]:
+        return (
             Stop(
                 tr("Overall verdict"),
                 tr(
@@ -152,7 +159,7 @@ class Tour(QObject):
                     "The verdict, the lift and what to cut, with pictures: print it or save it as a PDF. "
                     "Esc returns to the body."
                 ),
-                lambda: self._place_of(window.report_desk.page.does["pdf"]),
+                lambda: self._place_of(self._window.report_desk.page.does["pdf"]),
                 report=True,
             ),
         )

@@ -9,11 +9,8 @@ from dataclasses import dataclass
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QColor, QKeyEvent
 from PySide6.QtWidgets import (
-    QAbstractItemView,
     QHBoxLayout,
-    QHeaderView,
     QPushButton,
-    QTreeWidget,
     QTreeWidgetItem,
     QWidget,
 )
@@ -22,6 +19,7 @@ from app.dress.parts import Segment, button, sentence
 from app.dress.sheet import Sheet
 from app.dress.theme import font, set_tag, tokens_of
 from app.dress.tip import set_tip
+from app.panels.elastics_sheet import ElasticTable
 from app.wording.lengths import length_unit
 from app.wording.words import tr
 
@@ -188,11 +186,10 @@ class ElasticChooser(Sheet):
             self.chosen.emit(self.current, False)
 
 
-class _Table(QTreeWidget):
-    """The elastics, a row each."""
+class _Table(ElasticTable):
+    """The elastics with their effect."""
 
     def __init__(self) -> None:
-        super().__init__()
         unit = length_unit()
         heads = (
             tr("Elastic"),
@@ -202,17 +199,7 @@ class _Table(QTreeWidget):
             tr("lift {unit}"),
             "",
         )
-        self.setHeaderLabels([each.format(unit=unit) for each in heads])
-        self.setRootIsDecorated(False)
-        self.setUniformRowHeights(True)
-        self.setAccessibleName(tr("Elastics"))
-        self.setFont(font("body", tabular=True))
-        self.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
-        header = self.header()
-        header.setSectionsMovable(False)
-        header.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
-        header.setSectionResizeMode(NOTE, QHeaderView.ResizeMode.Stretch)
-        header.setFont(font("caption"))
+        super().__init__([each.format(unit=unit) for each in heads], NOTE)
         for column in (STRETCH, CUT, REACHED, LIFT):
             self.headerItem().setTextAlignment(column, _RIGHT)
 

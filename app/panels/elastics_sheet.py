@@ -128,15 +128,12 @@ class ElasticsSheet(Sheet):
         self.curve.show_elastic(view)
 
 
-class _Table(QTreeWidget):
-    """The elastics, a row each."""
+class ElasticTable(QTreeWidget):
+    """Elastics, a row each under ``heads``; the column ``wide`` takes the room that is left."""
 
-    def __init__(self) -> None:
+    def __init__(self, heads: Sequence[str], wide: int) -> None:
         super().__init__()
-        at = [f"{number(100.0 * each, 0)} %" for each in TOLD_AT]
-        lengths = (tr("width {unit}"), tr("allowance {unit}"))
-        wide, allowance = (each.format(unit=length_unit()) for each in lengths)
-        self.setHeaderLabels([tr("Elastic"), wide, *at, allowance, tr("from")])
+        self.setHeaderLabels(heads)
         self.setRootIsDecorated(False)
         self.setUniformRowHeights(True)
         self.setAccessibleName(tr("Elastics"))
@@ -146,8 +143,18 @@ class _Table(QTreeWidget):
         header.setStretchLastSection(False)
         header.setSectionsMovable(False)
         header.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
-        header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        header.setSectionResizeMode(wide, QHeaderView.ResizeMode.Stretch)
         header.setFont(font("caption"))
+
+
+class _Table(ElasticTable):
+    """The elastics with their forces."""
+
+    def __init__(self) -> None:
+        at = [f"{number(100.0 * each, 0)} %" for each in TOLD_AT]
+        lengths = (tr("width {unit}"), tr("allowance {unit}"))
+        wide, allowance = (each.format(unit=length_unit()) for each in lengths)
+        super().__init__([tr("Elastic"), wide, *at, allowance, tr("from")], 0)
         for column in range(1, self.columnCount() - 1):
             self.headerItem().setTextAlignment(column, _RIGHT)
 

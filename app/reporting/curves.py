@@ -98,13 +98,7 @@ def _section(
             away = (np.array(places) - centre) * [scale, -scale]
             return [(a, b) for a, b in (away + 0.5 * room + [left, top]).tolist()]
 
-        for across in _rounds(low[0], high[0], step):
-            at = left + (across - low[0]) * scale
-            paper.stroke(at, top, top + room[1], ink=LIGHT.outline if across == 0.0 else LIGHT.line)
-        for up in _rounds(low[1], high[1], step):
-            at = top + (high[1] - up) * scale
-            paper.rule(left, at, room[0], ink=LIGHT.outline if up == 0.0 else LIGHT.line)
-            paper.text(left - 1.4, at + 0.75, length_number(up, 0, signed=True), "axis", align="right")
+        _paint_grid(paper, (left, top), room, (low, high), step)
         paper.clip(left, top, *room)
         for band in bands:
             paper.area(on_page(band), LIGHT.accent)
@@ -120,6 +114,21 @@ def _section(
         paper.text(x + width, y + height - 0.6, said, "caption", align="right")
 
     return Block(height, paint)
+
+
+def _paint_grid(
+    paper: Paper, corner: tuple[float, float], room: Floats, ends: tuple[Floats, Floats], step: float
+) -> None:
+    """Draw a grid of ``step`` [mm] of the body on ``room`` (2,) [mm] of the paper, between ``ends``."""
+    (left, top), (low, high) = corner, ends
+    scale = float(room[0] / (high[0] - low[0]))
+    for across in _rounds(low[0], high[0], step):
+        at = left + (across - low[0]) * scale
+        paper.stroke(at, top, top + room[1], ink=LIGHT.outline if across == 0.0 else LIGHT.line)
+    for up in _rounds(low[1], high[1], step):
+        at = top + (high[1] - up) * scale
+        paper.rule(left, at, room[0], ink=LIGHT.outline if up == 0.0 else LIGHT.line)
+        paper.text(left - 1.4, at + 0.75, length_number(up, 0, signed=True), "axis", align="right")
 
 
 def _band(curve: Sequence[tuple[float, float]], off: Sequence[float]) -> list[tuple[float, float]]:
